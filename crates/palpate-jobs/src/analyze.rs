@@ -106,7 +106,7 @@ impl Analyze {
         options.fit_until = self.fit_until_s.or(options.fit_until);
         if let Some(exponents) = &self.exponents {
             if exponents.is_empty() || exponents.iter().any(|n| !(n.is_finite() && *n > 0.0)) {
-                let message = format!("⟨exponents⟩ must be above 0, found {exponents:?}");
+                let message = format!("⟨exponents⟩ are numbers above 0, found {exponents:?}");
                 return Err(JobError::option(message, ""));
             }
             options.exponents.clone_from(exponents);

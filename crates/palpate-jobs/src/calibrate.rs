@@ -93,8 +93,8 @@ impl Calibrate {
                 poisson_ratio: ratio.unwrap_or(0.5),
             }),
             (_, Some(_)) => Err(JobError::option(
-                "⟨poisson_ratio⟩ applies to Hertz's law only",
-                "add ⟨equilibrium=hertz⟩, or omit ⟨poisson_ratio⟩",
+                "⟨poisson_ratio⟩ is for Hertz's law, which is not asked for",
+                "add ⟨equilibrium=hertz⟩, or leave ⟨poisson_ratio⟩ out",
             )),
             (Equilibrium::UniformStrain, None) => Ok(EquilibriumLaw::UniformStrain),
             (Equilibrium::Table, None) => Ok(EquilibriumLaw::Table),

@@ -407,7 +407,7 @@ fn stress_without_a_section_is_told() {
     let told = done(folder, &["analyze", "press.csv"]);
     let told = told.split_whitespace().collect::<Vec<_>>().join(" ");
     assert!(told.contains("the file gives stress") && told.contains("stands for the same value in Pa"), "{told}");
-    assert!(done(folder, &["inspect", "press.csv"]).contains("done: stress taken for the force on 1 m²"));
+    assert!(done(folder, &["inspect", "press.csv"]).contains("done: stress read as the force on 1 m²"));
     done(folder, &["convert", "press.csv", "--out", "plain.csv"]);
     assert!(std::fs::read_to_string(folder.join("plain.csv")).unwrap().contains("stress_as_force"));
 }

@@ -93,7 +93,7 @@ fn what_the_file_does_not_say_is_asked_for_and_not_guessed() {
     let record = file(folder, "gripper.csv", text);
     failed_but_told(folder, &["inspect", &record, "--write-test", "t.toml"]);
     let written = fs::read_to_string(folder.join("t.toml")).unwrap();
-    assert!(written.contains("unit = \"?\"    # the file does not say; one of N, kN"), "{written}");
+    assert!(written.contains("unit = \"?\"    # the file gives no unit; one of N, kN"), "{written}");
     let error = refused(folder, &["inspect", &record, "--test", "t.toml"]);
     assert!(error.contains("\"?\" is not a unit of time"), "{error}");
     let answer = |text: String, unit: &str| text.replacen("unit = \"?\"", &format!("unit = \"{unit}\""), 1);
@@ -253,7 +253,7 @@ fn clocks_that_differ_are_told_in_the_terminal() {
     assert!(told.contains("ms later than the displacement; set skew = \"auto\" in [clock]"), "{told}");
     file(folder, "auto.toml", "[clock]\nskew = \"auto\"\n");
     let told = done(folder, &["inspect", &record, "--test", "auto.toml"]);
-    assert!(!told.contains("later than the displacement") && told.contains("done: force moved by "), "{told}");
+    assert!(!told.contains("later than the displacement") && told.contains("done: force shifted by "), "{told}");
 }
 
 #[test]

@@ -41,7 +41,7 @@ pub struct ColumnUse {
     pub name: Option<String>,
     /// Its unit, as the description or the header writes it.
     pub unit: String,
-    /// 1, or −1 where the file counts the other way round.
+    /// 1, or −1 where the file has the opposite sign.
     pub sign: f64,
     /// What turns the unit into SI.
     pub factor: f64,

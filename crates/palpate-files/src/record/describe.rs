@@ -21,11 +21,11 @@ use crate::{
 /// What stands where the file does not tell; reading with it is an error that names the key.
 const ASK: &str = "?";
 
-/// A test description (TOML) for one part of a file, with every guess commented.
+/// A draft test description (TOML) for one part of a file, with every guess commented.
 ///
-/// With `file`, the record as it was read, the description gives the same record again. Without it, because the file
-/// does not say enough, what is missing stands as `"?"`, so that nothing is read before a person has answered. What
-/// was found out about the phases is added as comments.
+/// With `file`, the record as it was read, the description reproduces the record. Without it, because the file
+/// lacks information, missing fields are `"?"`, so that reading fails until a person has completed them. The
+/// detected phases are added as comments.
 #[must_use]
 pub fn describe(
     contents: &Contents,

@@ -11,7 +11,7 @@ use crate::{description::TestDescription, open::Contents, table::SkippedPart};
 pub struct Tests {
     /// Their indices in [`Contents::parts`]; at least one.
     pub parts: Vec<usize>,
-    /// What was passed over, with why: what the format could not take for a test, then what lacks a column.
+    /// Skipped parts with reasons: those that are no tests of the format, then those that lack a column.
     pub skipped: Vec<SkippedPart>,
 }
 

@@ -44,7 +44,7 @@ pub struct RecordFile {
     pub rows: usize,
     /// How many successive rows each sample of the record is the mean of; 1 unless the file is very long.
     pub averaged: usize,
-    /// Lines of the file that were passed over.
+    /// Skipped lines of the file.
     pub ignored: IgnoredLines,
     /// The file holds stress and no section is known: the force of the record is that on 1 m².
     pub per_unit_area: bool,
@@ -54,12 +54,12 @@ pub struct RecordFile {
 
 /// Reads the record in the file at `path`, of any format.
 ///
-/// The columns and units are those that `description` says; what it leaves open is told by the header, which
-/// is understood in English, German, French, Spanish, Chinese and Japanese. What neither tells is an error that
-/// asks; a unit is never guessed. Commands and limits (`GoalForce`, `Force max`) are no measurements, and
-/// stress is used only where there is no force or the description asks for it.
+/// The columns and units are those of `description`; omitted ones follow from the header, which
+/// is understood in English, German, French, Spanish, Chinese and Japanese. Anything still missing is an error that
+/// names it; a unit is never guessed. Commands and limits (`GoalForce`, `Force max`) are not measurements, and
+/// stress is used only where there is no force or the description requests it.
 ///
-/// `progress` is told the bytes done and the bytes there are.
+/// `progress` receives the bytes read and the total.
 ///
 /// ```
 /// use palpate_files::record::read_record;

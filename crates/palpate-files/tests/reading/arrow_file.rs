@@ -154,7 +154,7 @@ fn types_units_and_columns_that_are_passed_over() {
     for (_, bytes) in all(std::slice::from_ref(&table)) {
         let contents = open(&bytes).expect("a table");
         let part = &contents.parts[0];
-        assert!(part.written.ends_with("columns that hold no single values passed over: list"), "{}", part.written);
+        assert!(part.written.ends_with("skipped columns without single values: list"), "{}", part.written);
         let kinds: Vec<ColumnKind> = part.columns.iter().map(|column| column.kind).collect();
         assert_eq!(kinds, [ColumnKind::Number, ColumnKind::Text, ColumnKind::Number]);
         let units: Vec<Option<&str>> = part.columns.iter().map(|column| column.unit.as_deref()).collect();

@@ -13,7 +13,7 @@ use crate::page::Finding;
 use crate::result::{Answer, ComparedRecord, Input, ParameterDocument, ParameterRow, mode_word, word};
 
 documents! {
-    /// A stretch of the record in one phase.
+    /// A phase of the record.
     SegmentDocument(segment: &Segment, time: &[f64]) {
         /// `rest`, `loading`, `hold` or `unloading`.
         phase: String = word(segment.phase),
@@ -55,30 +55,30 @@ documents! {
         force_change_n: f64 = hold.relaxation.change,
         /// Its standard error, N.
         force_change_standard_error_n: f64 = hold.relaxation.standard_error,
-        /// Probability that noise alone makes such a change.
+        /// Probability of such a change by noise alone.
         p_value: f64 = hold.relaxation.p_value,
         /// Force where the fit starts, N.
         force_start_n: f64 = hold.force_start,
         /// Force at the end, N.
         force_end_n: f64 = hold.force_end,
-        /// What was fitted: `strain` or `force`.
+        /// The fitted quantity: `strain` or `force`.
         signal: String = word(hold.signal),
         /// Fits, time domain first.
         fits: Vec<FitDocument> = time.chain(rate).collect(),
-        /// How far noise takes the rate domain from the truth.
+        /// Bias of the rate domain by noise.
         rate_bias: Option<RateBiasDocument> = hold.rate_bias.map(RateBiasDocument::new),
         /// Index into `fits` of the preferred one (lowest information criterion).
         preferred: Option<usize> = hold.order.as_ref().and_then(|order| order.preferred),
-        /// Index into `fits` of the lowest listed exponent that fits as well as the best one.
+        /// Index into `fits` of the lowest listed exponent that is not distinguishable from the best one.
         lowest_order: Option<usize> = hold.order.as_ref().and_then(|order| order.lowest_order),
-        /// Laws compared on this hold; `null` where that was left out or could not be done.
+        /// Laws compared on this hold; `null` where the comparison was omitted or failed.
         comparison: Option<HoldComparisonDocument> =
             comparison.map(|found| HoldComparisonDocument::new(found, hold.signal.into())),
-        /// What to know about this hold.
+        /// Findings about this hold.
         findings: Vec<Finding> = hold.findings.iter().map(Finding::from).collect(),
     }
 
-    /// What the rate domain makes of simulated holds whose truth is the preferred fit in time, with the noise of the measured one.
+    /// Estimates of the rate domain from simulated holds with the parameters of the preferred time-domain fit and the measured noise.
     RateBiasDocument(bias: RateBias) {
         /// The exponent, given in all fits.
         exponent: f64 = bias.exponent,
@@ -116,7 +116,7 @@ documents! {
             holds.filter_map(|hold| Some(TableRow::new(hold, hold.fit_with(n)?))).collect()
         };
     } {
-        /// The lowest listed exponent that fits all holds best.
+        /// The lowest listed exponent that is not distinguishable from the best fit to all holds.
         common_exponent: Option<f64> = Some(n),
         /// Holds after loading.
         loading: Vec<TableRow> = rows(After::Loading),
@@ -128,7 +128,7 @@ documents! {
         trend_interval: Option<[f64; 2]> = trend.and_then(|trend| trend.interval).map(Into::into),
     }
 
-    /// The latency law with one v, and one n, for several holds, against a law for each hold.
+    /// The latency law with one v and n for several holds, compared with a law for each hold.
     JointDocument(joint: &JointAnalysis) with {
         let fixed = if let ExponentChoice::Fixed(n) = joint.choice { n } else { f64::NAN };
         let estimate = |name: &str, otherwise: f64| {
@@ -151,7 +151,7 @@ documents! {
         rate_coefficient_standard_error_per_s: Option<f64> = rate.standard_error,
         /// Its confidence interval, 1/s.
         rate_coefficient_interval_per_s: Option<[f64; 2]> = rate.interval.map(Into::into),
-        /// Probability of so large a difference to a law for each hold if they share one.
+        /// Probability of so large a difference from a law for each hold if they share one.
         p_value: Option<f64> = joint.comparison.p,
         /// Bayesian information criterion less that of a law for each hold.
         delta_bic: f64 = joint.comparison.delta_bic,
@@ -163,7 +163,7 @@ documents! {
         verdict: String = word(joint.comparison.verdict),
     }
 
-    /// The record's own displacement simulated with the fitted numbers.
+    /// Simulation of the measured displacement with the fitted parameters.
     OverlayDocument(overlay: &Overlay) {
         /// n.
         exponent: f64 = overlay.model.law.exponent(),
@@ -190,11 +190,11 @@ documents! {
         answer: Answer = Answer::new(&ComparedRecord::of_analysis(analysis, input.clone())),
         /// The record.
         input: Input = input,
-        /// What the analysis ran with.
+        /// Settings of the analysis.
         settings: SettingsDocument = SettingsDocument::new(analysis),
-        /// What the columns are like.
+        /// Properties of the columns.
         signals: SignalsDocument = SignalsDocument::new(analysis),
-        /// What was done to the measured columns, in order.
+        /// Corrections of the measured columns, in order.
         corrections: Vec<CorrectionDocument> =
             analysis.record.corrections().iter().map(CorrectionDocument::new).collect(),
         /// First touch.
@@ -210,9 +210,9 @@ documents! {
         joint: Vec<JointDocument> = analysis.across.joint.iter().map(JointDocument::new).collect(),
         /// The simulated record.
         overlay: Option<OverlayDocument> = analysis.overlay.as_ref().map(OverlayDocument::new),
-        /// What to know about the record as a whole.
+        /// Findings about the record.
         findings: Vec<Finding> = analysis.findings.iter().map(Finding::from).collect(),
-        /// What wrote this.
+        /// The software that wrote this.
         software: Software = Software::this(),
     }
 }

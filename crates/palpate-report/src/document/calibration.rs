@@ -19,11 +19,11 @@ documents! {
         /// Its value with its uncertainty.
         #[serde(flatten)]
         parameter: ParameterDocument = named.1,
-        /// Profile interval; left out where none was requested.
+        /// Profile interval; omitted where none was requested.
         profile?: Option<ProfileDocument> = profile.map(|found| ProfileDocument::new(found.interval)),
     }
 
-    /// A profile interval; an end that the record leaves open is `null`.
+    /// A profile interval; an unbounded end is `null`.
     ProfileDocument(interval: Interval) {
         /// Lower end.
         low: Option<f64> = interval.low,
@@ -31,7 +31,7 @@ documents! {
         high: Option<f64> = interval.high,
     }
 
-    /// The error of the prediction beyond what was fitted.
+    /// Held-out error: error of the prediction beyond the fitted part.
     HoldoutDocument(holdout: HoldoutError) {
         /// Root mean square error, N.
         rmse_n: f64 = holdout.rmse,
@@ -55,7 +55,7 @@ documents! {
     } {
         /// Name of the law.
         law: String = candidate.to_string(),
-        /// Parameters that were searched.
+        /// Number of estimated parameters.
         free_parameters: Option<usize> = good.map(|made| made.free_parameters),
         /// Root mean square residual over the fitted samples, N.
         rmse_n: Option<f64> = good.map(|made| made.rmse),
@@ -63,14 +63,14 @@ documents! {
         relative: Option<f64> = good.map(|made| made.relative),
         /// BIC less the lowest of the laws.
         delta_bic: Option<f64> = good.map(|made| made.criteria.bic - least).filter(|delta| delta.is_finite()),
-        /// What was not fitted; `null` where all was.
+        /// The held-out error; `null` where all samples were fitted.
         holdout: Option<HoldoutDocument> = good.and_then(|made| made.holdout).map(HoldoutDocument::new),
         /// The law with its values put in; `null` where there is none.
         formula: Option<String> = good.and_then(|made| formula_of_material(&made.material)),
         /// Its parameters.
         parameters: Vec<CalibratedParameterDocument> =
             parameters.map(|parameter| CalibratedParameterDocument::new(parameter, profiles)).collect(),
-        /// Covariance of the logarithms of the parameters; `null` where the record leaves one open.
+        /// Covariance of the logarithms of the parameters; `null` where the record does not determine one.
         log_covariance: Option<Vec<Vec<f64>>> = uncertainty.map(|uncertainty| uncertainty.covariance.clone()),
         /// Why the search ended; `null` where none began.
         termination: Option<String> = good.map(|made| word(made.termination)),
@@ -98,9 +98,9 @@ documents! {
         fitted: usize = record.data.fitted(),
         /// Coverage of the intervals.
         confidence: f64 = confidence,
-        /// The laws; the first is the one that was asked for.
+        /// The laws; the first is the requested one.
         laws: Vec<CalibratedLawDocument> = record.rows.iter().enumerate().map(law).collect(),
-        /// What that means, in sentences.
+        /// Remarks, in sentences.
         remarks: Vec<String> = record.remarks(),
     }
 }

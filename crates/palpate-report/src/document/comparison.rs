@@ -15,17 +15,17 @@ use crate::result::{
 };
 
 documents! {
-    /// What a law fitted to the first part of the hold says of the rest.
+    /// Prediction of the rest of the hold by a law fitted to its first part.
     ForecastDocument(forecast: &Forecast, change: f64) {
-        /// Time up to which was fitted, s after the start of the fit.
+        /// End of the fitted part, s after the start of the fit.
         cut_s: f64 = forecast.cut,
         /// Samples fitted.
         fitted: usize = forecast.fitted,
         /// Samples held out of the fit.
         held_out: usize = forecast.held_out,
-        /// Root mean square error over those as a share of the change of the signal.
+        /// Root mean square error over the held-out samples as a share of the change of the signal.
         error: f64 = forecast.rmse / change,
-        /// Mean error as such a share; above zero where the law runs above the data.
+        /// Mean error as the same share; positive where the law exceeds the data.
         bias: f64 = forecast.bias / change,
     }
 
@@ -61,9 +61,9 @@ documents! {
     } {
         /// Name of the law, as `--laws` takes it.
         law: String = row.law.to_string(),
-        /// Parameters that the data determine; not a whole one for a smoothed spectrum.
+        /// Effective number of parameters; not an integer for a smoothed spectrum.
         effective_parameters: f64 = row.effective_parameters,
-        /// The law with its values put in, t counting from the start of the fit; `null` where there is none.
+        /// The law with its parameter values, t from the start of the fit; `null` where there is none.
         formula: Option<String> = fit.map(|fit| formula(fit, quantity)),
         /// Parameters of the law by name.
         parameters: Parameters = fit.map(|fit| parameters_of(fit, quantity)).unwrap_or_default(),
@@ -87,18 +87,18 @@ documents! {
 
     /// Which law to use.
     VerdictDocument(comparison: &Comparison, verdict: &Verdict) {
-        /// The law with the fewest parameters among those that do best.
+        /// The law with the fewest parameters among those that are not distinguishable from the best.
         law: String = verdict.law.to_string(),
         /// `clear`, `likely` or `open`.
         certainty: String = word(verdict.certainty),
-        /// All laws that do as well, this one included.
+        /// All laws that are not distinguishable from the best, this one included.
         alike: Vec<String> = verdict.alike.iter().map(ToString::to_string).collect(),
-        /// Cut points at which it is best or as good.
+        /// Number of cut points at which no law predicts distinguishably better.
         cuts_won: usize = verdict.cuts_won,
-        /// What each other law costs: its error over that of the chosen one (`forward`), or its excess of BIC (`information`).
+        /// Cost of each other law: the ratio of its error to that of the chosen one (`forward`), or its excess of BIC (`information`).
         costs: BTreeMap<String, Option<f64>> =
             verdict.costs.iter().map(|(law, cost)| (law.to_string(), finite(*cost))).collect(),
-        /// All that in one sentence.
+        /// The verdict in one sentence.
         sentence: String = comparison.sentence().unwrap_or_default(),
     }
 
@@ -107,13 +107,13 @@ documents! {
         let (rows, change) = (&comparison.rows, comparison.change);
         let lowest = rows.iter().filter_map(|row| row.criteria).map(|c| c.aicc).fold(f64::INFINITY, f64::min);
     } {
-        /// What the laws were fitted to: `strain`, `force` or `displacement`.
+        /// The fitted quantity: `strain`, `force` or `displacement`.
         signal: String = word(quantity),
         /// Its unit: `1`, `N` or `m`.
         signal_unit: String = quantity.unit().to_owned(),
         /// Laws are ranked by `forward` (score) or `information` (BIC).
         ranking: String = word(comparison.ranking),
-        /// Cut points at which something is left to predict, s after the start of the fit.
+        /// Cut points with held-out samples, s after the start of the fit.
         cuts_s: Vec<f64> = comparison.cuts.clone(),
         /// Change of the signal over the hold, in its unit.
         change: f64 = comparison.change,
@@ -121,11 +121,11 @@ documents! {
         noise: f64 = comparison.noise,
         /// Samples.
         samples: usize = comparison.samples,
-        /// Samples that count as independent.
+        /// Equivalent number of independent samples.
         effective_samples: f64 = comparison.effective_samples,
         /// The laws, best first.
         laws: Vec<LawDocument> = rows.iter().map(|row| LawDocument::new(row, change, lowest, quantity)).collect(),
-        /// Which to use; `null` if none could be fitted.
+        /// The law to use; `null` if none could be fitted.
         verdict: Option<VerdictDocument> =
             comparison.verdict.as_ref().map(|verdict| VerdictDocument::new(comparison, verdict)),
     }
@@ -136,7 +136,7 @@ documents! {
     } {
         /// Number of the hold, from 1.
         index: usize = hold.number,
-        /// `loading` or `unloading`; in creep of the force.
+        /// `loading` or `unloading`; for creep, that of the force.
         after: Option<String> = hold.after.map(word),
         /// Time of its first sample, s.
         start_s: f64 = hold.start,
@@ -144,14 +144,14 @@ documents! {
         end_s: f64 = hold.end,
         /// Time from which the laws are fitted, s.
         fit_start_s: f64 = hold.fit_start,
-        /// Displacement that was held, m; `null` in creep.
+        /// Held displacement, m; `null` for creep.
         displacement_m: Option<f64> = hold.level.filter(|_| !is_creep),
-        /// Force that was held, N; `null` in relaxation.
+        /// Held force, N; `null` for relaxation.
         force_n: Option<f64> = hold.level.filter(|_| is_creep),
         /// The comparison; `null` where nothing could be fitted.
         comparison: Option<HoldComparisonDocument> =
             hold.comparison.as_ref().map(|found| HoldComparisonDocument::new(found, hold.quantity)),
-        /// What to know about this hold.
+        /// Findings about this hold.
         findings: Vec<Finding> = hold.findings.iter().map(Finding::from).collect(),
     }
 
@@ -163,11 +163,11 @@ documents! {
         input: Input = record.input.clone(),
         /// Its holds.
         holds: Vec<ComparedHoldDocument> = record.holds.iter().map(ComparedHoldDocument::new).collect(),
-        /// What to know about the record as a whole.
+        /// Findings about the record.
         findings: Vec<Finding> = record.findings.iter().map(Finding::from).collect(),
     }
 
-    /// What a comparison ran with.
+    /// Settings of a comparison.
     ComparisonSettingsDocument(options: &CompareOptions, hold_start: HoldStart, fit_until: Option<f64>) {
         /// `relaxation` or `creep`.
         response: String = word(options.fit.response),
@@ -175,7 +175,7 @@ documents! {
         laws: Vec<String> = options.laws().iter().map(ToString::to_string).collect(),
         /// Cut points as shares of the duration of a hold.
         cuts: Vec<f64> = options.cuts.clone(),
-        /// What linear laws take the loading before a hold for: `step` or `measured`.
+        /// Loading history before a hold, as linear laws take it: `step` or `measured`.
         ramps: String = word(options.ramps),
         /// `squares`, `huber` or `tukey`.
         loss: String = word(options.fit.loss),
@@ -186,9 +186,9 @@ documents! {
         },
         /// Coverage of the intervals.
         confidence: f64 = options.fit.confidence,
-        /// What the intervals of fits rest on, if not the curvature: `profile` or `bootstrap`.
+        /// Method of the intervals, if not the curvature: `profile` or `bootstrap`.
         intervals?: Option<String> = unusual(options.fit.intervals),
-        /// Fitted only this long from the start of the fit, s.
+        /// Duration of the fitted part from the start of the fit, s.
         fit_until_s: Option<f64> = fit_until,
         /// `peak`, `settled` or `peak + … s`.
         hold_start: String = hold_start_word(hold_start),
@@ -199,13 +199,13 @@ documents! {
     ComparisonDocument(records: &[ComparedRecord], left_out: &[LeftOut], settings: ComparisonSettingsDocument) {
         /// `palpate.comparison/1`.
         schema: String = "palpate.comparison/1".to_owned(),
-        /// What the comparison ran with.
+        /// Settings of the comparison.
         settings: ComparisonSettingsDocument = settings,
         /// The records.
         records: Vec<ComparedRecordDocument> = records.iter().map(ComparedRecordDocument::new).collect(),
-        /// Files on which nothing could be compared.
+        /// Files without a comparison.
         left_out: Vec<LeftOut> = left_out.to_vec(),
-        /// What wrote this.
+        /// The software that wrote this.
         software: Software = Software::this(),
     }
 }

@@ -15,7 +15,7 @@ documents! {
         law: String = fit.law.to_string(),
         /// `time` (closed form against the signal) or `rate` (strain rate against strain).
         domain: String = word(fit.domain),
-        /// The law with its values put in; t counts from the start of the fit.
+        /// The law with its parameter values; t from the start of the fit.
         formula: String = formula(fit, hold.signal.into()),
         /// Parameters of the law by name, in the unit of the signal where they have one.
         parameters: Parameters = parameters_of(fit, hold.signal.into()),

@@ -9,7 +9,7 @@ use super::software::Software;
 use crate::result::{GrippedBody, word};
 
 documents! {
-    /// The load and what holds it.
+    /// The load and the friction that carries it.
     GraspDocument(grasp: &Grasp) {
         /// Mass, kg.
         mass_kg: f64 = grasp.mass,
@@ -35,28 +35,28 @@ documents! {
         torsion_n_m: f64 = grasp.torsion(),
     }
 
-    /// What the gripper can do.
+    /// Limits of the gripper.
     GripLimitsDocument(limits: &Limits) {
-        /// The fastest that the jaws go, m/s.
+        /// Largest speed of the jaws, m/s.
         speed_m_per_s: f64 = limits.speed,
-        /// How far they go, m.
+        /// Stroke of the jaws, m.
         stroke_m: Option<f64> = limits.stroke,
         /// The largest force, N.
         force_n: Option<f64> = limits.force,
-        /// How long closing may take, s; `null` where any time may.
+        /// Longest time of closing, s; `null` if unlimited.
         closing_s: Option<f64> = limits.closing,
     }
 
-    /// How long something holds.
+    /// Time to slip.
     #[derive(Copy)]
     LastsDocument(lasts: TimeToSlip) {
         /// Longer than ten years.
         always: bool = lasts == TimeToSlip::Never,
-        /// Until it slips, s; `null` for always.
+        /// Time to slip, s; `null` for always.
         seconds: Option<f64> = lasts.seconds(),
     }
 
-    /// A grip with the displacement held.
+    /// A position hold.
     HoldingDocument(found: &PositionHold) with {
         let (kind, over, settling_force, settling) = match found.plan.kind {
             PlanKind::Squeeze { .. } => ("squeeze", None, None, None),
@@ -66,29 +66,29 @@ documents! {
     } {
         /// `squeeze`, `settle` or `back_off`.
         kind: String = kind.to_owned(),
-        /// Where the jaws turn, m; of a retreat.
+        /// Displacement at which the jaws reverse, m; of a back-off.
         over_m: Option<f64> = over,
-        /// Force that is kept before the jaws are locked, N; of one that settles.
+        /// Force held before the jaws are locked, N; of `settle`.
         settling_force_n: Option<f64> = settling_force,
-        /// How long it is kept, s.
+        /// Duration of that force hold, s.
         settling_s: Option<f64> = settling,
         /// Speed of the jaws, m/s.
         speed_m_per_s: f64 = found.plan.speed(),
-        /// How long closing takes, s.
+        /// Duration of closing, s.
         closing_s: f64 = found.closing,
         /// Displacement in the hold, m.
         displacement_m: f64 = found.displacement,
-        /// Force that is needed there, N.
+        /// Required force there, N.
         needed_force_n: f64 = found.needed_force,
         /// Force at the start of the hold, N.
         start_force_n: f64 = found.start_force,
         /// The largest force, N.
         peak_force_n: f64 = found.peak_force,
-        /// The force that the hold tends to, N.
+        /// Equilibrium force of the hold, N.
         equilibrium_force_n: f64 = found.equilibrium_force,
         /// Work of the jaws while they close, J.
         work_j: f64 = found.work,
-        /// How long it holds.
+        /// Time to slip.
         lasts: LastsDocument = LastsDocument::new(found.lasts),
         /// Ends of the interval of that time.
         interval: Option<[LastsDocument; 2]> = found.interval.map(|(low, high)| [low, high].map(LastsDocument::new)),
@@ -96,61 +96,61 @@ documents! {
         sharpness_per_m: Option<f64> = found.sharpness,
     }
 
-    /// How long a squeeze to another displacement holds.
+    /// Time to slip of a squeeze to another displacement.
     NeighbourDocument(displacement: f64, lasts: TimeToSlip) {
         /// Displacement, m.
         displacement_m: f64 = displacement,
-        /// How long.
+        /// Time to slip.
         lasts: LastsDocument = LastsDocument::new(lasts),
     }
 
-    /// What 1 % more of a parameter of the material does to squeeze and back off.
+    /// Sensitivity of squeeze and back off to a parameter of the material that is 1 % larger.
     SensitivityDocument(found: &Sensitivity) {
         /// Name of the parameter.
         parameter: String = found.name.clone(),
         /// Its relative standard error.
         relative_error: Option<f64> = found.error,
-        /// By how much the force at the start of the hold misses the relaxed one, N.
+        /// Difference of the force at the start of the hold from the equilibrium force, N.
         missed_n: f64 = found.missed,
-        /// By how much farther the jaws have to go, m.
+        /// Additional overshoot of the jaws, m.
         over_m: f64 = found.over,
     }
 
     /// Squeeze and back off.
     BackOffDocument(found: &BackOff) {
-        /// The retreat.
+        /// The back-off.
         backed: HoldingDocument = HoldingDocument::new(&found.backed),
-        /// The plain squeeze to the same place.
+        /// The plain squeeze to the same displacement.
         plain: HoldingDocument = HoldingDocument::new(&found.plain),
-        /// Time over which drifts are told, s.
+        /// Time over which the drifts are evaluated, s.
         duration_s: f64 = found.duration,
-        /// Change of the force after the retreat, N.
+        /// Change of the force after the back-off, N.
         drift_n: f64 = found.drift,
         /// The same after the plain squeeze, N.
         plain_drift_n: f64 = found.plain_drift,
-        /// What the parameters of the material do to it.
+        /// Sensitivity to the parameters of the material.
         sensitivities: Vec<SensitivityDocument> = found.sensitivities.iter().map(SensitivityDocument::new).collect(),
     }
 
-    /// The force held.
+    /// The force hold.
     PressedDocument(found: &ForceHold) {
         /// The force, N.
         force_n: f64 = found.force,
         /// How long, s.
         duration_s: f64 = found.duration,
-        /// Force that is needed, N.
+        /// Required force, N.
         needed_force_n: f64 = found.needed_force,
-        /// How long closing takes, s.
+        /// Duration of closing, s.
         closing_s: f64 = found.closing,
         /// Displacement when the hold begins, m.
         displacement_start_m: f64 = found.displacement_start,
         /// Displacement when it ends, m.
         displacement_end_m: f64 = found.displacement_end,
-        /// Displacement that it tends to, m; `null` if none of the body carries the force relaxed.
+        /// Equilibrium displacement, m; `null` if no equilibrium displacement carries the force.
         displacement_relaxed_m: Option<f64> = found.displacement_relaxed,
-        /// Whether the force is enough.
+        /// Whether the force is sufficient.
         holds: bool = found.holds,
-        /// When the jaws come to the end of their stroke, s since the hold began.
+        /// Time at which the jaws reach the end of their stroke, s from the start of the hold.
         stroke_ends_s: Option<f64> = found.stroke_ends,
         /// Work of the jaws, J.
         work_j: f64 = found.work,
@@ -162,11 +162,11 @@ documents! {
         time_s: f64 = step.time,
         /// Displacement before it, m.
         from_m: f64 = step.from,
-        /// Displacement behind it, m.
+        /// Displacement after it, m.
         to_m: f64 = step.to,
         /// Force before it, N.
         force_from_n: f64 = step.force_from,
-        /// Force behind it, N.
+        /// Force after it, N.
         force_to_n: f64 = step.force_to,
     }
 
@@ -181,7 +181,7 @@ documents! {
         objective: String = objective.to_owned(),
         /// Edges of the band, N.
         band_n: [f64; 2] = [found.band.low, found.band.high],
-        /// How long it lasts behind the first squeeze, s.
+        /// Its duration after the first squeeze, s.
         duration_s: f64 = found.duration,
         /// The squeezes, the first among them.
         moves: Vec<MoveDocument> = found.moves.iter().map(MoveDocument::new).collect(),
@@ -193,14 +193,14 @@ documents! {
         work_j: f64 = found.work,
     }
 
-    /// A grip that there is not.
+    /// A grip without a solution.
     #[derive(Eq)]
     RefusedDocument(grip: &str, error: &GripError) {
         /// Which.
         grip: String = grip.to_owned(),
         /// Why.
         reason: String = error.to_string(),
-        /// What would help.
+        /// Remedy.
         hint: String = error.hint().to_owned(),
     }
 
@@ -230,32 +230,32 @@ documents! {
         limits: GripLimitsDocument = GripLimitsDocument::new(body.grip.limits()),
         /// What is held: `position` or `force`.
         control: String = word(question.control),
-        /// How long it is to hold; `null` where that is the question.
+        /// Required duration; `null` where the time to slip is computed.
         duration: Option<LastsDocument> = question.duration.map(|time| LastsDocument::new(wanted(time))),
-        /// What the squeeze has least of: `squeeze`, `peak_force` or `work`; `null` where a squeeze was given.
+        /// The minimised quantity: `squeeze`, `peak_force` or `work`; `null` where a squeeze was given.
         objective: Option<String> = question.squeeze.is_none().then(|| word(question.objective)),
-        /// Whether the lower edge of the band has to hold.
+        /// Whether the lower edge of the band must hold the load.
         assured: bool = question.assured,
-        /// Whether the grip that is asked about holds as long as was asked.
+        /// Whether the requested grip holds for the required duration.
         holds: bool = answer.holds() == Ok(true),
         /// The same in a sentence.
         verdict: String = body.verdict(),
-        /// The displacement held.
+        /// The position hold.
         squeeze: Option<HoldingDocument> = answer.squeeze.as_ref().ok().map(|made| HoldingDocument::new(&made.found)),
-        /// Squeezes beside it.
+        /// Alternative squeezes.
         neighbours: Vec<NeighbourDocument> = neighbours.collect(),
         /// Squeeze and back off.
         back_off: Option<BackOffDocument> = answer.back_off.as_ref().ok().map(|made| BackOffDocument::new(&made.found)),
-        /// The force held.
+        /// The force hold.
         force_held: Option<PressedDocument> =
             answer.force_hold.as_ref().ok().map(|made| PressedDocument::new(&made.found)),
-        /// Squeeze again.
+        /// Schedules of regrips.
         schedule: Option<ScheduleDocument> = schedule.map(|made| ScheduleDocument::new(&made.found)),
-        /// Grips that there are not, and why.
+        /// Grips without a solution, with reasons.
         refused: Vec<RefusedDocument> = refused.collect(),
-        /// How the question goes beyond what the test has shown.
+        /// Extrapolations beyond the calibration range.
         extrapolations: Vec<String> = body.extrapolations().iter().map(ToString::to_string).collect(),
-        /// What it means, in sentences.
+        /// Remarks, in sentences.
         remarks: Vec<String> = body.remarks(),
     }
 }

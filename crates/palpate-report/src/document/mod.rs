@@ -1,11 +1,11 @@
-//! Results as JSON: what programs read. Every number carries its unit in its name; a field that has no value is `null`.
+//! Results as JSON, for programs. The name of each quantity ends in its unit; a field without a value is `null`.
 //!
 //! | file | document |
 //! |---|---|
 //! | `analysis.rs` | `palpate.analysis/1`, one analysed record |
 //! | `fit.rs` | one fit inside it |
 //! | `settings.rs` | the resolved settings |
-//! | `signals.rs` | the columns of a record, what was done to them, first touch |
+//! | `signals.rs` | the columns of a record, their corrections, first touch |
 //! | `calibration.rs` | `palpate.calibration/1`, laws calibrated on a whole record |
 //! | `comparison.rs` | `palpate.comparison/1`, laws compared on the holds of records |
 //! | `grip.rs` | `palpate.grip/1`, a planned grip |
@@ -13,7 +13,7 @@
 //! | `watch.rs` | `palpate.watch/1`, a watched contact, one object a line |
 //! | `reproduction.rs` | `palpate.reproduction/1`, the summary of the reproduced study |
 
-/// Documents: of each field its meaning, its type, and what of the result it says. A field with `?` behind its name is left out where there
+/// Documents: of each field its meaning, its type, and its place in the result. A field with `?` after its name is omitted where there
 /// is none; any other is `null` then.
 macro_rules! documents {
     ($(

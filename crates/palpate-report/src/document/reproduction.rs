@@ -31,11 +31,11 @@ documents! {
         table_2: Vec<TableRow> = tables(&study.test_b.analysis).map_or(Vec::new(), |tables| tables.unloading),
         /// Largest relative error of a re-identified rate coefficient.
         largest_rate_coefficient_error: f64 = study.largest_coefficient_error(),
-        /// What the paper reports in words.
+        /// Results of the paper, with their checks.
         checks: Vec<Check> = study.checks.clone(),
         /// Whether all of them pass.
         all_passed: bool = study.all_passed(),
-        /// What wrote this.
+        /// The software that wrote this.
         software: Software = Software::this(),
     }
 }

@@ -35,11 +35,11 @@ documents! {
         phases_from_displacement: bool = segment.from_displacement,
         /// Noise of the column that the phases come from, m or N.
         noise: f64 = segment.noise,
-        /// How far it may stray in a hold, m or N.
+        /// Largest deviation of that column within a hold, m or N.
         tolerance: f64 = segment.tolerance,
         /// Typical speed of the ramps, m/s or N/s.
         ramp_speed: f64 = segment.ramp_speed,
-        /// Speed under which it stands still, m/s or N/s.
+        /// Speed below which it is at rest, m/s or N/s.
         still_speed: f64 = segment.still_speed,
         /// Samples on each side of a slope.
         slope_window: usize = segment.slope_window,
@@ -62,21 +62,21 @@ documents! {
         displacement_zero_m: f64 = analysis.contact.tare.displacement,
         /// Whether the jaw can leave the body in the overlay.
         separation: bool = options.separation == Separation::Unilateral,
-        /// Exponents tried as given.
+        /// Fixed exponents.
         exponents: Vec<f64> = options.exponents.clone(),
-        /// Whether n was also left free.
+        /// Whether n was also estimated.
         free_exponent: bool = options.free_exponent,
         /// Range of a free n.
         exponent_range: [f64; 2] = options.fit.exponent_range.into(),
         /// Coverage of the intervals.
         confidence: f64 = options.fit.confidence,
-        /// What the intervals of fits rest on, if not the curvature: `profile` or `bootstrap`.
+        /// Method of the intervals, if not the curvature: `profile` or `bootstrap`.
         intervals?: Option<String> = unusual(options.fit.intervals),
-        /// Fitted only this long from the start of the fit, s.
+        /// Duration of the fitted part from the start of the fit, s.
         fit_until_s: Option<f64> = options.fit_until,
         /// Samples on each side of a strain rate, at least.
         rate_window_samples: usize = options.rate_window.samples,
-        /// Half width of its window as a share of the time since the hold began.
+        /// Half width of its window as a share of the time since the start of the hold.
         rate_window_share: f64 = options.rate_window.share,
     }
 }

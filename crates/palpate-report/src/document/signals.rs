@@ -1,4 +1,4 @@
-//! What the columns of a record are like, and what was done to them.
+//! Properties of the columns of a record, and their corrections.
 
 use palpate::analysis::{Analysis, ClockSkew};
 use palpate::record::{Correction, Values};
@@ -26,33 +26,33 @@ documents! {
         displacement: Option<ValuesDocument> = signals.displacement.as_ref().map(ValuesDocument::new),
         /// The force, N.
         force: ValuesDocument = ValuesDocument::new(&signals.force),
-        /// How much later the force is stamped than the displacement; `null` where the ramps do not tell.
+        /// Delay of the force stamps after those of the displacement; `null` where the ramps do not determine it.
         clock_skew: Option<SkewDocument> = analysis.skew.map(SkewDocument::new),
     }
 
-    /// A measured column; numbers in its own SI unit.
+    /// A measured column; values in its SI unit.
     ValuesDocument(values: &Values) {
-        /// Single rows that stray alone.
+        /// Single rows that are outliers.
         strays: usize = values.strays.count,
-        /// Rows that stand at the extreme value in runs of five or more.
+        /// Rows at the extreme value in runs of five or more.
         rows_at_extreme: usize = values.saturation.map_or(0, |saturation| saturation.rows),
         /// Whether the column was clipped there (else it was held).
         clipped: bool = values.saturation.is_some_and(|saturation| saturation.clipped),
-        /// Step that the values were rounded to; `null` where none shows.
+        /// Rounding step of the values; `null` where there is none.
         rounding_step: Option<f64> = values.step,
     }
 
-    /// By how much the stamps of the force lag.
+    /// Delay of the force stamps.
     SkewDocument(skew: ClockSkew) {
-        /// Time that the force is stamped too late, s.
+        /// Delay of the force stamps, s.
         skew_s: f64 = skew.skew,
         /// Its standard error, s.
         standard_error_s: f64 = skew.standard_error,
-        /// Starts and ends of ramps that it rests on.
+        /// Number of starts and ends of ramps used.
         edges: usize = skew.edges,
     }
 
-    /// First touch, and what every rule says of it.
+    /// First touch, with the estimate of each rule.
     TouchDocument(analysis: &Analysis) with {
         let contact = &analysis.contact;
     } {
@@ -62,13 +62,13 @@ documents! {
         method: Option<String> = contact.method.map(|method| method.name().to_owned()),
         /// Its standard error, m.
         standard_error_m: Option<f64> = contact.displacement_error,
-        /// Robust standard deviation of what the rules say, m.
+        /// Robust standard deviation of the estimates of the rules, m.
         spread_m: Option<f64> = contact.spread,
-        /// What each rule says.
+        /// Estimate of each rule.
         estimates: Vec<TouchEstimateDocument> = contact.estimates.iter().map(TouchEstimateDocument::new).collect(),
     }
 
-    /// What one rule says of first touch.
+    /// Estimate of first touch by one rule.
     TouchEstimateDocument(estimate: &TouchEstimate) {
         /// The rule.
         method: String = estimate.method.name().to_owned(),
@@ -76,7 +76,7 @@ documents! {
         displacement_m: f64 = estimate.displacement,
     }
 
-    /// One thing that was done to the record, in order.
+    /// A correction of the record.
     CorrectionDocument(done: &Correction) with {
         let stored = serde_json::to_value(done).unwrap_or_default();
         let code = word(&stored["correction"]);
@@ -87,7 +87,7 @@ documents! {
         code: String = code,
         /// In words.
         said: String = done.to_string(),
-        /// Its numbers, with their units in their names.
+        /// Its values, with their units in their names.
         numbers: Map<String, Value> = numbers,
     }
 }

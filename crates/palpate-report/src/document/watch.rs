@@ -1,4 +1,4 @@
-//! `palpate.watch/1`: what an observer reports while it watches a contact, one JSON object a line.
+//! `palpate.watch/1`: reports of an observer of a contact, one JSON object per line.
 
 use palpate::fit::Estimate;
 use palpate::grip::TimeToSlip;
@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::result::{slips_word, word};
 
-/// One line: a tick or an event, the end of a hold, or the holds of the whole log. What is not known is left out.
+/// One line: a tick or an event, the end of a hold, or the holds of the whole log. Unknown values are omitted.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[schemars(title = "palpate.watch/1")]
 #[serde(untagged)]
@@ -22,7 +22,7 @@ pub enum WatchDocument {
 }
 
 documents! {
-    /// A hold as it was watched.
+    /// An observed hold.
     #[serde(deny_unknown_fields)]
     WatchedHoldDocument(
         held: Held,
@@ -35,29 +35,29 @@ documents! {
         let (equilibrium, equilibrium_standard_error) = parted(equilibrium_force);
         let (creep, creep_standard_error) = parted(creep_rate);
     } {
-        /// Standard deviation of the speed of creep, m/s.
+        /// Standard error of the creep speed, m/s.
         creep_rate_standard_error_m_per_s?: Option<f64> = creep_standard_error,
-        /// The last speed of creep, m/s.
+        /// The last creep speed, m/s.
         creep_rate_m_per_s?: Option<f64> = creep,
-        /// When it was last seen, s.
+        /// Time of its last tick, s.
         end_s: f64 = end,
-        /// Standard deviation of the equilibrium force, N.
+        /// Standard error of the equilibrium force, N.
         equilibrium_force_standard_error_n?: Option<f64> = equilibrium_standard_error,
         /// The last equilibrium force, N.
         equilibrium_force_n?: Option<f64> = equilibrium,
-        /// `hold_ends`; left out in the summary.
+        /// `hold_ends`; omitted in the summary.
         event?: Option<String> = None,
-        /// Force when it was last seen, N.
+        /// Force at its last tick, N.
         force_end_n: f64 = force_end,
-        /// Force when it began, N.
+        /// Force at its start, N.
         force_start_n: f64 = force_start,
         /// What was held for most of its ticks: `displacement` or `force`.
         held: String = word(held),
         /// First time at or below the force of slip, s.
         slipped_s?: Option<f64> = None,
-        /// When it began, s.
+        /// Time of its start, s.
         start_s: f64 = start,
-        /// When its end was seen, s; left out in the summary.
+        /// Time at which its end was detected, s; omitted in the summary.
         time_s?: Option<f64> = None,
         /// First warning, s.
         warned_s?: Option<f64> = None,
@@ -72,7 +72,7 @@ documents! {
         holds: Vec<WatchedHoldDocument> = holds,
     }
 
-    /// What an observer says after a tick.
+    /// Report of an observer after a tick.
     ObservationDocument(event: &str, seen: &Observation) with {
         let (creep, creep_standard_error) = parted(seen.creep_rate);
         let (equilibrium, equilibrium_standard_error) = parted(seen.equilibrium_force);
@@ -87,45 +87,45 @@ documents! {
         };
         let warns = seen.time_to_slip.is_some() || seen.slip != Slip::None;
     } {
-        /// Standard deviation of the speed of creep, m/s.
+        /// Standard error of the creep speed, m/s.
         creep_rate_standard_error_m_per_s?: Option<f64> = creep_standard_error,
-        /// Speed of the creep while the force is held, m/s.
+        /// Creep speed in a force hold, m/s.
         creep_rate_m_per_s?: Option<f64> = creep,
-        /// Standard deviation of the equilibrium force, N.
+        /// Standard error of the equilibrium force, N.
         equilibrium_force_standard_error_n?: Option<f64> = equilibrium_standard_error,
-        /// The force that a hold of the displacement tends to, N.
+        /// Equilibrium force of a position hold, N.
         equilibrium_force_n?: Option<f64> = equilibrium,
         /// `tick`, `hold_begins`, `hold_changes` or `warning`.
         event: String = event.to_owned(),
-        /// Standard deviation of the excess force, N.
+        /// Standard error of the excess force, N.
         excess_force_standard_error_n?: Option<f64> = excess_standard_error,
         /// Force in excess of equilibrium, N.
         excess_force_n?: Option<f64> = excess,
         /// Strain in excess of equilibrium.
         excess_strain?: Option<f64> = strain,
-        /// Standard deviation of the excess strain.
+        /// Standard error of the excess strain.
         excess_strain_standard_error?: Option<f64> = strain_standard_error,
-        /// The force without its noise, N.
+        /// Filtered force, N.
         force_n: f64 = seen.force,
         /// What is held: `displacement` or `force`.
         held?: Option<String> = hold.map(|(held, _)| word(held)),
-        /// When the hold began, s.
+        /// Start of the hold, s.
         held_since_s?: Option<f64> = hold.map(|(_, since)| since),
         /// `free`, `loading`, `holding` or `unloading`.
         phase: String = word(seen.phase),
-        /// Rate at which the excess falls now, in shares of itself, 1/s.
+        /// Current relative rate at which the excess falls, 1/s.
         relative_rate_per_s?: Option<f64> = seen.relative_rate,
-        /// `not_known_yet`, `never`, `perhaps_never` or `after`; left out without a force of slip.
+        /// `not_known_yet`, `never`, `perhaps_never` or `after`; omitted without a slip force.
         slips?: Option<String> = seen.time_to_slip.map(|time| slips_word(time).to_owned()),
-        /// When, s.
+        /// Time of the report, s.
         time_s: f64 = seen.time,
-        /// Upper end of the interval of the time to slip, s; `null` where never lies inside.
+        /// Upper end of the interval of the time to slip, s; `null` where the interval is unbounded.
         time_to_slip_high_s?: Option<Option<f64>> = times.map(|(_, _, high)| high),
         /// Its lower end, s.
         time_to_slip_low_s?: Option<f64> = times.map(|(_, low, _)| low),
-        /// How long until the force has fallen to that of slip, s; `null` where that is never.
+        /// Time until the force has fallen to the slip force, s; `null` for never.
         time_to_slip_s?: Option<Option<f64>> = times.map(|(value, _, _)| value),
-        /// `none`, `soon` or `slipping`; left out without a force of slip.
+        /// `none`, `soon` or `slipping`; omitted without a slip force.
         warning?: Option<String> = warns.then(|| word(seen.slip)),
     }
 }

@@ -90,7 +90,7 @@ impl CalibratedRecord {
         let mut remarks: Vec<String> = self.sentence().into_iter().collect();
         if let Some(chosen) = self.chosen() {
             if chosen.material.candidate.rate == RateLaw::ByStrain && self.data.depths_held() < 2 {
-                remarks.push("One depth was held: the dependence of v on strain rests on the ramps alone, and any error of the law in them is taken for it. Holds at several depths would determine it.".to_owned());
+                remarks.push("The record holds one displacement: only the ramps determine the dependence of v on strain, so that an error of the law there biases it. Holds at several displacements would determine it.".to_owned());
             }
             remarks.extend(remarks_of(chosen));
         }
@@ -103,16 +103,16 @@ fn remarks_of(made: &Calibration) -> Vec<String> {
     if made.termination != Termination::Converged {
         let how = match made.termination {
             Termination::TermsMerged => {
-                "Terms of the series merged: their time constants are not distinguishable, and fewer terms suffice."
+                "Terms of the series merged: their time constants are not distinguishable. Fewer terms suffice."
                     .to_owned()
             }
             Termination::Singular => {
                 "The record does not determine the parameters separately; holds of different excess strain would."
                     .to_owned()
             }
-            Termination::IterationLimit => "The search used up its steps on the way to an optimum.".to_owned(),
+            Termination::IterationLimit => "The search reached its step limit before an optimum.".to_owned(),
             at_bound => format!(
-                "The search ended at a bound ({}): the record leaves a parameter open.",
+                "The search ended at a bound ({}): the record does not determine a parameter.",
                 word(at_bound).replace('_', " ")
             ),
         };
@@ -127,7 +127,7 @@ fn remarks_of(made: &Calibration) -> Vec<String> {
     {
         let name = &open.name;
         let how = match open.estimate.interval {
-            Some(_) => "says little about {}: its interval spans more than two decades",
+            Some(_) => "hardly determines {}: its interval spans more than two decades",
             None => "leaves {} open",
         };
         let how = how.replace("{}", name);
@@ -140,13 +140,13 @@ fn remarks_of(made: &Calibration) -> Vec<String> {
     };
     if correlation > 0.9 && made.relative > 5e-3 {
         remarks.push(format!(
-            "The residuals ({} % of the peak) are systematic: the law does not describe all of the record. Standard errors and intervals account for their correlation, not for a law of another form; --fit-until tests what it predicts.",
+            "The residuals ({} % of the peak) are systematic: the law does not describe all of the record. Standard errors and intervals account for their correlation, not for a law of another form; --fit-until reports a held-out error.",
             significant(100.0 * made.relative, 2)
         ));
     }
     let range = &made.material.range;
     remarks.push(format!(
-        "Calibration range: holds of up to {}, displacements of up to {}, ramps of {} to {}, forces of up to {}. A prediction beyond is an extrapolation and is marked as one.",
+        "Calibration range: holds of up to {}, displacements of up to {}, ramps of {} to {}, forces of up to {}. Predictions beyond this range are marked as extrapolations.",
         quantity(range.longest_hold, "s", 3),
         quantity(range.deepest, "m", 3),
         quantity(range.slowest, "m/s", 3),

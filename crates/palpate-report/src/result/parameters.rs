@@ -51,7 +51,7 @@ impl ParameterDocument {
             (interval[0].unwrap_or(f64::NEG_INFINITY), interval[1].unwrap_or(f64::INFINITY))
         };
         match self.value {
-            None => Cell::missing("the fit ended at a bound, or short of an optimum"),
+            None => Cell::missing("a parameter is at its bound, or the fit did not converge"),
             Some(value) => Cell::Estimate(Estimate {
                 value,
                 standard_error: self.standard_error,

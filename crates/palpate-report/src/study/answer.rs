@@ -77,12 +77,12 @@ fn listed(parameters: &Parameters) -> String {
 
 /// Which law to use, hold by hold.
 pub(super) fn verdicts(answer: &Answer) -> Option<Table> {
-    Table::of("answer", "Which law to use, hold by hold.", &answer.holds)
+    Table::of("answer", "Law to use for each hold.", &answer.holds)
         .column("Hold", "hold", "", |hold| Cell::Integer(hold.hold as i64))
         .column("Recommended law", "law", "", |hold| Cell::text(&hold.law))
         .column("Certainty", "certainty", "", |hold| Cell::text(&hold.certainty))
         .column("Held-out error", "holdout_error_percent", "%", |hold| {
-            let reason = "too short to hold anything out: chosen by BIC";
+            let reason = "too short for a held-out error: chosen by BIC";
             Cell::number_or(hold.holdout_error.map(|error| 100.0 * error), 2, reason)
         })
         .column("Not distinguishable from the best", "indistinguishable", "", |hold| {

@@ -115,7 +115,7 @@ fn gather(severity: Severity, finding: &RecordFinding, alike: Vec<Seen<'_>>, mos
     let (meaning, remedy) = if severity == Severity::Info && matches!(finding, RecordFinding::NoContactArea) {
         (
             "the jaw is back at first touch and the contact is open; such a hold is not fitted",
-            "nothing, if the contact was meant to be open",
+            "none, if the contact was meant to be open",
         )
     } else {
         (finding.meaning(), finding.remedy())
@@ -130,7 +130,7 @@ fn gather(severity: Severity, finding: &RecordFinding, alike: Vec<Seen<'_>>, mos
     let mut lines: Vec<(String, String)> =
         groups.into_iter().take(cut).map(|(text, holds)| (holds_named(&holds), text)).collect();
     if !more.is_empty() {
-        lines.push((holds_named(&more), "likewise, with numbers of their own (see the JSON output)".to_owned()));
+        lines.push((holds_named(&more), "likewise, with values of their own (see the JSON output)".to_owned()));
     }
     Gathered {
         severity,

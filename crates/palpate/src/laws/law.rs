@@ -67,7 +67,7 @@ pub const MOST_TERMS: usize = 5;
 
 /// A text that names no law.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
-#[error("unknown law {found:?}; laws are {}", Law::NAMES.join(", "))]
+#[error("no law is called {found:?}; laws are {}", Law::NAMES.join(", "))]
 pub struct UnknownLaw {
     /// What was given.
     pub found: String,

@@ -52,11 +52,11 @@ impl ObserveError {
     #[must_use]
     pub fn hint(&self) -> &'static str {
         match self {
-            Self::LinearMaterial => "calibrate the latency law, or observe without a material",
-            Self::NotFinite { .. } => "omit the tick: the observer bridges the gap",
-            Self::TimeNotRising { .. } => "start a new observer after setting a clock",
-            Self::Displacement { .. } => "measure displacement in m from first touch, positive as the jaw closes",
-            Self::Bytes => "use its original options, and bytes of the same version",
+            Self::LinearMaterial => "calibrate with the latency law, or observe without a material",
+            Self::NotFinite { .. } => "leave the tick out: the observer bridges a gap",
+            Self::TimeNotRising { .. } => "after a clock was set, begin with a new observer",
+            Self::Displacement { .. } => "count displacement from first touch, growing as the jaw closes, in m",
+            Self::Bytes => "give the options that it had, and bytes of the same version",
             Self::Option { .. } => "",
         }
     }

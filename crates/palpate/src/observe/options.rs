@@ -60,11 +60,11 @@ impl ObserverOptions {
         };
         within("the exponent", "from 1 to 30", self.exponent, (1.0..=30.0).contains(&self.exponent))?;
         let deviation = self.exponent_standard_error;
-        within("the standard error of the exponent", "from 0 to 10", deviation, (0.0..=10.0).contains(&deviation))?;
+        within("the deviation of the exponent", "from 0 to 10", deviation, (0.0..=10.0).contains(&deviation))?;
         if let Some(force) = self.slip_force {
             within("the slip force", "above 0 N", force, force > 0.0)?;
         }
-        within("the warning time before slip", "0 s or more", self.warn_before, self.warn_before >= 0.0)?;
+        within("the time to warn before slip", "0 s or more", self.warn_before, self.warn_before >= 0.0)?;
         let inside = self.confidence > 0.0 && self.confidence < 1.0;
         within("the confidence", "between 0 and 1", self.confidence, inside)?;
         if let Some((displacement, force)) = self.noise {
@@ -72,9 +72,9 @@ impl ObserverOptions {
             within("the noise of the force", "above 0 N", force, force > 0.0)?;
         }
         let stiffness = self.stiffness_standard_error;
-        within("the standard error of the stiffness", "from 0 to 1", stiffness, (0.0..=1.0).contains(&stiffness))?;
+        within("the deviation of the stiffness", "from 0 to 1", stiffness, (0.0..=1.0).contains(&stiffness))?;
         within(
-            "the standard error of first touch",
+            "the deviation of first touch",
             "0 m or more",
             self.touch_standard_error,
             self.touch_standard_error >= 0.0,

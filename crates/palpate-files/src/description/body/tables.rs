@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::description::text::quantity::QuantityText;
 
-/// Shape, size and stiffness of the body. Give the sizes that its shape needs: a ball takes radius; a pad takes
+/// Shape, size and stiffness of the body. Give the sizes of its shape: a ball takes radius; a pad takes
 /// radius and thickness; a strip takes width, thickness and length; a cylinder takes diameter and length; a block takes area and length;
 /// a profile takes depth and areas.
 #[derive(Debug, Clone, Deserialize, JsonSchema)]
@@ -33,11 +33,11 @@ pub(crate) struct SpecimenTable {
     pub(crate) areas: Option<Vec<(QuantityText, QuantityText)>>,
     /// Young's modulus.
     pub(crate) modulus: Option<QuantityText>,
-    /// Law of the force once relaxation is over, in a protocol: uniform strain (the paper's, if nothing is said) or hertz.
+    /// Law of the equilibrium force, in a protocol: uniform strain (the paper's law, the default) or hertz.
     pub(crate) equilibrium: Option<EquilibriumName>,
     /// Poisson's ratio of a body with hertz, from 0 to 0.5.
     pub(crate) poisson_ratio: Option<f64>,
-    /// Measured force once relaxation is over, in a protocol: rows of contact displacement and force, from first touch on, such as
+    /// Measured equilibrium force, in a protocol: rows of contact displacement and force, from first touch on, such as
     /// ["1 mm", "0.2 N"]. In place of modulus and equilibrium.
     pub(crate) equilibrium_forces: Option<Vec<(QuantityText, QuantityText)>>,
 }
@@ -56,7 +56,7 @@ pub(crate) enum EquilibriumName {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize, Serialize, JsonSchema)]
 #[serde(rename_all = "lowercase")]
 pub(crate) enum ShapeName {
-    /// A ball between flat plates; the contact grows with the squeeze.
+    /// A ball between flat plates; the contact area grows with displacement.
     Ball,
     /// A spherical fingertip: a soft pad over a rigid core.
     Pad,
@@ -68,7 +68,7 @@ pub(crate) enum ShapeName {
     Block,
     /// Any other body, by a table of its contact area.
     Profile,
-    /// Nothing is known: forces stay forces, no strain is computed.
+    /// Unknown shape: palpate fits forces and computes no strain.
     None,
 }
 
@@ -89,7 +89,7 @@ impl ShapeName {
     }
 }
 
-/// The law that strain follows. Give the numbers that it needs: latency takes exponent and rate_coefficient, and may take strain_factor or
+/// The law of the strain. Give its parameters: latency takes exponent and rate_coefficient, and may take strain_factor or
 /// unloading_factor; standard-linear-solid takes
 /// overshoot and time; prony takes terms; fung takes shares; fractional-zener takes overshoot, time and order.
 #[derive(Debug, Clone, Deserialize, JsonSchema)]
@@ -102,13 +102,13 @@ pub(crate) struct LawTable {
     pub(crate) exponent: Option<f64>,
     /// Rate coefficient v of the latency law, such as "2e4 /s".
     pub(crate) rate_coefficient: Option<QuantityText>,
-    /// Factor by which v changes with every 0.1 of equilibrium strain; rate_coefficient is then that at first touch.
+    /// Factor by which v changes per 0.1 of equilibrium strain; rate_coefficient is then the value at first touch.
     #[schemars(extend("exclusiveMinimum" = 0))]
     pub(crate) strain_factor: Option<f64>,
-    /// How many times v the rate coefficient is while strain rises to equilibrium, after unloading.
+    /// Ratio of the rate coefficient to v while strain rises to equilibrium, after unloading.
     #[schemars(extend("exclusiveMinimum" = 0))]
     pub(crate) unloading_factor: Option<f64>,
-    /// By how much a sudden squeeze overshoots equilibrium, as a multiple of it.
+    /// Overshoot of the force after a step of displacement, as a multiple of the equilibrium force.
     #[schemars(extend("exclusiveMinimum" = 0))]
     pub(crate) overshoot: Option<f64>,
     /// Relaxation time, such as "2 s".
@@ -121,7 +121,7 @@ pub(crate) struct LawTable {
     /// Terms of Fung's reduced relaxation function: g = c0 + sum of share exp(-rate t), all shares and c0 together 1.
     #[schemars(extend("minItems" = 1))]
     pub(crate) shares: Option<Vec<ShareTable>>,
-    /// What a linear law remembers: strain, or the equilibrium force (quasi-linear). Strain if nothing is said, but force with fung.
+    /// Memory of a linear law: strain, or the equilibrium force (quasi-linear). Default: strain; force with fung.
     pub(crate) memory: Option<MemoryName>,
 }
 
@@ -130,7 +130,7 @@ pub(crate) struct LawTable {
 #[serde(deny_unknown_fields)]
 #[schemars(rename = "Term")]
 pub(crate) struct TermTable {
-    /// By how much a sudden squeeze overshoots equilibrium by this term, as a multiple of it.
+    /// Contribution of this term to the overshoot after a step of displacement, as a multiple of the equilibrium force.
     #[schemars(extend("exclusiveMinimum" = 0))]
     pub(crate) overshoot: f64,
     /// Its relaxation time, such as "2 s".
@@ -142,7 +142,7 @@ pub(crate) struct TermTable {
 #[serde(deny_unknown_fields)]
 #[schemars(rename = "Share")]
 pub(crate) struct ShareTable {
-    /// c, its share of the force right after a sudden squeeze.
+    /// c, its share of the force immediately after a step of displacement.
     #[schemars(extend("exclusiveMinimum" = 0))]
     pub(crate) share: f64,
     /// Its rate ν, such as "0.5 /s".
@@ -154,20 +154,20 @@ pub(crate) struct ShareTable {
 pub(crate) enum LawName {
     /// The nonlinear latency law: strain rate = −v · sign(excess strain) · |excess strain|ⁿ.
     Latency,
-    /// One relaxation time beside a spring (Zener).
+    /// One relaxation time and a parallel spring (Zener).
     StandardLinearSolid,
-    /// Several relaxation times beside a spring.
+    /// Several relaxation times and a parallel spring.
     Prony,
     /// Fung's reduced relaxation function of several terms.
     Fung,
-    /// A fractional element beside a spring, good from a millionth of its time to a million times it.
+    /// A fractional element and a parallel spring, accurate from 10⁻⁶ to 10⁶ times its relaxation time.
     FractionalZener,
 }
 
 #[derive(Debug, Clone, Copy, Deserialize, JsonSchema)]
 #[serde(rename_all = "lowercase")]
 pub(crate) enum MemoryName {
-    /// Strain: the area is that of the moment.
+    /// Strain: the force uses the current contact area.
     Strain,
     /// The equilibrium force, Fung's quasi-linear viscoelasticity.
     Force,
@@ -193,12 +193,12 @@ impl LawName {
 #[serde(deny_unknown_fields)]
 #[schemars(rename = "Contact", extend("not" = { "required": ["layers", "layer_thickness"] }))]
 pub(crate) struct ContactTable {
-    /// Number of layers, any number of 1 or more; 8 unless layer_thickness is given.
+    /// Number of layers, a real number of 1 or more; 8 unless layer_thickness is given.
     #[schemars(extend("minimum" = 1))]
     pub(crate) layers: Option<f64>,
     /// Thickness of one layer, instead of their number.
     pub(crate) layer_thickness: Option<QuantityText>,
-    /// Two sides for a ball, one side for other shapes, unless said otherwise.
+    /// Default: two sides for a ball, one side for other shapes.
     pub(crate) squeezed_from: Option<SidesName>,
     /// true (the default): the jaw can only push and leaves the body when the force reaches zero.
     /// false: body and jaw are bonded, and the force may become tension.

@@ -5,16 +5,16 @@ use palpate::calibrate::Material;
 /// Version of the table `[calibration]` that is written and read.
 pub const MATERIAL_VERSION: u64 = 1;
 
-/// A calibrated body with where it comes from.
+/// A calibrated body with its provenance.
 #[derive(Debug, Clone, PartialEq)]
 pub struct MaterialFile {
     /// The body.
     pub material: Material,
-    /// Where its parameters come from.
+    /// Provenance of its parameters.
     pub origin: MaterialOrigin,
 }
 
-/// Where the parameters of a material come from.
+/// Provenance of the parameters of a material.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct MaterialOrigin {
     /// The record.

@@ -21,7 +21,7 @@ pub(crate) struct MaterialTables {
     pub(crate) calibration: CalibrationTable,
 }
 
-/// What was calibrated, from what, and how sure it is.
+/// The calibration: its record, parameters and uncertainties.
 #[derive(Debug, Clone, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 #[schemars(rename = "Calibration")]
@@ -29,7 +29,7 @@ pub(crate) struct CalibrationTable {
     /// Version of this table: 1.
     #[serde(rename = "version")]
     pub(crate) _version: u64,
-    /// The record that was calibrated on.
+    /// The calibrated record.
     pub(crate) record: String,
     /// SHA-256 of its file.
     pub(crate) sha256: String,
@@ -39,11 +39,11 @@ pub(crate) struct CalibrationTable {
     pub(crate) palpate: String,
     /// Samples that were fitted.
     pub(crate) samples: usize,
-    /// The law as it was fitted: latency (n found), latency:5 (n given), standard-linear-solid, prony:K or fung:K.
+    /// The fitted law: latency (n estimated), latency:5 (n given), standard-linear-solid, prony:K or fung:K.
     pub(crate) law: String,
-    /// The law of the equilibrium force as it was fitted.
+    /// The fitted law of the equilibrium force.
     pub(crate) equilibrium: CalibratedEquilibriumName,
-    /// Standard deviation of what the model left of the measured force.
+    /// Standard deviation of the force residuals.
     pub(crate) residual: QuantityText,
     /// Coverage of the intervals, between 0 and 1.
     #[schemars(extend("exclusiveMinimum" = 0, "exclusiveMaximum" = 1))]
@@ -55,7 +55,7 @@ pub(crate) struct CalibrationTable {
     pub(crate) parameter: Vec<ParameterTable>,
     /// Covariance of the natural logarithms of the parameters, row by row in their order.
     pub(crate) covariance: Option<Vec<Vec<f64>>>,
-    /// The range of the test: questions beyond it are extrapolations.
+    /// The range of the test; predictions beyond it are extrapolations.
     pub(crate) range: RangeTable,
 }
 
@@ -82,11 +82,11 @@ pub(crate) struct ParameterTable {
     pub(crate) name: String,
     /// Its unit; none of a dimensionless parameter.
     pub(crate) unit: Option<String>,
-    /// The best value, in its unit.
+    /// The estimate, in its unit.
     pub(crate) value: f64,
-    /// Standard error for residuals that correlate as they do, in its unit.
+    /// Standard error, including the correlation of the residuals, in its unit.
     pub(crate) standard_error: Option<f64>,
-    /// Standard error as if the residuals were white noise, in its unit.
+    /// Standard error under the assumption of white noise, in its unit.
     pub(crate) white_standard_error: Option<f64>,
     /// Lower and upper end of the confidence interval, in its unit.
     #[schemars(extend("minItems" = 2, "maxItems" = 2))]
@@ -100,7 +100,7 @@ pub(crate) struct ParameterTable {
 pub(crate) struct RangeTable {
     /// The longest hold.
     pub(crate) longest_hold: QuantityText,
-    /// The deepest squeeze, as travel of the jaw since first touch.
+    /// The largest displacement of the jaw since first touch.
     pub(crate) deepest: QuantityText,
     /// The fastest ramp.
     pub(crate) fastest: QuantityText,

@@ -35,13 +35,13 @@ pub struct Protocol {
     pub steps: Vec<ProgramStep>,
     /// Number of the `[[step]]` table, from 1, that each of `steps` was written in.
     pub written: Vec<usize>,
-    /// The motion of the jaw, if displacements alone are asked for.
+    /// The motion of the jaw, if all steps prescribe displacements.
     pub motion: Option<Motion>,
     /// The body and its contact.
     pub contact: Contact,
-    /// When to report.
+    /// Output times.
     pub sampling: Sampling,
-    /// Whether the file has a table `[sweep]`, which a single simulation leaves aside.
+    /// Whether the file has a table `[sweep]`, which a single simulation ignores.
     pub has_sweep: bool,
 }
 
@@ -65,7 +65,7 @@ pub fn read_protocol(path: &Path) -> Result<Protocol, DescriptionError> {
     parse_protocol(&source::read(path, LONGEST)?, path)
 }
 
-/// Reads the protocol in the file at `path` for a calibrated body: whatever the protocol says of a body is left aside.
+/// Reads the protocol in the file at `path` for a calibrated body: the body of the protocol is ignored.
 ///
 /// # Errors
 /// As for [`read_protocol`].
@@ -102,7 +102,7 @@ pub fn parse_scene(text: &str, path: &Path) -> Result<(Option<String>, Contact),
     Ok((tables.title, model))
 }
 
-/// The text of a protocol with the body of the material file that it names, if it does: what says all by itself wherever it is read.
+/// The text of a protocol with the body of the material file that it names, if any: a self-contained protocol.
 ///
 /// # Errors
 /// As for [`read_material`](crate::description::read_material), and where the text is no TOML.

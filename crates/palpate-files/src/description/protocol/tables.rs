@@ -27,11 +27,11 @@ pub(crate) struct ProtocolTables {
     pub(crate) step: Vec<StepTable>,
     #[serde(default)]
     pub(crate) output: OutputTable,
-    /// Numbers to replace by many, for `palpate sweep`; left aside otherwise.
+    /// Parameters to sweep, for `palpate sweep`; otherwise ignored.
     #[serde(default)]
     #[schemars(with = "Option<super::sweep_schema::SweepSchema>")]
     pub(crate) sweep: Option<IgnoredAny>,
-    /// Path of a material file, from this file on, in place of specimen, law and contact.
+    /// Path of a material file, relative to this file, in place of specimen, law and contact.
     #[serde(default, rename = "material")]
     #[schemars(with = "Option<String>")]
     pub(crate) _material: Option<IgnoredAny>,
@@ -41,7 +41,7 @@ pub(crate) struct ProtocolTables {
     pub(crate) _calibration: Option<IgnoredAny>,
 }
 
-/// Go to a displacement or to a force, then stay there or keep the force; either part may be left out.
+/// Move to a displacement or to a force, then hold the position or the force; either part may be omitted.
 #[derive(Debug, Clone, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 #[schemars(rename = "Step", extend("not" = { "anyOf": [
@@ -52,26 +52,26 @@ pub(crate) struct ProtocolTables {
 pub(crate) struct StepTable {
     /// Travel of the jaw since first touch at the end of the ramp; loading is positive. Needs rate.
     pub(crate) to: Option<QuantityText>,
-    /// Force to go to, by moving the jaw at rate until it is met or by raising the force at force_rate.
+    /// Target force, reached by moving the jaw at rate or by changing the force at force_rate.
     pub(crate) to_force: Option<QuantityText>,
     /// Speed of the jaw in the ramp, always above 0.
     pub(crate) rate: Option<QuantityText>,
-    /// Rate at which the force goes to to_force, always above 0.
+    /// Rate at which the force changes to to_force, always above 0.
     pub(crate) force_rate: Option<QuantityText>,
-    /// Time for which the jaw then stays where it is; none if left out.
+    /// Duration of the following position hold; none if omitted.
     pub(crate) hold: Option<QuantityText>,
-    /// Time for which the force is then kept as it is.
+    /// Duration of the following force hold.
     pub(crate) hold_force: Option<QuantityText>,
 }
 
-/// When to report: at a rate, or at times.
+/// Output times: at a rate, or listed.
 #[derive(Debug, Clone, Default, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 #[schemars(rename = "Output", extend("not" = { "required": ["sample_rate", "times"] }))]
 pub(crate) struct OutputTable {
-    /// Samples per second; "100 Hz" unless times are given. Every kink of the motion is reported as well.
+    /// Samples per second; "100 Hz" unless times are given. The output also includes every kink of the motion.
     pub(crate) sample_rate: Option<QuantityText>,
-    /// These times and no others, rising, inside the motion.
+    /// The output times, rising, within the motion.
     #[schemars(extend("minItems" = 1))]
     pub(crate) times: Option<Vec<QuantityText>>,
 }

@@ -30,14 +30,14 @@ const MOST_RUNS: u64 = 10_000_000;
 /// Seed of a latin hypercube where none is given.
 const USUAL_SEED: u64 = 1;
 
-/// A protocol with numbers to replace.
+/// A protocol with swept parameters.
 #[derive(Debug, Clone)]
 pub struct Sweep {
     /// The text of the file.
     pub text: String,
     /// The protocol without its sweep.
     pub base: Protocol,
-    /// The swept numbers in the order of the file.
+    /// The swept parameters in the order of the file.
     pub parameters: Vec<SweptParameter>,
     /// How runs are put together.
     pub plan: Plan,
@@ -47,14 +47,14 @@ pub struct Sweep {
     tables: ProtocolTables,
 }
 
-/// A number that takes many values.
+/// A swept parameter.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SweptParameter {
     /// Its path, such as `specimen.radius` or `step[2].rate`.
     pub path: String,
     /// Its name in tables, such as `specimen_radius_m`.
     pub column: String,
-    /// Symbol of its SI unit; empty of a pure number.
+    /// Symbol of its SI unit; empty if dimensionless.
     pub unit: &'static str,
     /// How its values are spaced.
     pub spacing: Spacing,

@@ -11,20 +11,20 @@ use crate::{
     table::{ColumnRef, EPOCH},
 };
 
-/// Which columns hold what. What is left out is recognised by the header of the file.
+/// Assignment of columns. Omitted columns are recognised by the header of the file.
 #[derive(Debug, Clone, Default, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 #[schemars(rename = "Columns", extend("not" = { "required": ["force", "stress"] }))]
 pub(crate) struct ColumnsTable {
     /// Time. Not needed where displacement and force have clocks of their own.
     time: Option<TimeTable>,
-    /// Travel of the jaw. A record without it is cut into phases by its force.
+    /// Travel of the jaw. Without it the phases are derived from the force.
     displacement: Option<DisplacementTable>,
     /// Force.
     force: Option<ColumnTable>,
     /// Stress instead of force; the section of the specimen turns it into force.
     stress: Option<ColumnTable>,
-    /// Deflection of the cantilever of an AFM: taken off the displacement, which is then that of the cantilever's base.
+    /// Deflection of the cantilever of an AFM, subtracted from the displacement, which is then that of the cantilever's base.
     deflection: Option<DeflectionTable>,
 }
 
@@ -48,9 +48,9 @@ struct ColumnTable {
     column: Option<ColumnRef>,
     /// Unit, such as "mm" or "N"; not needed where the header gives it.
     unit: Option<String>,
-    /// What a volt stands for, such as "12.5 N/V"; the unit is then "V" or "mV".
+    /// Scale of a volt, such as "12.5 N/V"; the unit is then "V" or "mV".
     scale: Option<String>,
-    /// What is added to the values, such as "0.2 N": value × scale + offset, then the sign.
+    /// Offset, such as "0.2 N": value × scale + offset, then the sign.
     offset: Option<QuantityText>,
     /// -1 where the file counts loading as negative; 1 otherwise.
     #[schemars(extend("enum" = [1, -1]))]
@@ -68,9 +68,9 @@ struct DisplacementTable {
     column: Option<ColumnRef>,
     /// Unit, such as "mm"; not needed where the header gives it.
     unit: Option<String>,
-    /// What a volt stands for, such as "12.5 mm/V"; the unit is then "V" or "mV".
+    /// Scale of a volt, such as "12.5 mm/V"; the unit is then "V" or "mV".
     scale: Option<String>,
-    /// What is added to the values, such as "0.2 mm": value × scale + offset, then the sign.
+    /// Offset, such as "0.2 mm": value × scale + offset, then the sign.
     offset: Option<QuantityText>,
     /// -1 where the file counts loading as negative, such as the opening of a gripper; 1 otherwise.
     #[schemars(extend("enum" = [1, -1]))]

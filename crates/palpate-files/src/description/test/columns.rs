@@ -5,7 +5,7 @@ use serde::Deserialize;
 
 use crate::{naming::Quantity, table::ColumnRef};
 
-/// What is said about one quantity; what is left out is taken from the header of the file.
+/// Description of one quantity; omitted fields are taken from the header of the file.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ColumnChoice {
     /// The column.
@@ -14,11 +14,11 @@ pub struct ColumnChoice {
     pub unit: Option<String>,
     /// The machine whose conventions say that unit, where the description itself does not.
     pub unit_by: Option<String>,
-    /// What a volt stands for, in SI, where the column holds volts.
+    /// Scale of a volt, in SI, where the column holds volts.
     pub scale: Option<f64>,
-    /// What is added to the scaled values, in SI, before the sign.
+    /// Offset added to the scaled values, in SI, before the sign.
     pub offset: f64,
-    /// 1, or −1 where the file counts the other way round.
+    /// 1, or −1 where the file has the opposite sign.
     pub sign: f64,
     /// A column that is added to it, where each finger of a gripper has its own.
     pub also: Option<ColumnRef>,

@@ -21,7 +21,7 @@ pub struct About {
 
 /// A checked description of a test, everything in SI.
 ///
-/// [`TestDescription::default`] is the test of which nothing is said.
+/// [`TestDescription::default`] is an empty description.
 #[derive(Debug, Clone, PartialEq)]
 pub struct TestDescription {
     /// What it is about.
@@ -30,7 +30,7 @@ pub struct TestDescription {
     pub reading: ReadOptions,
     /// Which columns hold what.
     pub columns: ColumnChoices,
-    /// What an analysis of the test is asked.
+    /// Options of the analysis.
     pub analysis: AnalysisOptions,
 }
 

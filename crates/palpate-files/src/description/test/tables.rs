@@ -12,8 +12,8 @@ use crate::{
     table::ReadOptions,
 };
 
-/// A squeeze-and-hold test: what its record holds, what was tested, and how to evaluate it. Every table may be
-/// left out. Quantities are texts with a unit.
+/// A squeeze-and-hold test: its columns, the body, and the options of the analysis. Every table may be
+/// omitted. Quantities are texts with a unit.
 #[derive(Debug, Clone, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 #[schemars(title = "palpate test description", rename = "Test")]
@@ -37,7 +37,7 @@ pub(crate) struct TestTables {
     pub(crate) phases: PhasesTable,
     #[serde(default)]
     pub(crate) fit: FitTable,
-    /// Of a material file, whose body is taken and whose law is left aside.
+    /// Of a material file: its body is used, its law is ignored.
     #[serde(default)]
     #[schemars(skip)]
     pub(crate) law: Option<IgnoredAny>,
@@ -51,38 +51,39 @@ pub(crate) struct TestTables {
 #[serde(deny_unknown_fields)]
 #[schemars(rename = "Contact", extend("not" = { "required": ["layers", "layer_thickness"] }))]
 pub(crate) struct ContactTable {
-    /// Two sides for a ball, one side for other shapes, unless said otherwise.
+    /// Default: two sides for a ball, one side for other shapes.
     pub(crate) squeezed_from: Option<SidesName>,
-    /// Whether the jaw can leave the body: true for a ball, false for other shapes, unless said otherwise.
+    /// Whether the jaw can leave the body. Default: true for a ball, false for other shapes.
     pub(crate) separation: Option<bool>,
-    /// Number of layers for a simulation of the test, any number of 1 or more.
+    /// Number of layers for a simulation of the test, a real number of 1 or more.
     #[schemars(extend("minimum" = 1))]
     pub(crate) layers: Option<f64>,
     /// Thickness of one layer, instead of their number.
     pub(crate) layer_thickness: Option<QuantityText>,
-    /// First touch: "auto" (found from the force), "as recorded" (displacement and force start at zero), one rule
-    /// ("loading curve", "threshold", "two lines", "hertz", "ratio of variances"), or a displacement such as "2.5 mm". "auto" for a ball, "as recorded" for other shapes, unless said otherwise.
+    /// First touch: "auto" (estimated from the force), "as recorded" (displacement and force start at zero), one rule
+    /// ("loading curve", "threshold", "two lines", "hertz", "ratio of variances"), or a displacement such as "2.5 mm". Default: "auto" for a ball,
+    /// "as recorded" for other shapes.
     #[schemars(extend("examples" = ["auto", "as recorded", "threshold", "2.5 mm"]))]
     pub(crate) touch: Option<String>,
 }
 
-/// How to find loading, hold and unloading. What is left out is derived from the record.
+/// Detection of loading, hold and unloading. Omitted values are derived from the record.
 #[derive(Debug, Clone, Default, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 #[schemars(rename = "Phases")]
 pub(crate) struct PhasesTable {
-    /// How far the displacement may stray from its level in a hold.
+    /// Largest deviation of the displacement from its level in a hold.
     pub(crate) tolerance: Option<QuantityText>,
     /// Shortest hold.
     pub(crate) minimum_hold: Option<QuantityText>,
-    /// Speed under which the jaw counts as standing still, as a share of the speed of the ramps, between 0 and 1.
+    /// Speed below which the jaw is at rest, as a share of the speed of the ramps, between 0 and 1.
     #[schemars(extend("exclusiveMinimum" = 0, "exclusiveMaximum" = 1))]
     pub(crate) still_below: Option<f64>,
-    /// From where in a hold laws are fitted: "peak" of the force (the default), "settled" jaw, or a time after the
+    /// Start of the fit in a hold: "peak" of the force (the default), "settled" jaw, or a time after the
     /// peak such as "peak + 0.5 s".
     #[schemars(extend("examples" = ["peak", "settled", "peak + 0.5 s"]))]
     pub(crate) hold_start: Option<String>,
-    /// Holds with given limits. Where there are any, no others are sought.
+    /// Holds with given limits. If one is given, no others are detected.
     #[serde(default)]
     pub(crate) hold: Vec<HoldTable>,
 }
@@ -92,11 +93,11 @@ pub(crate) struct PhasesTable {
 #[serde(deny_unknown_fields)]
 #[schemars(rename = "Hold")]
 pub(crate) struct HoldTable {
-    /// Its first moment, as the record counts time.
+    /// Its start, on the clock of the record.
     pub(crate) from: QuantityText,
-    /// Its last moment.
+    /// Its end.
     pub(crate) to: QuantityText,
-    /// What the machine holds; seen from the record if left out.
+    /// The quantity that the machine holds; derived from the record if omitted.
     pub(crate) mode: Option<HoldModeName>,
 }
 
@@ -118,18 +119,18 @@ pub(crate) enum HoldModeName {
 #[serde(deny_unknown_fields)]
 #[schemars(rename = "Fit")]
 pub(crate) struct FitTable {
-    /// Exponents to compare; 1, 2, 3, 5 and 7 if left out.
+    /// Exponents to compare; 1, 2, 3, 5 and 7 if omitted.
     #[schemars(extend("items" = { "type": "number", "exclusiveMinimum": 0 }))]
     pub(crate) exponents: Option<Vec<f64>>,
-    /// Whether a free exponent is fitted too; true if left out.
+    /// Whether to fit a free exponent too; true if omitted.
     pub(crate) free_exponent: Option<bool>,
-    /// Range in which the free exponent is sought; 0.2 to 30 if left out.
+    /// Range of the free exponent; 0.2 to 30 if omitted.
     #[schemars(extend("items" = { "type": "number", "exclusiveMinimum": 0 }))]
     pub(crate) exponent_range: Option<[f64; 2]>,
-    /// Coverage of confidence intervals, between 0 and 1; 0.95 if left out.
+    /// Coverage of confidence intervals, between 0 and 1; 0.95 if omitted.
     #[schemars(extend("exclusiveMinimum" = 0, "exclusiveMaximum" = 1))]
     pub(crate) confidence: Option<f64>,
-    /// Fit no more than this much of every hold, counted from where its fit starts.
+    /// Fit at most this time of each hold, from the start of its fit.
     pub(crate) until: Option<QuantityText>,
 }
 
@@ -138,11 +139,11 @@ pub(crate) struct FitTable {
 #[serde(deny_unknown_fields)]
 #[schemars(rename = "ClockCorrections")]
 pub(crate) struct ClocksTable {
-    /// How much later the force is stamped than the displacement: "report" (say what the ramps tell, change nothing; the
-    /// default), "auto" (take it away), or a time such as "35 ms", negative where the force is stamped too early.
+    /// Delay of the force stamps after those of the displacement: "report" (estimate it from the ramps, correct nothing; the
+    /// default), "auto" (correct it), or a time such as "35 ms", negative if the force is stamped too early.
     #[schemars(extend("examples" = ["report", "auto", "35 ms"]))]
     pub(crate) skew: Option<String>,
-    /// Resample to this rate, such as "100 Hz": means where that is coarser than the record, else straight lines.
+    /// Resample to this rate, such as "100 Hz": by averages if coarser than the record, otherwise by linear interpolation.
     pub(crate) resample: Option<QuantityText>,
 }
 
@@ -151,11 +152,11 @@ pub(crate) struct ClocksTable {
 #[serde(deny_unknown_fields)]
 #[schemars(rename = "ForceCorrections")]
 pub(crate) struct ForceTable {
-    /// What to take off the force: "none" (the default), "constant" (its median without contact) or "sloped" (a line in
+    /// Baseline to subtract from the force: "none" (the default), "constant" (its median without contact) or "sloped" (a line in
     /// time, for a load cell that drifts).
     pub(crate) baseline: Option<BaselineName>,
-    /// From when to when nothing touches, as the record counts time, such as ["0 s", "2 s"]. Found if left out: before
-    /// first touch, and after the jaw has left.
+    /// Time window without contact, on the clock of the record, such as ["0 s", "2 s"]. Default: before
+    /// first touch and after the loss of contact.
     pub(crate) baseline_window: Option<(QuantityText, QuantityText)>,
 }
 
@@ -163,7 +164,7 @@ pub(crate) struct ForceTable {
 #[serde(rename_all = "lowercase")]
 #[schemars(rename = "Baseline")]
 pub(crate) enum BaselineName {
-    /// Nothing is taken off.
+    /// No baseline.
     None,
     /// The median.
     Constant,
@@ -171,14 +172,14 @@ pub(crate) enum BaselineName {
     Sloped,
 }
 
-/// Which machine it was, and what it gives way itself, to be taken off the displacement.
+/// The machine, and its compliance, which is subtracted from the displacement.
 #[derive(Debug, Clone, Default, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 #[schemars(rename = "Machine", extend("not" = { "required": ["compliance", "compliance_table"] }))]
 pub(crate) struct MachineTable {
-    /// A machine or gripper whose conventions are known, by name; what this description says itself goes before.
+    /// Preset of a machine or gripper, by name; fields of this description take precedence.
     pub(crate) preset: Option<String>,
-    /// Way per force, such as "0.5 um/N". For a cantilever of spring constant k it is 1/k.
+    /// Deflection per force, such as "0.5 um/N". For a cantilever of spring constant k it is 1/k.
     pub(crate) compliance: Option<QuantityText>,
     /// Rows of force and deflection, such as ["10 N", "4 um"]; forces rise, and all forces of the record lie between them.
     pub(crate) compliance_table: Option<Vec<(QuantityText, QuantityText)>>,

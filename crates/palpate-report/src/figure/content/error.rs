@@ -5,7 +5,7 @@
 #[non_exhaustive]
 pub enum FigureError {
     /// The columns of one layer do not belong together.
-    #[error("figure {figure:?}: {what} has {found} values where {expected} are needed")]
+    #[error("figure {figure:?}: {what} has {found} values, expected {expected}")]
     Length {
         /// Name of the figure.
         figure: String,
@@ -25,7 +25,7 @@ pub enum FigureError {
         reason: String,
     },
     /// The figure could not be turned into pixels.
-    #[error("figure {figure:?} could not be turned into pixels: {reason}")]
+    #[error("figure {figure:?} could not be rasterised: {reason}")]
     Raster {
         /// Name of the figure.
         figure: String,

@@ -51,7 +51,7 @@ pub fn material_table(material: &Material) -> Table {
 
 /// The same with profile intervals, where there are any.
 fn parameters_text_table(material: &Material, profiles: &[ParameterProfile]) -> Table {
-    const LEFT_OPEN: &str = "the record leaves it open";
+    const LEFT_OPEN: &str = "not determined by the record";
     let share = material.uncertainty.as_ref().map_or(0.95, |uncertainty| uncertainty.confidence);
     let parameters = parameters_of_material(material, true);
     // Each has a unit of its own, so that it stands in the row.
@@ -113,7 +113,7 @@ pub fn calibration_page(record: &CalibratedRecord) -> Result<Page, StudyError> {
         .block(Block::Table(laws(record)))
         .block(Block::List(record.remarks()))
         .block(Block::figure(&calibration_figure(record, "calibration"))?);
-    let page = Page::new("Calibration", "One set of parameters for a whole record, ramps and holds alike");
+    let page = Page::new("Calibration", "One set of parameters for a whole record, ramps and holds");
     Ok(page
         .section(section)
         .provenance("Record", record.input.called())
@@ -142,7 +142,7 @@ pub fn calibration_figure(record: &CalibratedRecord, name: &str) -> Figure {
         left = left.layer(Layer::vertical(at, Role::Reference));
     }
     let travel: Vec<f64> = times.iter().map(|time| motion.displacement_at(*time)).collect();
-    Figure::new(name, "A whole record with the laws calibrated on it, and the residual of each.")
+    Figure::new(name, "The whole record with its calibrated laws, and the residuals of each law.")
         .panel(force)
         .panel(left.zero_line())
         .panel(displacement_panel(times, &travel, Role::Measured))

@@ -39,7 +39,7 @@ pub fn prediction_table(prediction: &Prediction) -> Table {
     let share = percent(prediction.confidence);
     let course = &prediction.trajectory;
     let caption = format!(
-        "Force by the calibrated law: {share} intervals of its mean (what the calibration leaves open) and of one reading ({} N of noise besides).",
+        "Force by the calibrated law: {share} intervals of its mean (uncertainty of the calibration) and of a single reading (with {} N of noise).",
         significant(prediction.noise, 2)
     );
     let samples: Vec<usize> = (0..course.len()).collect();
@@ -68,7 +68,8 @@ pub fn prediction_figure(prediction: &Prediction, name: &str, caption: &str) -> 
     let force = Panel::over_time("Force", "N")
         .share(1.6)
         .layer(
-            Layer::band(time(), reading_low, reading_high, Role::Alternative(0)).label(format!("one reading, {share}")),
+            Layer::band(time(), reading_low, reading_high, Role::Alternative(0))
+                .label(format!("single reading, {share}")),
         )
         .layer(Layer::band(time(), low, high, Role::Fitted).label(format!("mean, {share}")))
         .layer(Layer::line(time(), course.force.clone(), Role::Fitted).label("predicted"));

@@ -32,9 +32,8 @@ fn forward_errors(record: &ComparedRecord, suffix: &str) -> Option<Figure> {
     let holds: Vec<_> = record.verdicts().filter(|(_, comparison)| !comparison.cuts.is_empty()).collect();
     let (laws, all) = best_laws(record, &holds);
     let panel = |(hold, comparison): &(&ComparedHold, &Comparison)| {
-        let mut panel =
-            Panel::new(Axis::linear("Part of the hold that was fitted", "%"), Axis::log("Held-out error", "%"))
-                .title(hold.short_title());
+        let mut panel = Panel::new(Axis::linear("Fitted part of the hold", "%"), Axis::log("Held-out error", "%"))
+            .title(hold.short_title());
         for (series, law) in laws.iter().enumerate() {
             let row = comparison.rows.iter().find(|row| row.law == *law);
             panel = panel.layers(row.into_iter().flat_map(|row| forward_layers(row, comparison, series)));
@@ -115,7 +114,7 @@ fn law_residuals(record: &ComparedRecord, suffix: &str) -> Option<Figure> {
     by_hold(
         &format!("law_residuals{suffix}"),
         format!(
-            "Residuals of the best laws fitted to the whole hold (measured less fitted, averaged over {STRETCHES} stretches of ln t). Noise scatters about zero; a wave is shape that the law misses."
+            "Residuals of the best laws fitted to the whole hold (measured less fitted, averaged over {STRETCHES} intervals of ln t). Noise scatters about zero; a systematic wave indicates a misfit of the law."
         ),
         (1.4 * 62.0, 62.0),
         (&holds, "holds"),
@@ -152,7 +151,7 @@ fn spectra(record: &ComparedRecord, suffix: &str) -> Option<Figure> {
     let holds: Vec<_> = record.verdicts().filter_map(|(hold, found)| Some((hold, spectrum(found)?))).collect();
     by_hold(
         &format!("spectra{suffix}"),
-        "The dense spectrum of each hold: amplitude over relaxation time; the line marks the length of the hold. Where the slowest time carries weight the spectrum is open-ended, and its equilibrium is a convention of the grid.",
+        "The dense spectrum of each hold: amplitude against relaxation time; the line marks the duration of the hold. If the slowest time has weight the spectrum is open-ended, and its equilibrium is a convention of the grid.",
         (1.4 * 62.0, 62.0),
         (&holds, "holds"),
         |(hold, fit)| spectrum_panel(hold, fit),

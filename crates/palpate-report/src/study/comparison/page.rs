@@ -21,7 +21,7 @@ pub fn comparison_bundle(
     pictures: Pictures,
 ) -> Result<Bundle, StudyError> {
     let mut bundle = Bundle::default();
-    let mut page = Page::new("Laws compared", "Which law of relaxation or creep to use, and how sure that is");
+    let mut page = Page::new("Laws compared", "Law of relaxation or creep to use, and its certainty");
     for (index, record) in records.iter().enumerate() {
         let suffix = if records.len() == 1 { String::new() } else { format!("_{}", index + 1) };
         let figures = figures::all(record, &suffix);

@@ -53,9 +53,12 @@ pub fn grip_figure(body: &GrippedBody<'_>, name: &str) -> Figure {
         jaw = jaw.layer(Layer::line(time(), place, role));
     }
     margin = margin.layer(Layer::horizontal(1.0, Role::Reference));
-    Figure::new(name, "Planned grips: force of the jaws with the one below which the body slips, how many times it is there, and how far the jaws go.")
-        .panel(force)
-        .panel(margin)
-        .panel(jaw)
-        .height_mm(150.0)
+    Figure::new(
+        name,
+        "Planned grips: force of the jaws with the slip limit, their ratio, and the displacement of the jaws.",
+    )
+    .panel(force)
+    .panel(margin)
+    .panel(jaw)
+    .height_mm(150.0)
 }

@@ -25,9 +25,9 @@ pub fn grip_bundle(body: &GrippedBody<'_>, pictures: Pictures) -> Result<Bundle,
         verdict = verdict.block(Block::figure(&figure)?).block(Block::Table(grips));
     }
     verdict = verdict.block(Block::List(body.remarks()));
-    let mut page = Page::new("Grip", "How long it holds, and how to squeeze").section(verdict);
+    let mut page = Page::new("Grip", "Time to slip and closing motion").section(verdict);
     let sections = [
-        ("Squeezes beside it", neighbour_table(body)),
+        ("Alternative squeezes", neighbour_table(body)),
         ("Squeeze and back off", sensitivity_table(body)),
         ("Squeeze again", schedule_table(body)),
         ("Material", Some(material_table(body.grip.material()))),

@@ -7,14 +7,14 @@ use crate::result::{GrippedBody, lasted, percent};
 use crate::table::{Cell, Table};
 use crate::wrap::wrapped;
 
-const NO_INTERVAL: &str = "the calibration says nothing of it";
+const NO_INTERVAL: &str = "no estimate from the calibration";
 
 /// The grips beside one another.
 #[must_use]
 pub fn grip_table(body: &GrippedBody<'_>) -> Table {
     let answer = &body.answer;
     let share = percent(body.grip.confidence());
-    let caption = format!("Grips by the calibrated law; the end is {} behind the closing.", lasted(answer.shown));
+    let caption = format!("Grips by the calibrated law; the end is {} after closing.", lasted(answer.shown));
     let mut table = Table::new("grips", caption)
         .column("Grip", "grip", "")
         .column("Closed", "closing_s", "s")
@@ -74,8 +74,8 @@ pub fn grip_table(body: &GrippedBody<'_>) -> Table {
             },
             Cell::Number(found.needed_force, 4),
             lasts(until),
-            Cell::missing("a force that is held does not fall"),
-            Cell::missing("a force that is held does not fall"),
+            Cell::missing("a held force does not fall"),
+            Cell::missing("a held force does not fall"),
             Cell::Number(1e3 * found.work, 3),
         ]);
     }
@@ -88,7 +88,7 @@ pub fn neighbour_table(body: &GrippedBody<'_>) -> Option<Table> {
     let answer = &body.answer;
     let squeeze = answer.squeeze.as_ref().ok().filter(|_| answer.neighbours.len() > 1)?;
     let speed = significant(1e3 * squeeze.found.plan.speed(), 3);
-    let table = Table::of("neighbours", format!("Squeezes beside it, at {speed} mm/s."), &answer.neighbours)
+    let table = Table::of("neighbours", format!("Alternative squeezes, at {speed} mm/s."), &answer.neighbours)
         .column("Squeeze", "displacement_mm", "mm", |(place, _)| Cell::Number(1e3 * place, 4))
         .column("beside it", "change_percent", "%", |(place, _)| {
             Cell::Number((100.0 * (place / squeeze.found.displacement - 1.0)).round(), 2)
@@ -106,17 +106,18 @@ fn lasts(time: TimeToSlip) -> Cell {
 #[must_use]
 pub fn sensitivity_table(body: &GrippedBody<'_>) -> Option<Table> {
     let found = &body.answer.back_off.as_ref().ok()?.found.sensitivities;
-    let caption = "Squeeze and back off: what happens if a number of the material is 1 % larger than was found.";
+    let caption =
+        "Squeeze and back off: sensitivity to a parameter of the material that is 1 % larger than its estimate.";
     Table::of("sensitivities", caption, found)
         .column("Number", "number", "", |one| Cell::text(one.name.replace('_', " ")))
         .column("known to", "standard_error_percent", "%", |one| {
-            Cell::number_or(one.error.map(|error| 100.0 * error), 2, "it has no error")
+            Cell::number_or(one.error.map(|error| 100.0 * error), 2, "no standard error")
         })
         // Rounding alone is nothing.
         .column("Force missed", "missed_mn", "mN", |one| {
             Cell::Number(if one.missed.abs() < 1e-9 { 0.0 } else { 1e3 * one.missed }, 3)
         })
-        .column("Turn farther by", "over_um", "µm", |one| Cell::Number(1e6 * one.over, 3))
+        .column("Additional overshoot", "over_um", "µm", |one| Cell::Number(1e6 * one.over, 3))
         .unless_empty()
 }
 
@@ -125,7 +126,7 @@ pub fn sensitivity_table(body: &GrippedBody<'_>) -> Option<Table> {
 pub fn schedule_table(body: &GrippedBody<'_>) -> Option<Table> {
     let found = &body.answer.schedule.as_ref()?.as_ref().ok()?.found;
     let moves: Vec<(i64, &Move)> = (1..).zip(&found.moves).collect();
-    let table = Table::of("schedule", "When to squeeze again; times since first touch.", &moves)
+    let table = Table::of("schedule", "Schedule of regrips; times since first touch.", &moves)
         .column("Move", "move", "", |(number, _)| Cell::Integer(*number))
         .column("at", "time_s", "s", |(_, step)| Cell::Number(step.time, 5))
         .column("Jaw from", "from_mm", "mm", |(_, step)| Cell::Number(1e3 * step.from, 5))

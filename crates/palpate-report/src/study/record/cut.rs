@@ -25,9 +25,9 @@ pub fn cut_figure(record: &Record, segments: &[Segment], name: &str) -> Figure {
         panel.layers(holds.iter().map(|(start, end)| Layer::span(*start, *end, Role::Series(0))))
     });
     let caption = match holds.len() {
-        0 => "No hold was found.".to_owned(),
-        1 => "Shaded: the one hold that was found.".to_owned(),
-        count => format!("Shaded: the {count} holds that were found."),
+        0 => "No hold was detected.".to_owned(),
+        1 => "Shaded: the detected hold.".to_owned(),
+        count => format!("Shaded: the {count} detected holds."),
     };
     Figure::new(name, caption).panel(force).panels(jaw)
 }

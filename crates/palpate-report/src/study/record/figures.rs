@@ -27,10 +27,11 @@ pub(super) fn record(analysis: &Analysis, name: &str) -> Figure {
     }
     let numbered = if holds.len() <= MOST_NAMED { ", with their numbers" } else { "" };
     let quantities = if analysis.record.displacement().is_some() { "Force and displacement" } else { "Force" };
-    let mut caption = format!("{quantities} over time. Shaded: the holds that were found{numbered}.");
+    let mut caption = format!("{quantities} over time. Shaded: the detected holds{numbered}.");
     if analysis.overlay.is_some() {
-        caption
-            .push_str(" The simulated curve follows the measured displacement with the numbers fitted to the holds.");
+        caption.push_str(
+            " The simulated curve follows the measured displacement with the parameters fitted to the holds.",
+        );
     }
     let jaw = analysis.record.displacement().map(|place| displacement_panel(time, place, Role::Measured));
     Figure::new(name, caption).panel(force).panels(jaw)
@@ -63,7 +64,7 @@ pub(in crate::study) fn strain_rates(analysis: &Analysis, name: &str) -> Option<
         let (panel, outside) = rate_panel(&shown, n);
         if outside > 0 {
             let points: usize = shown.iter().map(|hold| hold.rates.rate.len()).sum();
-            caption.push_str(&format!(" {title}: {outside} of {points} points lie outside the range shown."));
+            caption.push_str(&format!(" {title}: {outside} of {points} points lie outside the axes."));
         }
         most = most.max(shown.len());
         panels.push(panel.title(title));
@@ -240,10 +241,10 @@ pub(super) fn residuals(analysis: &Analysis, name: &str) -> Option<Figure> {
     let fitted = &worth[..worth.len().min(MOST_PANELS)];
     let exact = match all.len() - worth.len() {
         0 => String::new(),
-        count => format!(" Left out: {count} holds that are fitted to within rounding."),
+        count => format!(" Omitted: {count} holds whose residuals are within rounding."),
     };
     let caption = format!(
-        "Residuals of the recommended law on each hold (measured less fitted). Noise scatters about zero; a wave is shape that the law misses.{}{exact}",
+        "Residuals of the recommended law on each hold (measured less fitted). Noise scatters about zero; a systematic wave indicates a misfit of the law.{}{exact}",
         first_of(fitted.len(), worth.len(), "fitted holds")
     );
     let panel = |(hold, (_, label, predict)): &(&HoldAnalysis, Drawn<'_>)| {

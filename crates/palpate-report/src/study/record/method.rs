@@ -7,7 +7,7 @@ use palpate::segment::{ContactChoice, HoldStart};
 use crate::number::significant;
 use crate::page::Block;
 
-const METHOD: &str = "Phases are cut from the record without labels. Strain is force over contact area and modulus, ε = f/(E A), with the area of the contact's own share of the travel. The latency law ε̇ = −v sgn(ε − εₑ)|ε − εₑ|ⁿ is fitted to the strain of each hold over time by its closed form (preferred), and to strain rate against strain as in the paper. Least squares needs no starting values. Standard errors assume white noise; intervals are widened for correlated residuals. Where no geometry is known the force is fitted as it is.";
+const METHOD: &str = "The phases are detected in the record without labels. Strain is force over contact area and modulus, ε = f/(E A), with the area at the displacement of one contact. The latency law ε̇ = −v sgn(ε − εₑ)|ε − εₑ|ⁿ is fitted to the strain of each hold over time by its closed form (preferred), and to strain rate against strain as in the paper. The least-squares search needs no starting values. Standard errors and intervals account for the correlation of the residuals. Without a known geometry the force is fitted directly.";
 
 /// The method in words, then the settings it ran with.
 pub(super) fn blocks(analysis: &Analysis) -> Vec<Block> {
@@ -31,15 +31,15 @@ fn phases(analysis: &Analysis) -> Pairs {
         ("Noise of that column", format!("{} {unit}", number(segment.noise * scale))),
         ("Tolerance of a hold", format!("{} {unit}", number(segment.tolerance * scale))),
         ("Speed of the ramps", format!("{} {speed}", number(segment.ramp_speed * scale))),
-        ("Standing still below", format!("{} {speed}", number(segment.still_speed * scale))),
+        ("At rest below", format!("{} {speed}", number(segment.still_speed * scale))),
         ("Shortest hold", format!("{} s, {} samples", number(segment.minimum_hold), segment.minimum_samples)),
     ]
 }
 
 fn touch(analysis: &Analysis) -> Pairs {
     let chosen = match analysis.options.touch {
-        ContactChoice::Auto => "found from the force".to_owned(),
-        ContactChoice::AsRecorded => "as recorded: force and displacement are counted from there".to_owned(),
+        ContactChoice::Auto => "estimated from the force".to_owned(),
+        ContactChoice::AsRecorded => "as recorded: force and displacement start at zero".to_owned(),
         ContactChoice::Displacement(at) => format!("given, at {} mm", significant(1e3 * at, 4)),
         ContactChoice::By(method) => format!("by the rule \"{}\"", method.name()),
     };
@@ -67,7 +67,7 @@ fn fits(analysis: &Analysis) -> Pairs {
         HoldStart::AfterPeak(delay) => format!("{} s after the extreme of the force", number(delay)),
     };
     let until = match options.fit_until {
-        Some(until) => format!("{} s later; the rest of the hold is predicted", number(until)),
+        Some(until) => format!("{} s later; the rest of the hold is held out", number(until)),
         None => "the end of the hold".to_owned(),
     };
     let listed: Vec<String> = options.exponents.iter().map(|n| format!("{n}")).collect();

@@ -67,7 +67,7 @@ fn page(
         .block(Block::paragraph(summary(analysis)))
         .blocks(drawn(figures, "record")?)
         .block(Block::Table(tables::holds(analysis)));
-    let mut laws = Section::new("The law, hold by hold")
+    let mut laws = Section::new("The law for each hold")
         .blocks(tables::paper_tables(analysis).map(Block::Table))
         .block(Block::Table(tables::exponents(analysis)));
     for name in ["holds", "residuals", "strain_rates", "trend"] {
@@ -117,7 +117,9 @@ fn summary(analysis: &Analysis) -> String {
     if let Some(n) = analysis.across.common_exponent {
         let fitted = analysis.holds.iter().filter(|hold| !hold.fits.is_empty()).count();
         let which = if fitted == 1 { "this hold" } else { "all holds" };
-        text.push_str(&format!(" The lowest listed exponent that fits {which} best is n = {n}."));
+        text.push_str(&format!(
+            " The lowest listed exponent that is not distinguishable from the best fit to {which} is n = {n}."
+        ));
     }
     if let Some(overlay) = &analysis.overlay {
         text.push_str(&format!(
@@ -146,9 +148,9 @@ fn joint_sentence(analysis: &Analysis) -> Option<String> {
     let trend = joint.comparison.trend.as_ref()?;
     let verdict = match joint.comparison.verdict {
         TrendVerdict::Constant => "one v describes them all",
-        TrendVerdict::FallsWithStrain => "v falls as the equilibrium strain grows, as the authors of the paper saw",
+        TrendVerdict::FallsWithStrain => "v falls with the equilibrium strain, as the paper reports",
         TrendVerdict::RisesWithStrain => "v rises with the equilibrium strain",
-        TrendVerdict::Undecided => "these holds do not tell whether v changes with strain",
+        TrendVerdict::Undecided => "these holds do not determine whether v changes with strain",
     };
     Some(format!(
         "Trend over {} holds after loading, weighted by their errors: d ln v/dεₑ = {} ({} % interval {} to {}): {verdict}.",
@@ -166,9 +168,9 @@ fn trend_sentence(analysis: &Analysis) -> Option<String> {
     let verdict = if low > 0.0 {
         "v rises with the equilibrium strain"
     } else if high < 0.0 {
-        "v falls as the equilibrium strain grows, as the authors of the paper saw"
+        "v falls with the equilibrium strain, as the paper reports"
     } else {
-        "no trend of v can be told from these holds"
+        "these holds do not determine a trend of v"
     };
     Some(format!(
         "Trend over {} holds after loading: d ln v/dεₑ = {} (95 % interval {} to {}): {verdict}.",
@@ -184,7 +186,7 @@ fn findings(analysis: &Analysis) -> Vec<Block> {
     let list: Vec<_> =
         findings::gathered(analysis, findings::MOST_LINES).iter().map(findings::Gathered::told).collect();
     if list.is_empty() {
-        vec![Block::paragraph("Nothing to report: the holds are long and clean enough for the estimates below.")]
+        vec![Block::paragraph("No findings: the holds are long enough, with low noise, for the estimates below.")]
     } else {
         vec![Block::Findings(list)]
     }

@@ -20,7 +20,7 @@ fn order(n: f64) -> Cell {
 fn parameter(fit: &LatencyFit, kind: ParameterKind) -> Cell {
     let found = fit.parameter(kind).and_then(|parameter| parameter.determined(fit.termination));
     found.map_or_else(
-        || Cell::missing("the fit ended at a bound, or short of an optimum"),
+        || Cell::missing("a parameter is at its bound, or the fit did not converge"),
         |found| Cell::Estimate(*found),
     )
 }
@@ -65,7 +65,7 @@ pub(super) fn holds(analysis: &Analysis) -> Table {
         .table()
         .note("Held: the displacement (the force relaxes), the force (the displacement creeps) or neither.")
         .note("Type I: the force falls; Type II: it rises. The laws are fitted from the time “Fit from” on, which may lie after the start of the hold.")
-        .note("p: probability that noise alone makes a change of the force of this size.")
+        .note("p: probability of a force change of this size by noise alone.")
 }
 
 /// The displacement that was held.
@@ -113,7 +113,7 @@ pub(super) fn fits(analysis: &Analysis) -> Table {
         .column("Ended", "termination", "", |(.., fit)| Cell::text(word(fit.termination)))
         .table();
     analysis.holds.iter().filter_map(rate_bias_note).fold(table, Table::note)
-        .note("Value [low, high]: 95 % confidence interval for residuals that correlate as they do. The CSV file has the standard errors too.")
+        .note("Value [low, high]: 95 % confidence interval, including the correlation of the residuals. The CSV file also has the standard errors.")
         .note("v is in 1/s where the signal is strain. ΔBIC: information criterion less the lowest of the hold. Held-out error: error of the prediction beyond the fitted part, as a share of the change over the hold.")
 }
 
@@ -121,7 +121,7 @@ pub(super) fn fits(analysis: &Analysis) -> Table {
 fn rate_bias_note(hold: &HoldAnalysis) -> Option<String> {
     let bias = hold.rate_bias.filter(|_| hold.rate_fits.iter().any(Option::is_some))?;
     Some(format!(
-        "Rate domain, hold {}: on simulated holds with the parameters of the fit in the time domain (n = {:.3}) and this noise it finds v at {:.2} of the truth ({:.2} to {:.2} in {} of them) and the equilibrium off by {:.1} % of the relaxation.",
+        "Rate domain, hold {}: on simulated holds with the parameters of the fit in the time domain (n = {:.3}) and this noise it estimates v at {:.2} of the true value ({:.2} to {:.2} in {} of them) and the equilibrium with an error of {:.1} % of the relaxation.",
         hold.number,
         bias.exponent,
         bias.coefficient,
@@ -171,7 +171,7 @@ fn paper_table(analysis: &Analysis, after: After) -> Option<Table> {
 
 /// Evidence for the exponent over all holds: the paper's "lowest order which fits the best".
 pub(super) fn exponents(analysis: &Analysis) -> Table {
-    let caption = "Which exponent fits all holds: sum of the information criteria less the lowest sum.";
+    let caption = "Common exponent of all holds: sum of the information criteria less the lowest sum.";
     Table::of("exponents", caption, &analysis.across.evidence)
         .column("n", "exponent", "", |(n, _)| order(*n))
         .column("ΔBIC, all holds", "delta_bic", "", |(_, delta)| Cell::Number(*delta, 4))
@@ -182,7 +182,7 @@ pub(super) fn exponents(analysis: &Analysis) -> Table {
         })
         .column("Verdict", "verdict", "", |(n, delta)| {
             Cell::text(match delta {
-                _ if analysis.across.common_exponent == Some(*n) => "lowest order that fits best",
+                _ if analysis.across.common_exponent == Some(*n) => "lowest order not distinguishable from the best",
                 delta if *delta <= 2.0 => "not distinguishable from the best",
                 _ => "",
             })
@@ -193,7 +193,7 @@ pub(super) fn exponents(analysis: &Analysis) -> Table {
 /// One law for several holds against one for each.
 pub(super) fn joint(analysis: &Analysis) -> Option<Table> {
     let joint = &analysis.across.joint;
-    let caption = "One law for several holds, each with its own εₑ, against a law for each: p of the F-test, ΔBIC (negative for one law), and the trend of v at one n.";
+    let caption = "One law for several holds, each with its own εₑ, compared with a law for each hold: p of the F-test, ΔBIC (negative for one law), and the trend of v at one n.";
     let shared = |one: &JointAnalysis, name: &str| {
         Cell::number_or(one.fit.shared(name).map(|number| number.estimate.value), 4, "not found")
     };
@@ -225,7 +225,7 @@ pub(super) fn joint(analysis: &Analysis) -> Option<Table> {
 /// How well each law, fitted to the first part of the holds, predicts the rest.
 pub(super) fn predictions(analysis: &Analysis) -> Option<Table> {
     let until = analysis.options.fit_until?;
-    let caption = format!("Laws fitted to the first {until} s of each hold: root mean square error over the rest.");
+    let caption = format!("Laws fitted to the first {until} s of each hold: root mean square held-out error.");
     let mut rows: Vec<(&HoldAnalysis, &LatencyFit, HoldoutError)> = Vec::new();
     for hold in &analysis.holds {
         let fits = hold.fits.iter().zip(&hold.predictions);

@@ -20,7 +20,7 @@ pub(super) fn law(name: &str, law: LatencyLaw, reach: f64) -> Figure {
     Figure::new(
         name,
         format!(
-            "The nonlinear latency law, equations (1) to (3): strain rate against excess strain for several exponents that agree at an excess of {reach}. The higher the exponent, the sooner the flow all but stops near equilibrium. n = 1 is the linear law."
+            "The nonlinear latency law, equations (1) to (3): strain rate against excess strain for several exponents that agree at an excess of {reach}. With a higher exponent the flow nearly stops farther from equilibrium. n = 1 is the linear law."
         ),
     )
     .panel(panel)

@@ -38,7 +38,7 @@ fn figures(study: &Reproduction) -> Vec<Figure> {
     figures.push(wave_figure(
         "figure_7_strain_wave",
         &study.test_a.wave,
-        "Strain of all eight layers in test (a), from the contact (layer 1) to the plane of symmetry. New displacement lands on the contact layer and travels inwards; in the holds the strain evens out.",
+        "Strain of all eight layers in test (a), from the contact (layer 1) to the plane of symmetry. A new displacement strains the contact layer first and then the layers below; in the holds the strain becomes uniform.",
     ));
     figures.push(final_unloading(study));
     figures
@@ -70,7 +70,7 @@ fn final_unloading(study: &Reproduction) -> Figure {
     };
     Figure::new(
         "figure_8_simulated_force",
-        "Simulated force of test (a). In the last unloading, from 53 s on, the bonded contact drops into tension, which the authors note as faster than their ball; a jaw that cannot pull leaves the ball instead and the force stays at zero.",
+        "Simulated force of test (a). In the last unloading, from 53 s on, the bonded contact goes into tension, which the authors report as faster than their ball; a jaw that cannot pull leaves the ball instead, and the force stays at zero.",
     )
     .panel(panel(0.0, 66.0, "Test (a)"))
     .panel(panel(52.5, 57.5, "Last unloading"))
@@ -111,7 +111,7 @@ fn paper_table(study: &Reproduction, test: &ReproducedTest, after: After) -> Tab
             measured(MEASURED_COEFFICIENT.get(*step).copied().flatten(), 2)
         })
         .table()
-        .note("Compression is positive here; the paper prints it as negative. The authors' ball is stiffer than E and the geometry say at small squeezes, so their measured εₑ differ from u₁/r, which the simulation tends to. Their v falls with εₑ; the simulation has one v for all holds. The rate domain underestimates v: smoothing flattens the fast start of a hold.")
+        .note("Compression is positive here; the paper prints it as negative. The authors' ball is stiffer than E and the geometry imply at small displacements, so their measured εₑ differ from u₁/r, the limit of the simulation. Their v falls with εₑ; the simulation has one v for all holds. The rate domain underestimates v: smoothing flattens the fast start of a hold.")
 }
 
 /// The page.
@@ -124,7 +124,7 @@ fn page(study: &Reproduction, figures: &[Figure], tables: &[Table]) -> Result<Pa
     .section(
         Section::new("What is reproduced")
             .block(Block::paragraph(
-                "A soft ball is squeezed between parallel jaws in steps, held, and released. The nonlinear latency law, strain rate = −v (ε − εₑ)ⁿ, describes how the contact strain drifts to equilibrium in every hold. Below, both tests of the paper are simulated with the paper's numbers; the simulated records are then analysed as if a machine had measured them, and what the paper reports is checked.",
+                "A soft ball is squeezed between parallel jaws in steps, held, and released. The nonlinear latency law, strain rate = −v (ε − εₑ)ⁿ, describes how the contact strain tends to equilibrium in each hold. Both tests of the paper are simulated with its parameters, the simulated records are analysed as measured ones, and the results are checked against the paper.",
             ))
             .block(Block::KeyValues(vec![
                 ("Ball".to_owned(), format!("radius {:.0} mm, modulus {:.0} kPa", 1e3 * model.specimen.depth(), model.specimen.modulus() / 1e3)),
@@ -141,7 +141,7 @@ fn page(study: &Reproduction, figures: &[Figure], tables: &[Table]) -> Result<Pa
             .blocks(drawn(figures, "figure_4b")?)
             .blocks(drawn(figures, "figure_8")?)
             .block(Block::paragraph(
-                "The authors remark that their simulation drops faster than the ball did when the jaw leaves at about 53 s. The reason is in the model: a bonded contact can pull. With a jaw that can only push, the contact is lost, the force stays at zero, and the dent left behind recovers by the same law.",
+                "The authors remark that their simulated force drops faster than the measured one when the jaw retreats at about 53 s. The cause is the model: a bonded contact can pull. With a jaw that can only push, contact is lost, the force stays at zero, and the remaining indentation recovers by the same law.",
             )),
     )
     .section(
@@ -178,7 +178,7 @@ pub fn reproduction_bundle(study: &Reproduction, pictures: Pictures) -> Result<B
 /// Every check in two lines.
 #[must_use]
 pub fn reproduction_text(study: &Reproduction) -> String {
-    let mut text = String::from("What the paper reports, checked on its simulated and re-identified tests:\n\n");
+    let mut text = String::from("Results of the paper, checked on its simulated and re-identified tests:\n\n");
     for check in &study.checks {
         let word = if check.passed { "pass" } else { "FAIL" };
         text.push_str(&format!("  {word}  {}\n        {}\n", check.name, check.found));

@@ -51,7 +51,7 @@ fn cost(cycle: &Cycle) -> String {
 pub fn step_work_table(steps: &[StepWork]) -> Table {
     let numbered: Vec<(i64, &StepWork)> = (1..).zip(steps).collect();
     let number = |value: f64| Cell::Number(value, 9);
-    let table = Table::of("steps", "Work of the jaw in every step.", &numbered)
+    let table = Table::of("steps", "Work of the jaw in each step.", &numbered)
         .column("Step", "step", "", |(step, _)| Cell::Integer(*step))
         .column("From", "from_s", "s", |(_, step)| number(step.from))
         .column("Until", "until_s", "s", |(_, step)| number(step.until))
@@ -70,7 +70,7 @@ pub fn step_work_table(steps: &[StepWork]) -> Table {
 pub fn cycle_table(cycles: &[Cycle]) -> Table {
     let numbered: Vec<(i64, &Cycle)> = (1..).zip(cycles).collect();
     let number = |value: f64| Cell::Number(value, 6);
-    Table::of("cycles", "What every cycle of squeeze and release cost.", &numbered)
+    Table::of("cycles", "Energy loss of each cycle of squeeze and release.", &numbered)
         .column("Cycle", "cycle", "", |(cycle, _)| Cell::Integer(*cycle))
         .column("From", "from_s", "s", |(_, cycle)| number(cycle.from))
         .column("Until", "until_s", "s", |(_, cycle)| number(cycle.until))

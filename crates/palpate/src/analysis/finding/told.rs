@@ -245,7 +245,7 @@ impl Finding {
                 let (name, level) = (column.name(), measured(*column, *level));
                 warning(
                     "saturated",
-                    format!("the {name} is at its extreme, {level}, in {rows} rows{among}"),
+                    format!("the {name} stands at its extreme, {level}, in {rows} rows{among}"),
                     "the sensor was at the end of its range; peaks, fits and moduli that depend on these rows are wrong",
                     "repeat the test with a larger range; do not use holds at that value",
                 )
