@@ -18,11 +18,11 @@ pub enum EquilibriumLaw {
         /// Poisson's ratio ν, from 0 to 0.5; it is not told apart from the modulus.
         poisson_ratio: f64,
     },
-    /// A monotone table with a row where the jaw was held, and one at the deepest place.
+    /// A monotone table with one row per held displacement, and one at the largest displacement.
     Table,
 }
 
-/// Whether the rate coefficient of the latency law is one parameter, or depends on where the layer stands.
+/// Whether the rate coefficient of the latency law is one parameter, or depends on the state of the layer.
 ///
 /// Fitted hold by hold it has a trend with the equilibrium strain (the paper's Table I) and another level after unloading (Table II);
 /// whether that is the body's, or the fits', a calibration with one more parameter tells.

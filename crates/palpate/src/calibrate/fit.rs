@@ -30,7 +30,7 @@ pub struct Calibration {
     pub rmse: f64,
     /// The same as a share of the largest force of the record.
     pub relative: f64,
-    /// How residuals correlate; intervals and criteria rest on it.
+    /// Correlation of the residuals, which intervals and criteria take into account.
     pub noise: NoiseModel,
     /// Information criteria, every sample counted as one; only differences between candidates on the same data mean anything.
     pub criteria: Criteria,

@@ -86,7 +86,7 @@ impl ParameterKind {
     }
 }
 
-/// Which parameter of a law: its kind, and the number of the term where there are several alike; `time_2` in writing.
+/// A parameter of a law: its kind, and the number of its term in a series; written `time_2`.
 ///
 /// ```
 /// use palpate::fit::{ParameterKind, ParameterName};

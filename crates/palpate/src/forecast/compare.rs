@@ -29,10 +29,10 @@ pub fn compare_laws(samples: &Samples<'_>, options: &CompareOptions) -> Result<C
     compare_laws_watched(samples, options, &[], &mut Unwatched)
 }
 
-/// A fit of the same samples that exists already, with what was asked of it.
+/// An existing fit of the same samples, with its options.
 #[derive(Debug, Clone)]
 pub struct KnownFit<'a> {
-    /// What was asked.
+    /// Its options.
     pub options: LawOptions,
     /// The fit.
     pub fit: &'a Fit,

@@ -7,7 +7,7 @@ use crate::laws::{ExponentChoice, Law};
 const MOST_TIMES: f64 = 1000.0;
 
 impl Comparison {
-    /// Which law to use, how sure that is, and what another would cost, in one sentence; `None` without a verdict.
+    /// The law to use, its certainty, and the cost of others, in one sentence; `None` without a verdict.
     ///
     /// ```
     /// use palpate::forecast::{CompareOptions, compare_laws};

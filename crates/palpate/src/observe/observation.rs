@@ -45,7 +45,7 @@ impl Kept for Held {
 pub enum SlipForecast {
     /// Not known yet: no hold, or too little of it.
     Unknown,
-    /// With the confidence that was asked for. It never does where the equilibrium force is above, or the force is held.
+    /// At the requested confidence. The force never reaches it in a force hold, or if the equilibrium force is above it.
     Known {
         /// Best value, from now on.
         best: TimeToSlip,
@@ -88,7 +88,7 @@ impl Kept for Slip {
     }
 }
 
-/// What an observer says after a tick; SI units.
+/// Report of an observer after a tick, in SI units.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub struct Observation {
     /// When, s.
@@ -99,7 +99,7 @@ pub struct Observation {
     pub held: Option<Held>,
     /// When the hold began, s.
     pub held_since: Option<f64>,
-    /// True on the one tick that says that a hold began.
+    /// True on the one tick at which a hold is detected.
     pub began: bool,
     /// The force without its noise, N: the fitted curve inside a hold, a filter's elsewhere.
     pub force: f64,
@@ -107,7 +107,7 @@ pub struct Observation {
     pub equilibrium_force: Option<Estimate>,
     /// Force in excess of equilibrium, N.
     pub excess_force: Option<Estimate>,
-    /// Strain in excess of equilibrium; only a material tells it.
+    /// Strain in excess of equilibrium; only with a material.
     pub excess_strain: Option<Estimate>,
     /// Rate at which the excess falls now, in shares of itself: v|x|ⁿ⁻¹ in 1/s.
     pub relative_rate: Option<f64>,

@@ -89,7 +89,7 @@ kept!(
 );
 
 impl Observer {
-    /// An observer that has seen nothing.
+    /// An observer without readings.
     ///
     /// # Errors
     /// [`ObserveError::Option`] for an option out of its range, [`ObserveError::LinearMaterial`] for a material that obeys a linear law.
@@ -162,7 +162,7 @@ impl Observer {
         self.filter.as_ref().filter(|filter| self.seen.displacement_seen && filter.is_met())
     }
 
-    /// What it was told before the first tick.
+    /// Its options.
     #[must_use]
     pub fn options(&self) -> &ObserverOptions {
         &self.options

@@ -4,7 +4,7 @@ use super::checks::{self, RecordError};
 use super::mend::{Mended, mended};
 use super::{Clock, Record, SignalReport};
 
-/// Columns in SI as they were read: nothing is checked, nothing is mended.
+/// Columns in SI as read, without checks or repairs.
 ///
 /// ```
 /// use palpate::record::{Correction, RawColumns};
@@ -40,7 +40,7 @@ impl RawColumns {
         SignalReport::of(&self.time, self.displacement.as_deref(), &self.force, force_time)
     }
 
-    /// The record they make, with time stamps mended where that is safe.
+    /// The record of these columns, with time stamps repaired where that is safe.
     ///
     /// Rows of equal stamps become one with their mean; where at most one row in fifty is stamped earlier than a row
     /// before it, by less than a twentieth of the whole time, rows are put into order. The record says which of it was

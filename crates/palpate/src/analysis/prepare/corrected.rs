@@ -22,7 +22,7 @@ pub struct Corrected {
 }
 
 impl Corrected {
-    /// The record as it came with its clocks put right, and what its columns are like then, if they are seen to differ.
+    /// The record with corrected clocks and the properties of its columns, if the clocks differ.
     #[must_use]
     pub fn aligned(&self, record: &Record) -> Option<(Record, SignalReport)> {
         let skew = self.skew.filter(ClockSkew::is_seen)?;
@@ -31,8 +31,8 @@ impl Corrected {
         Some((aligned, signals))
     }
 
-    /// [`Finding::ClocksSkewed`] if the clocks differ and nothing was done about it, [`Finding::ClocksOpen`] if that was asked for and could
-    /// not be told.
+    /// [`Finding::ClocksSkewed`] if the clocks differ and no correction was requested, [`Finding::ClocksOpen`] if it was requested and is
+    /// not determined.
     ///
     /// They differ if it is by more than their error and a sample interval: one clock that stamps both columns at the same rows can seem to be
     /// off by a part of an interval, since what was held between two samples is not known. It could not be told if its error is longer than
@@ -56,7 +56,7 @@ impl Corrected {
     }
 }
 
-/// Repairs single-row dropouts and makes the corrections that are asked for, as [`analyze`](crate::analysis::analyze) does: skew, sample
+/// Repairs single-row dropouts and makes the requested corrections, as [`analyze`](crate::analysis::analyze) does: skew, sample
 /// times, baseline, compliance, in this order, since each needs those before it.
 ///
 /// Edges are sought where they were measured; a baseline is the force where nothing touches; and a table of compliance
@@ -123,7 +123,8 @@ pub struct Prepared {
     pub contact: ContactPoint,
 }
 
-/// Makes the corrections that are asked for, cuts the record and sets it to zero at first touch, as [`analyze`](crate::analysis::analyze) does.
+/// Makes the requested corrections, detects the phases and sets the record to zero at first touch, as
+/// [`analyze`](crate::analysis::analyze) does.
 ///
 /// # Errors
 /// [`AnalysisError`] for a correction that cannot be made, a record without holds, and a body that the jaw would go through.

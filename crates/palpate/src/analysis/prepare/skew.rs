@@ -12,16 +12,16 @@ use crate::statistics::median;
 pub struct ClockSkew {
     /// Time that the force is stamped too late, s; negative where it is too early.
     pub skew: f64,
-    /// Its standard error, s: scatter between the edges, and what half the stretch around each edge would say instead.
+    /// Its standard error, s: scatter between the edges, and the difference from estimates over half the stretch around each edge.
     pub standard_error: f64,
-    /// Starts and ends of ramps that it rests on.
+    /// Number of starts and ends of ramps used.
     pub edges: usize,
     /// Time between samples around them, s.
     pub interval: f64,
 }
 
 impl ClockSkew {
-    /// Whether it stands out from its error.
+    /// Whether it differs significantly from zero.
     #[must_use]
     pub fn is_seen(&self) -> bool {
         self.skew.abs() > SEEN * self.standard_error

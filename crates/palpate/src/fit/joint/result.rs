@@ -17,7 +17,7 @@ pub enum HoldWeights {
     SeparateVariance,
 }
 
-/// What may be asked of [`fit_joint`](crate::fit::fit_joint).
+/// Options of [`fit_joint`](crate::fit::fit_joint).
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 #[serde(default)]
 pub struct JointOptions {
