@@ -1,4 +1,4 @@
-//! What may be asked of an analysis.
+//! Options of an analysis.
 
 use serde::{Deserialize, Serialize};
 
@@ -70,7 +70,7 @@ pub struct AnalysisOptions {
     pub fit: FitOptions,
     /// Fit only this long from the start of the fit, s, and predict the rest of the hold.
     pub fit_until: Option<f64>,
-    /// Which laws are compared on every hold; `None` to leave that out.
+    /// Laws to compare on every hold; `None` omits the comparison.
     pub compare: Option<CompareOptions>,
     /// Window of the strain rates.
     pub rate_window: RateWindow,

@@ -45,7 +45,8 @@ const POOR: f64 = 0.05;
 /// Analyses a record: phases, first touch, strains, laws per hold and over holds, overlay.
 ///
 /// # Errors
-/// [`AnalysisError`] when the record has no hold, a correction that was asked for cannot be made, the geometry makes no specimen or is smaller than the travel of the jaw,
+/// [`AnalysisError`] when the record has no hold, a requested correction cannot be made, the geometry is invalid or smaller than the
+/// travel of the jaw,
 /// or no hold has anything to fit.
 pub fn analyze(record: &Record, options: &AnalysisOptions) -> Result<Analysis, AnalysisError> {
     analyze_watched(record, options, &mut Unwatched)

@@ -1,4 +1,4 @@
-//! What may be asked of a fit.
+//! Options of a fit.
 
 use serde::{Deserialize, Serialize};
 
@@ -149,13 +149,13 @@ pub struct LawOptions {
     pub loss: Loss,
     /// Which samples are fitted.
     pub samples: SampleChoice,
-    /// What was imposed until the first sample, if that is not to count as a step. The parameters found are then those of a true step.
-    /// Laws are taken as linear in it; the latency law, which is not, is fitted to the hold alone, whose start says all
-    /// that it needs to know.
+    /// Loading history until the first sample; a step if not given. The estimated parameters are then those of an ideal step.
+    /// Laws are taken as linear in it; the latency law, which is not, is fitted to the hold alone, whose initial state
+    /// is sufficient.
     pub loading: Option<Loading>,
     /// Coverage of confidence intervals, between 0 and 1.
     pub confidence: f64,
-    /// What intervals take the noise for.
+    /// Noise model of the intervals.
     pub noise: NoiseChoice,
     /// Method of the intervals.
     pub intervals: IntervalMethod,
@@ -183,8 +183,8 @@ impl Default for LawOptions {
 }
 
 impl LawOptions {
-    /// Whether these ask the same of a law as others: an exponent may be sought where it is sought anyway, and what the latency law
-    /// is told of a loading changes nothing.
+    /// Whether these options give the same fit of a law as others: options that do not apply to the law are ignored, and so is
+    /// the loading for the latency law.
     #[must_use]
     pub fn same_for(&self, law: Law, other: &Self) -> bool {
         let plain = |options: &Self| {

@@ -10,7 +10,7 @@ use crate::watch::{Cancelled, Progress, Unwatched, Watch};
 /// Fits laws to a hold, lets each predict the last part from the first, and ranks them.
 ///
 /// Laws are ranked by their forward score: the error over the rest of the hold of a fit to its first quarter, third and half, as a share of
-/// the change of the signal. Where the signal changes too little after the first cut to be seen above its noise, or the
+/// the change of the signal. Where the change of the signal after the first cut does not exceed its noise, or the
 /// first part has too few samples, the rank is by BIC at the effective number of samples.
 ///
 /// ```

@@ -1,4 +1,4 @@
-//! What may be asked of a comparison.
+//! Options of a comparison.
 
 use serde::{Deserialize, Serialize};
 

@@ -1,4 +1,4 @@
-//! The normalised closed form, and the law with its numbers put in.
+//! The normalised closed form, and the law with its parameters.
 
 #[cfg(not(feature = "std"))]
 use num_traits::Float as _;

@@ -101,19 +101,19 @@ pub struct Observation {
     pub held_since: Option<f64>,
     /// True on the one tick at which a hold is detected.
     pub began: bool,
-    /// The force without its noise, N: the fitted curve inside a hold, a filter's elsewhere.
+    /// Filtered force, N: the fitted curve within a hold, the output of a filter elsewhere.
     pub force: f64,
-    /// The force that a displacement hold tends to, N; `None` until its interval is narrower than the force itself.
+    /// Equilibrium force of a position hold, N; `None` until its interval is narrower than the force itself.
     pub equilibrium_force: Option<Estimate>,
     /// Force in excess of equilibrium, N.
     pub excess_force: Option<Estimate>,
     /// Strain in excess of equilibrium; only with a material.
     pub excess_strain: Option<Estimate>,
-    /// Rate at which the excess falls now, in shares of itself: v|x|ⁿ⁻¹ in 1/s.
+    /// Current relative rate at which the excess falls: v|x|ⁿ⁻¹ in 1/s.
     pub relative_rate: Option<f64>,
-    /// Speed of the creep (m/s) while the force is held.
+    /// Creep speed (m/s) in a force hold.
     pub creep_rate: Option<Estimate>,
-    /// How long until slip; `None` where no force of slip was given.
+    /// Time to slip; `None` without a slip force.
     pub time_to_slip: Option<SlipForecast>,
     /// Warning.
     pub slip: Slip,

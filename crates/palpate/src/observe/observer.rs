@@ -107,10 +107,10 @@ impl Observer {
     }
 
     /// Takes the readings at `time` (s): the displacement of the jaw (m, growing as it closes; `None` where there is no reading) and the
-    /// force (N, above 0 as the jaw presses), and says what they mean.
+    /// force (N, above 0 as the jaw presses), and returns the observation.
     ///
     /// Most ticks cost well under a microsecond; those on which a hold is fitted anew, each time it has become 4 % longer, some hundred, and
-    /// three times that where the exponent has a deviation. Nothing allocates, and the observer stays as large as it is.
+    /// three times that where the exponent has a standard error. The step does not allocate, and the observer has a constant size.
     ///
     /// # Errors
     /// [`ObserveError::NotFinite`], [`ObserveError::TimeNotRising`] and, with a material, [`ObserveError::Displacement`]; the observer is then

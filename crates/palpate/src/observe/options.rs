@@ -1,4 +1,4 @@
-//! What an observer is told before the first tick.
+//! Options of an observer.
 
 use serde::{Deserialize, Serialize};
 

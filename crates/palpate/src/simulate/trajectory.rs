@@ -1,4 +1,4 @@
-//! The series of a simulation at the asked times.
+//! The series of a simulation at the requested times.
 
 use serde::{Deserialize, Serialize};
 

@@ -1,4 +1,4 @@
-//! The corrections that were asked for, in order.
+//! The requested corrections, in order.
 
 use crate::analysis::{AnalysisError, AnalysisOptions, ClockSkew, Finding, clock_skew};
 use crate::contact::{Shape, Specimen, SpecimenError};
@@ -13,11 +13,11 @@ use crate::simulate::Separation;
 pub struct Corrected {
     /// The record; it knows what was done to it.
     pub record: Record,
-    /// Why there are none is for those to say who need them: a record of creep has none that come from its displacement.
+    /// An error here is reported by those who need phases: a record of creep has none from its displacement.
     pub segmentation: Result<Segmentation, SegmentError>,
-    /// What the clocks of the record as it came seem to differ by.
+    /// Estimated skew of the clocks of the uncorrected record.
     pub skew: Option<ClockSkew>,
-    /// Whether a skew was to be found and taken away.
+    /// Whether a correction of the skew was requested.
     pub skew_asked: bool,
 }
 
@@ -34,9 +34,9 @@ impl Corrected {
     /// [`Finding::ClocksSkewed`] if the clocks differ and no correction was requested, [`Finding::ClocksOpen`] if it was requested and is
     /// not determined.
     ///
-    /// They differ if it is by more than their error and a sample interval: one clock that stamps both columns at the same rows can seem to be
-    /// off by a part of an interval, since what was held between two samples is not known. It could not be told if its error is longer than
-    /// samples are apart, or too few edges show in both columns.
+    /// They differ if the skew exceeds its error and a sample interval: one clock that stamps both columns at the same rows can seem to be
+    /// off by a part of an interval, since the signal between two samples is unknown. The skew is not determined if its error exceeds
+    /// the sample interval, or too few edges appear in both columns.
     #[must_use]
     pub fn skew_finding(&self) -> Option<Finding> {
         let skew = self.skew.map(|skew| (skew, skew.interval.max(self.record.sample_interval())));

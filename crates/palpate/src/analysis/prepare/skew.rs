@@ -42,7 +42,7 @@ const FEWEST: usize = 3;
 /// Samples on each side of an edge: fewest and most.
 const SAMPLES: (usize, usize) = (5, 50);
 
-/// How much later the force is stamped than the displacement. `None` where fewer than three edges of ramps show in both, or
+/// Delay of the force stamps after those of the displacement. `None` where fewer than three edges of ramps appear in both, or
 /// where they disagree by more than the stretches around them are long.
 ///
 /// Where a ramp starts or ends the displacement bends, and the force of any body bends in the same moment, however it
