@@ -11,21 +11,18 @@
 //! | `filter.rs` | a calibrated body run beside the record | (10), (11) |
 //! | `normal.rs`, `kept.rs` | a value with its deviation; the state as bytes, to send an observer elsewhere | |
 //!
-//! In a position hold F(t) = F_e + A φ(t; λ, n), [`decay`](crate::latency::decay), equations (4) and (5). Its readings are averaged
-//! over lengths that grow with the time since the start of the hold, at most 64 means. Each time the hold is 4 % longer F_e, A and λ are
-//! fitted to the means, n being given; a profile of the likelihood over λ represents their uncertainty, for the ends of the interval of
-//! n too if n has a standard error. The interval of the force at a time is the widest that any of them allows; the interval of the time
-//! to slip is where that interval of the force meets the force of
-//! slip. Early in a hold it is wide, or open, as it should be.
+//! In a position hold F(t) = F_e + A φ(t; λ, n), [`decay`](crate::latency::decay), equations (4) and (5). Its readings are averaged over
+//! lengths that grow with the time since the start of the hold, at most 64 means. Each time the hold is 4 % longer F_e, A and λ are fitted
+//! to the means, n being given; a profile of the likelihood over λ represents their uncertainty, for the ends of the interval of n too if n
+//! has a standard error. The interval of the force at a time is the widest that any of them allows; the interval of the time to slip is
+//! where that interval of the force meets the force of slip. Early in a hold it is wide, or open, as it should be.
 //!
-//! The jaw is at rest once it has stayed within its noise (five standard deviations, estimated by the observer, or 0.1 % of its travel)
-//! for as long
-//! as it would have taken at its last speed to move four times as far: some five ticks at 1 kHz. If the force is constant and the jaw
-//! creeps, it
-//! is a force hold, and relaxation causes no slip.
+//! The jaw is at rest once it has stayed within its noise (five standard deviations, estimated by the observer, or 0.1 % of its travel) for
+//! as long as it would have taken at its last speed to move four times as far: some five ticks at 1 kHz. If the force is constant and the
+//! jaw creeps, it is a force hold, and relaxation causes no slip.
 //!
-//! With a calibrated [`Material`](crate::calibrate::Material) its model runs beside the record, so that the excess strain is known from first
-//! touch on; the measured forces correct the uncertain parameters, the stiffness of this body and first touch. If the forces are not
+//! With a calibrated [`Material`](crate::calibrate::Material) its model runs beside the record, so that the excess strain is known from
+//! first touch on; the measured forces correct the uncertain parameters, the stiffness of this body and first touch. If the forces are not
 //! those of that body, the hold is fitted without the material. Displacements are then measured from first touch.
 //!
 //! ```
