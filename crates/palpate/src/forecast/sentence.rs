@@ -93,7 +93,7 @@ impl Comparison {
             .into_iter()
             .map(|(law, cost)| match self.ranking {
                 Ranking::Forward => format!("{} is {} times", name_in_words(law), times(cost)),
-                Ranking::Information => format!("{} lies {} behind", name_in_words(law), rounded(cost)),
+                Ranking::Information => format!("the BIC of {} is higher by {}", name_in_words(law), rounded(cost)),
             })
             .collect();
         let unit = if self.ranking == Ranking::Forward { " as far off" } else { "" };

@@ -57,8 +57,8 @@ pub enum SimulateError {
     },
     /// A body whose contact grows, bonded to a jaw that goes back to first touch, under a law that remembers force.
     #[error(
-        "at t = {time} s the jaw is back at first touch, where the contact has no area for the force that a memory of force keeps: stay \
-         above 0 m, let the jaw leave the body, or let the law remember strain"
+        "at t = {time} s the jaw is back at first touch, where a law with memory of force has a force but no contact area: stay \
+         above 0 m, allow separation, or use a law with memory of strain"
     )]
     NoArea {
         /// When, s.
