@@ -12,7 +12,7 @@ pub struct Run<'a> {
     pub contact: ContactRef<'a>,
     /// Samples among which the largest force is.
     pub sampling: &'a Sampling,
-    /// Times (s) at which the force is wanted as well.
+    /// Further times (s) at which to compute the force.
     pub times: &'a [f64],
 }
 

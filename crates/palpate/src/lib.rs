@@ -1,29 +1,29 @@
-//! Soft contact that remembers: squeeze-and-hold tests turned into laws, and laws into forces.
+//! Viscoelastic contact: laws from squeeze-and-hold tests, and forces from laws.
 //!
-//! A soft body is pressed, held and released. In the hold its strain drifts to equilibrium at a rate set by how far it
-//! has to go: strain rate = −v (ε − ε_e)ⁿ, the *nonlinear latency law*. This crate estimates the law from a measured record,
-//! with confidence intervals, and simulates the contact. It computes only: no files, no terminal, no network.
+//! A soft body is pressed, held and released. In the hold its strain tends to equilibrium at a rate set by its distance
+//! from it: strain rate = −v (ε − ε_e)ⁿ, the *nonlinear latency law*. This crate identifies the law in a measured record
+//! with its uncertainty, and simulates the contact. It computes only: no files, no terminal, no network.
 //!
-//! The modules stand in the order of the data's way.
+//! The modules are in the order of the data flow.
 //!
 //! | module | what |
 //! |---|---|
 //! | [`prelude`] | the types and functions of the main jobs, with an example of each |
-//! | [`units`] | quantities as people write them, turned into SI |
+//! | [`units`] | quantities with units, converted to SI |
 //! | [`watch`] | progress of long work, and its cancellation |
 //! | [`record`] | a measured record, checked |
 //! | [`segment`] | its phases: loading, hold, unloading; first touch; Type I and II |
 //! | [`strain`] | strain and strain rate, equations (6) to (9) |
 //! | [`latency`] | the law and its closed form, equations (1) to (5) and (10) |
 //! | [`laws`] | every law of relaxation and creep |
-//! | [`special`] | Mittag-Leffler, exponential integral and their kin |
-//! | [`fit`] | laws fitted to holds, with standard errors and a reason to end |
-//! | [`forecast`] | which law to use, by what each predicts |
+//! | [`special`] | Mittag-Leffler function, exponential integral and related functions |
+//! | [`fit`] | laws fitted to holds, with standard errors and the reason of termination |
+//! | [`forecast`] | the law to use, by held-out errors |
 //! | [`contact`] | the body, its layers and its contact, equations (7) and (11) |
-//! | [`simulate`] | from a motion of the jaw to the force |
+//! | [`simulate`] | the force under a motion of the jaw |
 //! | [`batch`] | thousands of contacts at once |
-//! | [`analysis`] | all of it for one record, with findings in plain words |
-//! | [`observe`] | a contact watched tick by tick: holds, their equilibrium, time to slip |
+//! | [`analysis`] | the complete analysis of one record, with findings |
+//! | [`observe`] | a contact observed tick by tick: holds, their equilibrium, time to slip |
 //!
 //! | feature | what |
 //! |---|---|

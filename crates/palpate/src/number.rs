@@ -5,7 +5,7 @@ const MOST_DIGITS: usize = 17;
 
 /// `value` rounded to `digits` significant digits, for people.
 ///
-/// Trailing zeros are kept because they say how far the value is known. Very large and very
+/// Trailing zeros are written because they show the precision of the value. Very large and very
 /// small values read as `1.23×10⁻⁵`; the minus sign is U+2212.
 ///
 /// ```
@@ -48,7 +48,7 @@ pub fn counted(count: usize, what: &str) -> String {
 
 /// `value ± error`, both rounded to the digits the error warrants, for people.
 ///
-/// The error keeps one significant digit, or two when it starts with 1. Without a usable error
+/// The error has one significant digit, or two when it starts with 1. Without a usable error
 /// (not finite, or not positive) only the value is written, to four digits.
 ///
 /// ```

@@ -11,26 +11,26 @@ fn mixed(state: u64) -> u64 {
     z ^ (z >> 31)
 }
 
-/// A seed for the source with this number among several that shall know nothing of each other.
+/// A seed for one of several independent generators, by its number.
 #[must_use]
 pub fn seed_of(seed: u64, number: u64) -> u64 {
     mixed(seed ^ mixed(number.wrapping_add(GOLDEN)))
 }
 
-/// A reproducible source of normal numbers (SplitMix64 and Box–Muller), so that simulated records are the same everywhere.
+/// A reproducible generator of normal random numbers (SplitMix64 and Box–Muller); simulated records are the same everywhere.
 #[derive(Debug, Clone)]
 pub struct Rng {
     state: u64,
 }
 
 impl Rng {
-    /// A source that always gives the same numbers for the same seed.
+    /// A generator with this seed; the same seed gives the same sequence.
     #[must_use]
     pub fn new(seed: u64) -> Self {
         Self { state: seed }
     }
 
-    /// The source after `count` numbers, at no cost.
+    /// The generator after `count` numbers, in constant time.
     #[must_use]
     pub fn after(seed: u64, count: u64) -> Self {
         Self {
@@ -78,7 +78,7 @@ impl Shuffle {
         }
     }
 
-    /// The number at a place below `len`; places beyond count from the start again, and the order of nothing holds 0.
+    /// The number at an index below `len`; larger indices wrap around, and an empty order yields 0.
     #[must_use]
     pub fn at(&self, place: u64) -> u64 {
         if self.len == 0 {

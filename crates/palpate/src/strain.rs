@@ -8,7 +8,7 @@ use crate::contact::Specimen;
 ///
 /// `force` in N and `displacement` of the jaw in m, both positive in the direction of loading and counted from first touch.
 /// The area is taken at the contact's own share u₁ of the travel (half of it when squeezed from two sides), as in
-/// equation (11). A ball at or before first touch has no area, and no strain can be told from its force.
+/// equation (11). A ball at or before first touch has no area, and its strain is undefined.
 ///
 /// ```
 /// use palpate::contact::{Shape, Sides, Specimen};

@@ -12,7 +12,7 @@ use crate::simulate::{ContactModel, Motion, ProtocolStep, Separation, protocol};
 /// The rubber ball of the paper: radius 35 mm, modulus 28 kPa, n = 5, v = 2·10⁴ 1/s, 8 layers, both jaws.
 ///
 /// # Panics
-/// Never: the numbers are valid.
+/// Never: the parameters are valid.
 #[must_use]
 #[expect(clippy::unwrap_used, reason = "constants of the paper")]
 pub fn paper_ball(separation: Separation) -> ContactModel {
@@ -86,7 +86,7 @@ const fn golden(time: f64, excess_strain: f64, force: f64) -> Golden {
     }
 }
 
-/// A hold with the paper's numbers and noise: strain 0.2 + 0.13 φ(t; λ, n) over 10 s, λ = 2·10⁴ · 0.13⁴ 1/s.
+/// A hold with the paper's parameters and noise: strain 0.2 + 0.13 φ(t; λ, n) over 10 s, λ = 2·10⁴ · 0.13⁴ 1/s.
 ///
 /// `noise` is the standard deviation of the noise relative to the drop 0.13; the noise comes from a fixed sequence, so
 /// that the same arguments always give the same hold. Returns times (s) and strains.

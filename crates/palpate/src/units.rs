@@ -13,7 +13,7 @@
 
 use serde::{Deserialize, Serialize};
 
-/// What kind of quantity a number is; decides which units are accepted.
+/// Dimension of a quantity; it decides which units are accepted.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Dimension {
@@ -29,7 +29,7 @@ pub enum Dimension {
     Pressure,
     /// Speed in m/s.
     Speed,
-    /// Rate in 1/s (also the rate coefficient of the latency law, whose strain is a pure number).
+    /// Rate in 1/s (also the rate coefficient of the latency law, whose strain is dimensionless).
     Rate,
     /// Frequency in Hz.
     Frequency,

@@ -20,7 +20,7 @@
 //! assert_eq!(sum(&[1.0, 2.0], &mut patience), Err(Cancelled));
 //! ```
 
-/// Work that was ended before it was done, because its watch asked for it.
+/// Work that its watch cancelled.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
 #[error("cancelled")]
 pub struct Cancelled;
@@ -143,7 +143,7 @@ impl Watch for Stages<'_> {
     }
 }
 
-/// Nobody watches: the work goes on to its end.
+/// No watch: the work runs to its end.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Unwatched;
 

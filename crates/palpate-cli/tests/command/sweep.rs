@@ -275,7 +275,7 @@ fn two_sweeps_into_one_table_are_refused() {
     let lock = File::create(parts.join("lock")).unwrap();
     lock.lock().unwrap();
     let error = refused(folder.path(), &["sweep", &sweep, "--out", "t.parquet"]);
-    assert!(error.contains("no other sweep at work"), "{error}");
+    assert!(error.contains("no other running sweep"), "{error}");
     drop(lock);
     done(folder.path(), &["sweep", &sweep, "--out", "t.parquet"]);
 }

@@ -124,7 +124,7 @@ impl Member {
             })?;
             let start = member
                 .data_start()
-                .ok_or_else(|| io::Error::other("the archive does not say where its file begins"))?;
+                .ok_or_else(|| io::Error::other("the archive does not state where its file begins"))?;
             (start, member.compressed_size(), member.compression(), member.crc32())
         };
         let mut stored = archive.into_inner();

@@ -104,9 +104,7 @@ impl HoldAnswer {
             Some(error) => {
                 format!("Forecasts beyond the fitted parts miss by {} % of the change", significant(100.0 * error, 2))
             }
-            None => {
-                "The hold is too short, or changes too little, to test a forecast; the choice rests on BIC".to_owned()
-            }
+            None => "The hold is too short, or changes too little, for a held-out error; the BIC decides".to_owned(),
         };
         if !self.indistinguishable.is_empty() {
             text.push_str(&format!("; not distinguishable from the best: {}", self.indistinguishable.join(", ")));

@@ -128,7 +128,7 @@ fn remarks_of(made: &Calibration) -> Vec<String> {
         let name = &open.name;
         let how = match open.estimate.interval {
             Some(_) => "hardly determines {}: its interval spans more than two decades",
-            None => "leaves {} open",
+            None => "does not determine {}",
         };
         let how = how.replace("{}", name);
         remarks.push(format!("The record {how}. Holds of different excess strain would determine it."));

@@ -17,7 +17,7 @@ pub enum AnalysisError {
     /// A correction that cannot be made.
     #[error(transparent)]
     Correction(#[from] RecordError),
-    /// Numbers that make no specimen.
+    /// An invalid specimen.
     #[error(transparent)]
     Specimen(#[from] SpecimenError),
     /// The jaw goes further than the body is deep.
@@ -57,7 +57,7 @@ pub enum AnalysisError {
 }
 
 impl AnalysisError {
-    /// What would help; options stand between `⟨` and `⟩`, to be written as users of a program write them.
+    /// A remedy; options stand between `⟨` and `⟩`, for each interface to spell.
     #[must_use]
     pub fn hint(&self) -> String {
         match self {

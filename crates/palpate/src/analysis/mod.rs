@@ -1,13 +1,13 @@
-//! The whole study of one record: phases, strains, laws, tables' rows, overlay, findings.
+//! The complete analysis of one record: phases, strains, laws, rows of tables, overlay, findings.
 //!
 //! A `Record` comes in with `AnalysisOptions`; an `Analysis` goes out. The record goes through `prepare`, `holds` and `together`
 //! once, in this order.
 //!
 //! | file | what |
 //! |---|---|
-//! | `options.rs` | everything that may be asked, with defaults |
+//! | `options.rs` | all options, with defaults |
 //! | `error.rs` | why a record could not be analysed |
-//! | `finding.rs` | what the user should know, in plain words |
+//! | `finding.rs` | findings for the user |
 //! | `prepare/` | the record corrected, cut and zero at first touch, with findings on its columns |
 //! | `holds/` | one hold: signal, fits, findings |
 //! | `together/` | several holds: joint laws, trends, modulus, overlay |

@@ -1,4 +1,4 @@
-//! What may be asked of an analysis.
+//! Options of an analysis.
 
 use serde::{Deserialize, Serialize};
 
@@ -56,7 +56,7 @@ pub struct AnalysisOptions {
     pub corrections: CorrectionOptions,
     /// Holds with given limits; where there are any, no others are sought.
     pub given_holds: Vec<GivenHold>,
-    /// How first touch is found; as recorded unless asked otherwise, since a strip in grips has no first touch.
+    /// Method for first touch; as recorded by default, since a strip in grips has no first touch.
     pub touch: ContactChoice,
     /// Whether the jaw can pull (for the overlay).
     pub separation: Separation,
@@ -64,17 +64,17 @@ pub struct AnalysisOptions {
     pub layers: Option<LayersChoice>,
     /// Exponents that are tried as given.
     pub exponents: Vec<f64>,
-    /// Whether n is also left free.
+    /// Whether n is also estimated.
     pub free_exponent: bool,
     /// Options of every fit.
     pub fit: FitOptions,
     /// Fit only this long from the start of the fit, s, and predict the rest of the hold.
     pub fit_until: Option<f64>,
-    /// Which laws are compared on every hold; `None` to leave that out.
+    /// Laws to compare on every hold; `None` omits the comparison.
     pub compare: Option<CompareOptions>,
     /// Window of the strain rates.
     pub rate_window: RateWindow,
-    /// Samples of a hold that are fitted at most; more are thinned evenly, and that is said.
+    /// Largest number of fitted samples of a hold; more are thinned evenly, and a finding reports it.
     pub most_samples: usize,
 }
 

@@ -17,9 +17,9 @@ pub struct Analysis {
     pub record: Record,
     /// What its columns were like before.
     pub signals: SignalReport,
-    /// How much later its force was stamped than its displacement, where the ramps tell.
+    /// Delay of the force stamps after those of the displacement, where the ramps determine it.
     pub skew: Option<ClockSkew>,
-    /// What was asked.
+    /// The requested options.
     pub options: AnalysisOptions,
     /// Phases and the thresholds that found them.
     pub segmentation: Segmentation,
@@ -31,9 +31,9 @@ pub struct Analysis {
     pub modulus_source: Option<ModulusSource>,
     /// Every hold.
     pub holds: Vec<HoldAnalysis>,
-    /// What the holds say together.
+    /// Results over several holds.
     pub across: Across,
-    /// The record simulated with the fitted numbers.
+    /// The record simulated with the fitted parameters.
     pub overlay: Option<Overlay>,
     /// What to know about the record as a whole.
     pub findings: Vec<Finding>,
@@ -45,7 +45,8 @@ const POOR: f64 = 0.05;
 /// Analyses a record: phases, first touch, strains, laws per hold and over holds, overlay.
 ///
 /// # Errors
-/// [`AnalysisError`] when the record has no hold, a correction that was asked for cannot be made, the geometry makes no specimen or is smaller than the travel of the jaw,
+/// [`AnalysisError`] when the record has no hold, a requested correction cannot be made, the geometry is invalid or smaller than the
+/// travel of the jaw,
 /// or no hold has anything to fit.
 pub fn analyze(record: &Record, options: &AnalysisOptions) -> Result<Analysis, AnalysisError> {
     analyze_watched(record, options, &mut Unwatched)
@@ -65,7 +66,7 @@ pub fn analyze_watched(
     Ok(analysis)
 }
 
-/// As [`analyze_watched`], but a record none of whose holds can be fitted is no error: its holds say by their findings why.
+/// As [`analyze_watched`], but a record without a hold that can be fitted is no error: the findings of its holds give the reasons.
 ///
 /// # Errors
 /// Those of [`analyze_watched`] but [`AnalysisError::NothingToFit`].

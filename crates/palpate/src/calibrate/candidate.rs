@@ -15,17 +15,17 @@ pub enum EquilibriumLaw {
     UniformStrain,
     /// Hertz's: one modulus, for balls and pads.
     Hertz {
-        /// Poisson's ratio ν, from 0 to 0.5; it is not told apart from the modulus.
+        /// Poisson's ratio ν, from 0 to 0.5; the data do not separate it from the modulus.
         poisson_ratio: f64,
     },
-    /// A monotone table with a row where the jaw was held, and one at the deepest place.
+    /// A monotone table with one row per held displacement, and one at the largest displacement.
     Table,
 }
 
-/// Whether the rate coefficient of the latency law is one parameter, or depends on where the layer stands.
+/// Whether the rate coefficient of the latency law is one parameter, or depends on the state of the layer.
 ///
 /// Fitted hold by hold it has a trend with the equilibrium strain (the paper's Table I) and another level after unloading (Table II);
-/// whether that is the body's, or the fits', a calibration with one more parameter tells.
+/// a calibration with one more parameter determines whether the body or the fits cause that.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum RateLaw {

@@ -123,7 +123,7 @@ impl CalibrationData {
     /// The same, fitted up to a time (s) and predicted from there on.
     ///
     /// # Errors
-    /// [`CalibrateError::Split`] where either part is left with fewer than eight samples.
+    /// [`CalibrateError::Split`] where either part has fewer than eight samples.
     pub fn fitted_until(mut self, time: f64) -> Result<Self, CalibrateError> {
         const FEWEST: usize = 8;
         let fitted = self.times.partition_point(|at| *at <= time);
@@ -138,7 +138,7 @@ impl CalibrationData {
         Ok(self)
     }
 
-    /// At how many depths the jaw stands in the fitted part; first touch is one where the jaw can pull.
+    /// Number of held displacements in the fitted part; first touch is one where the jaw can pull.
     #[must_use]
     pub fn depths_held(&self) -> usize {
         /// Depths nearer to each other than this share of the deepest are one.

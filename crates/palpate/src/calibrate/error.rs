@@ -69,7 +69,7 @@ pub enum CalibrateError {
         /// What it lacks.
         missing: &'static str,
     },
-    /// An exponent that is no number above zero.
+    /// An exponent that is not above zero.
     #[error("exponent must be above 0, found {found}")]
     Exponent {
         /// What was given.
@@ -86,7 +86,7 @@ pub enum CalibrateError {
     /// A body that never pushes back.
     #[error("the force does not rise with the displacement: no positive stiffness fits the record")]
     NoStiffness,
-    /// A body that is none, or that the jaw goes through.
+    /// An invalid body, or one that is thinner than the travel of the jaw.
     #[error(transparent)]
     Specimen(#[from] SpecimenError),
     /// An equilibrium law that does not go with the body.
@@ -95,7 +95,7 @@ pub enum CalibrateError {
     /// A record that has no phases, or a correction that cannot be made.
     #[error(transparent)]
     Analysis(#[from] AnalysisError),
-    /// A motion that is none.
+    /// An invalid motion.
     #[error(transparent)]
     Motion(#[from] MotionError),
     /// A simulation that could not be run.

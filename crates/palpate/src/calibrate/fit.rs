@@ -30,7 +30,7 @@ pub struct Calibration {
     pub rmse: f64,
     /// The same as a share of the largest force of the record.
     pub relative: f64,
-    /// How residuals correlate; intervals and criteria rest on it.
+    /// Correlation of the residuals, which intervals and criteria take into account.
     pub noise: NoiseModel,
     /// Information criteria, every sample counted as one; only differences between candidates on the same data mean anything.
     pub criteria: Criteria,
@@ -50,7 +50,7 @@ pub struct Calibration {
 /// table): the holds carry n and v, the ramps ℓ, since the excess at their end is that of ẋ = u̇₁ (m − 1)/depth − v sgn(x)|x|ⁿ with
 /// m = depth/ℓ, and the relaxed levels the stiffness S(u) of F = S(u)(u/depth + x), equations (10) and (11). No starting values: a grid is
 /// searched first. Intervals are those of the logarithms of the parameters, for residuals that correlate as they do; `confidence` is their
-/// coverage. A parameter that the record leaves open over more than a factor of a million either way has none.
+/// coverage. A parameter that the record does not determine within a factor of a million either way has none.
 ///
 /// ```
 /// use palpate::analysis::Geometry;

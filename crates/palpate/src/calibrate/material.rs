@@ -52,7 +52,7 @@ pub struct MaterialParameter {
     pub estimate: Estimate,
 }
 
-/// How sure the parameters of a material are together.
+/// Joint uncertainty of the parameters of a material.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct MaterialUncertainty {
     /// Coverage of the intervals.
@@ -63,10 +63,10 @@ pub struct MaterialUncertainty {
     pub covariance: Vec<Vec<f64>>,
 }
 
-/// What the test has shown: questions beyond it are extrapolations.
+/// Range of the test; predictions beyond it are extrapolations.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct CalibrationRange {
-    /// The longest time at one place, s.
+    /// The longest hold, s.
     pub longest_hold: f64,
     /// The deepest squeeze (travel of the jaw since first touch), m.
     pub deepest: f64,
@@ -87,11 +87,11 @@ pub struct Material {
     pub candidate: Candidate,
     /// The parameters.
     pub parameters: Vec<MaterialParameter>,
-    /// How sure they are; `None` where the test leaves one of them open.
+    /// Their uncertainty; `None` where the test does not determine one of them.
     pub uncertainty: Option<MaterialUncertainty>,
-    /// Standard deviation of what the model left of the measured force, N: noise, and what no parameter could mend.
+    /// Standard deviation of the force residuals, N: noise and misfit of the law.
     pub noise: f64,
-    /// What the test has shown.
+    /// The calibration range.
     pub range: CalibrationRange,
 }
 
@@ -200,7 +200,7 @@ impl Material {
     /// The contact with the best parameters.
     ///
     /// # Panics
-    /// If the parameters make no contact, which [`is_valid`](Self::is_valid) would have said.
+    /// If the parameters make no contact, which [`is_valid`](Self::is_valid) checks.
     #[must_use]
     #[expect(clippy::expect_used, reason = "a material that exists is whole")]
     pub fn contact(&self) -> Contact {

@@ -89,11 +89,11 @@ impl std::fmt::Display for Extrapolation {
 pub struct Prediction {
     /// The course with the best parameters.
     pub trajectory: Trajectory,
-    /// Standard deviation of the force (N) by what the calibration leaves open; 0 everywhere where it says nothing of it.
+    /// Standard error of the force (N) from the uncertainty of the calibration; 0 everywhere if that is not determined.
     pub force_standard_error: Vec<f64>,
     /// The same of the displacement of the jaw (m); 0 where the displacement is requested for.
     pub displacement_standard_error: Vec<f64>,
-    /// Standard deviation of what the calibration left of the measured force, N: noise of one reading.
+    /// Standard deviation of the force residuals of the calibration, N: noise of one reading.
     pub noise: f64,
     /// Coverage of the intervals.
     pub confidence: f64,
@@ -111,7 +111,7 @@ impl Prediction {
         (force - half, force + half)
     }
 
-    /// Ends of the interval of the displacement of the jaw at sample `index`, m: one place where the displacement is requested for.
+    /// Ends of the interval of the displacement of the jaw at sample `index`, m; they coincide where the displacement is prescribed.
     #[must_use]
     pub fn displacement_interval(&self, index: usize) -> (f64, f64) {
         let (place, half) =

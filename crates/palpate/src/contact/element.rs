@@ -64,7 +64,7 @@ fn longest_step(z: f64, speed: f64, rest: f64, time: f64) -> f64 {
 /// Excess strain x(t) of the contact layer over one straight piece, from t = 0 at its start.
 #[derive(Debug)]
 pub(crate) enum Element {
-    /// The jaw stands still: closed form.
+    /// The jaw is at rest: closed form.
     Hold { law: LatencyLaw, initial: f64 },
     /// The jaw moves.
     Ramp(Ramp),

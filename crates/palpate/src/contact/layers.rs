@@ -11,7 +11,7 @@ use serde::{Deserialize, Serialize};
 #[serde(transparent)]
 pub struct Layers(f64);
 
-/// Numbers that make no layers.
+/// An invalid number or thickness of layers.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 pub enum LayersError {
     /// Fewer than one layer.
@@ -64,7 +64,7 @@ impl Layers {
         self.0
     }
 
-    /// m as a whole number, or `None`: only whole layers have an interior to show.
+    /// m as an integer, or `None`: only whole layers have strains of their own.
     #[must_use]
     pub fn whole(self) -> Option<usize> {
         let whole = self.0 as usize;

@@ -11,7 +11,7 @@ use crate::latency::LatencyLaw;
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum RateDependence {
-    /// Not at all: the law as it stands.
+    /// Constant v: the law as published.
     #[default]
     Constant,
     /// On the equilibrium strain: v(ε_e) = v f^(ε_e/0.1), with v that of a body at first touch.

@@ -17,7 +17,7 @@ pub struct Specimen {
     equilibrium: Equilibrium,
 }
 
-/// Numbers that make no specimen, or a displacement that it cannot take.
+/// An invalid specimen, or a displacement beyond its range.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 pub enum SpecimenError {
     /// A length, area or modulus that is not a finite number above zero.
@@ -104,7 +104,7 @@ impl Specimen {
     ///
     /// ```
     /// use palpate::contact::{Equilibrium, Shape, Sides, Specimen};
-    /// // A ball of 20 mm radius and 100 kPa that keeps its volume, pressed 1 mm deep by a rigid flat:
+    /// // An incompressible ball of 20 mm radius and 100 kPa, pressed 1 mm deep by a rigid flat:
     /// // 4/3 · 100 kPa/0.75 · √(20 mm) · (1 mm)^(3/2) = 0.795 N
     /// let ball = Specimen::new(Shape::Ball { radius: 0.02 }, 1e5, Sides::One)?;
     /// let ball = ball.with_equilibrium(Equilibrium::Hertz { poisson_ratio: 0.5 })?;

@@ -24,7 +24,7 @@ pub enum FitError {
         /// Samples found.
         found: usize,
     },
-    /// A standard deviation that is none.
+    /// An invalid standard deviation.
     #[error("the standard deviation of sample {index} must be above 0, found {found}")]
     Deviation {
         /// Which sample.
@@ -32,7 +32,7 @@ pub enum FitError {
         /// What was given.
         found: f64,
     },
-    /// A law that says nothing about what was measured.
+    /// A law that does not describe the measured quantity.
     #[error("the law {law} does not describe {}", match response { Response::Relaxation => "relaxation", Response::Creep => "creep" })]
     NoForm {
         /// The law.
@@ -107,7 +107,7 @@ pub enum FitError {
     /// Values or times that span more than double precision can hold.
     #[error("the samples exceed the range of double precision")]
     OutOfRange,
-    /// A range of exponents that is none.
+    /// An invalid range of exponents.
     #[error("the range of n must rise from a value above 0, found {low} to {high}")]
     ExponentRange {
         /// Lower end.
@@ -121,7 +121,7 @@ pub enum FitError {
         /// What was given.
         found: f64,
     },
-    /// A square root of a weight that is not a finite number of zero or more.
+    /// A weight that is not a finite number of zero or more.
     #[error("weight {index} must be a finite number of 0 or more")]
     Weight {
         /// Which sample.

@@ -29,7 +29,7 @@ pub struct Forecast {
 /// the error of a given curve by 10⁻⁴ of itself.
 ///
 /// # Errors
-/// [`FitError`] as for [`fit_law`](crate::fit::fit_law) on the first part; [`FitError::TooFewSamples`] if none are left to predict.
+/// [`FitError`] as for [`fit_law`](crate::fit::fit_law) on the first part; [`FitError::TooFewSamples`] if no sample is held out.
 pub fn forecast(samples: &Samples<'_>, law: Law, options: &LawOptions, cut: f64) -> Result<Forecast, FitError> {
     options.check()?;
     samples.check(1)?;

@@ -157,13 +157,13 @@ impl Deref for LatencyFit {
 pub struct Candidate {
     /// n.
     pub exponent: f64,
-    /// Whether n was found rather than given.
+    /// Whether n was estimated rather than given.
     pub free: bool,
     /// Root mean square residual, in the unit of the signal.
     pub rmse: f64,
     /// Bayesian information criterion less the lowest of all candidates, at the effective number of samples.
     pub delta_bic: f64,
-    /// Whether the residual is as small as the best one, as far as these data can tell.
+    /// Whether the fit is not distinguishable from the best one.
     pub as_good_as_best: bool,
 }
 
@@ -172,7 +172,7 @@ pub struct Candidate {
 pub struct OrderSelection {
     /// All candidates in the order given.
     pub candidates: Vec<Candidate>,
-    /// Index of the lowest listed exponent that is as good as the best one.
+    /// Index of the lowest listed exponent that is not distinguishable from the best one.
     pub lowest_order: Option<usize>,
     /// Index of the candidate with the lowest information criterion among those whose fit ended well.
     pub preferred: Option<usize>,
@@ -186,7 +186,7 @@ const EVIDENCE: f64 = 2.0;
 /// Compares fits of one hold with different exponents: the paper's "lowest order which fits the best", made precise.
 ///
 /// BIC = N_e ln(RSS/N) + p ln N_e, with N_e the number of independent samples that the best fit's residuals allow. A listed
-/// exponent is as good as the best listed one if its criterion is within 2 of it; the lowest such is `lowest_order`. The
+/// exponent is not distinguishable from the best if its criterion is within 2 of it; the lowest such is `lowest_order`. The
 /// preferred candidate has the lowest criterion of all, a free exponent included, which pays for its extra parameter.
 #[must_use]
 pub fn select_order(fits: &[LatencyFit]) -> OrderSelection {

@@ -1,16 +1,16 @@
-//! A hold and a law in, the parameters of the law out, with how sure they are and why the search ended.
+//! Fits of a law to a hold: its parameters, their uncertainty, and why the search ended.
 //!
 //! Every law of relaxation is "constant + amplitude × shape(t; few parameters)": linear in most of its parameters. For given
 //! shape parameters the best linear ones follow from two normal equations, so the search is left with ln λ alone, or
 //! with ln λ and n (variable projection). That search is small enough to be exhaustive on a coarse grid, hence no
-//! starting values are asked for, and none can be wrong.
+//! starting values are needed.
 //!
 //! Rooms and files use only those above them.
 //!
 //! | file | what | equations |
 //! |---|---|---|
-//! | `error.rs`, `options.rs`, `samples.rs` | what is fitted and asked, and why it may be refused | |
-//! | `noise/` | how residuals correlate, and the errors and intervals that follow | |
+//! | `error.rs`, `options.rs`, `samples.rs` | samples, options, and errors | |
+//! | `noise/` | correlation of residuals, and the resulting standard errors and intervals | |
 //! | `problem/` | law, samples and options made ready in the units of the fit | |
 //! | `global/` | from a problem to the global optimum | |
 //! | `parameter.rs`, `result.rs` | what a fit says: a law and its parameters, by name | |

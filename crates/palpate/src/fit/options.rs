@@ -1,4 +1,4 @@
-//! What may be asked of a fit.
+//! Options of a fit.
 
 use serde::{Deserialize, Serialize};
 
@@ -53,7 +53,7 @@ pub enum NoiseChoice {
     White,
 }
 
-/// What may be asked of intervals by resampling.
+/// Options of intervals by resampling.
 ///
 /// Draws are fitted from the best parameters downhill, on condensed samples: a thousand take some hundredths of a second.
 /// Intervals run between percentiles of the draws, so they follow the parameter through any change of scale; the standard error
@@ -99,7 +99,7 @@ impl Default for BootstrapOptions {
     }
 }
 
-/// What confidence intervals rest on.
+/// Method of the confidence intervals.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum IntervalMethod {
@@ -130,7 +130,7 @@ impl IntervalMethod {
     }
 }
 
-/// What may be asked of [`fit_law`](crate::fit::fit_law).
+/// Options of [`fit_law`](crate::fit::fit_law).
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct LawOptions {
@@ -149,15 +149,15 @@ pub struct LawOptions {
     pub loss: Loss,
     /// Which samples are fitted.
     pub samples: SampleChoice,
-    /// What was imposed until the first sample, if that is not to count as a step. The parameters found are then those of a true step.
-    /// Laws are taken as linear in it; the latency law, which is not, is fitted to the hold alone, whose start says all
-    /// that it needs to know.
+    /// Loading history until the first sample; a step if not given. The estimated parameters are then those of an ideal step.
+    /// Laws are taken as linear in it; the latency law, which is not, is fitted to the hold alone, whose initial state
+    /// is sufficient.
     pub loading: Option<Loading>,
     /// Coverage of confidence intervals, between 0 and 1.
     pub confidence: f64,
-    /// What intervals take the noise for.
+    /// Noise model of the intervals.
     pub noise: NoiseChoice,
-    /// What intervals rest on.
+    /// Method of the intervals.
     pub intervals: IntervalMethod,
     /// Steps of a refinement after which it ends short.
     pub most_iterations: usize,
@@ -183,8 +183,8 @@ impl Default for LawOptions {
 }
 
 impl LawOptions {
-    /// Whether these ask the same of a law as others: an exponent may be sought where it is sought anyway, and what the latency law
-    /// is told of a loading changes nothing.
+    /// Whether these options give the same fit of a law as others: options that do not apply to the law are ignored, and so is
+    /// the loading for the latency law.
     #[must_use]
     pub fn same_for(&self, law: Law, other: &Self) -> bool {
         let plain = |options: &Self| {
@@ -237,7 +237,7 @@ impl LawOptions {
     }
 }
 
-/// What may be asked of a fit.
+/// Options of a fit.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct FitOptions {
@@ -245,7 +245,7 @@ pub struct FitOptions {
     pub exponent_range: (f64, f64),
     /// Coverage of confidence intervals, between 0 and 1.
     pub confidence: f64,
-    /// What intervals rest on.
+    /// Method of the intervals.
     #[serde(skip_serializing_if = "IntervalMethod::is_curvature")]
     pub intervals: IntervalMethod,
     /// Steps of the refinement after which it ends short.

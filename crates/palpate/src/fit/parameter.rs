@@ -86,7 +86,7 @@ impl ParameterKind {
     }
 }
 
-/// Which parameter of a law: its kind, and the number of the term where there are several alike; `time_2` in writing.
+/// A parameter of a law: its kind, and the number of its term in a series; written `time_2`.
 ///
 /// ```
 /// use palpate::fit::{ParameterKind, ParameterName};
@@ -171,7 +171,7 @@ impl PartialEq<str> for ParameterName {
 pub struct Estimate {
     /// The best value.
     pub value: f64,
-    /// Standard error for residuals that correlate as they do ([`NoiseModel`](crate::fit::NoiseModel)). `None` for a parameter that
+    /// Standard error, including the correlation of the residuals ([`NoiseModel`](crate::fit::NoiseModel)). `None` for a parameter that
     /// was given, and where the data do not determine it.
     pub standard_error: Option<f64>,
     /// Standard error as if the residuals were white noise, s² (JᵀJ)⁻¹ with s² = RSS/(N − p): what most other software states.

@@ -68,7 +68,7 @@ pub struct Parameter {
     pub role: ParameterRole,
 }
 
-/// A law fitted: its parameters, how sure they are, and why the search ended.
+/// A fitted law: its parameters, their uncertainty, and why the search ended.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Fit {
     /// The law.
@@ -100,7 +100,7 @@ pub struct Fit {
     pub rmse: f64,
     /// Correlation of neighbouring residuals.
     pub residual_correlation: f64,
-    /// How residuals correlate; intervals rest on it.
+    /// Correlation of the residuals, which intervals take into account.
     pub noise: NoiseModel,
     /// What intervals are made of; `None` where the data leave a parameter open.
     pub uncertainty: Option<Uncertainty>,
@@ -113,7 +113,7 @@ pub struct Fit {
     pub duration: f64,
     /// Why it ended.
     pub termination: Termination,
-    /// Terms that are none: merged or vanishing ones.
+    /// Redundant terms: merged or vanishing ones.
     pub redundant_terms: Vec<RedundantTerm>,
     /// What it cost.
     pub work: Work,

@@ -10,7 +10,7 @@ use crate::watch::{Cancelled, Progress, Unwatched, Watch};
 /// Fits laws to a hold, lets each predict the last part from the first, and ranks them.
 ///
 /// Laws are ranked by their forward score: the error over the rest of the hold of a fit to its first quarter, third and half, as a share of
-/// the change of the signal. Where the signal changes too little after the first cut to be seen above its noise, or the
+/// the change of the signal. Where the change of the signal after the first cut does not exceed its noise, or the
 /// first part has too few samples, the rank is by BIC at the effective number of samples.
 ///
 /// ```
@@ -29,10 +29,10 @@ pub fn compare_laws(samples: &Samples<'_>, options: &CompareOptions) -> Result<C
     compare_laws_watched(samples, options, &[], &mut Unwatched)
 }
 
-/// A fit of the same samples that exists already, with what was asked of it.
+/// An existing fit of the same samples, with its options.
 #[derive(Debug, Clone)]
 pub struct KnownFit<'a> {
-    /// What was asked.
+    /// Its options.
     pub options: LawOptions,
     /// The fit.
     pub fit: &'a Fit,

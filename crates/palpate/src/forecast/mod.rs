@@ -1,11 +1,11 @@
-//! Which law to use: laws compared by what they predict, and by what they cost.
+//! The law to use: laws compared by their held-out errors and their parameters.
 //!
 //! | file | what |
 //! |---|---|
 //! | `criteria.rs` | AICc and BIC; forward score: fit the first part of the hold, predict the rest |
-//! | `options.rs`, `result.rs` | what is asked, and what is said |
+//! | `options.rs`, `result.rs` | options and results |
 //! | `compare.rs` | all laws on one hold, ranked |
-//! | `verdict.rs` | which law to use, how sure that is, what another would cost |
+//! | `verdict.rs` | the law to use, its certainty, the cost of others |
 //! | `sentence.rs` | that in one sentence |
 
 mod compare;

@@ -1,4 +1,4 @@
-//! What may be asked of a comparison.
+//! Options of a comparison.
 
 use serde::{Deserialize, Serialize};
 
@@ -17,7 +17,7 @@ pub enum RampChoice {
     Measured,
 }
 
-/// What may be asked of [`compare_laws`](crate::forecast::compare_laws).
+/// Options of [`compare_laws`](crate::forecast::compare_laws).
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct CompareOptions {

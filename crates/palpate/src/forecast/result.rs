@@ -29,7 +29,7 @@ pub struct Row {
     pub effective_parameters: f64,
     /// Root mean square residual, in the unit of the signal.
     pub rmse: f64,
-    /// Criteria as textbooks define them, at the number of samples.
+    /// Information criteria by their textbook definition, at the number of samples.
     pub criteria: Option<Criteria>,
     /// BIC at the effective number of samples, less the lowest.
     pub delta_bic: Option<f64>,
@@ -68,26 +68,26 @@ pub struct Comparison {
     pub verdict: Option<Verdict>,
 }
 
-/// How sure a verdict is.
+/// Certainty of a verdict.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Certainty {
-    /// Best, or as good as the best, at every cut point, and every law that is not alike is at least twice as far off.
+    /// Not distinguishable from the best at every cut point, and the error of every distinguishable law is at least twice as large.
     Clear,
     /// Best in the mean.
     Likely,
-    /// Most laws that are no generalisation of the chosen one do as well.
+    /// Most laws that are no generalisation of the chosen one are not distinguishable from it.
     Open,
 }
 
 /// Which law to use.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Verdict {
-    /// The law with the fewest parameters among those that do best; the spectrum only if nothing else does as well.
+    /// The law with the fewest parameters among those that are not distinguishable from the best; the spectrum only if it is the only one.
     pub law: Law,
-    /// All laws that do as well, this one included, best first.
+    /// All laws that are not distinguishable from the best, this one included, best first.
     pub alike: Vec<Law>,
-    /// How sure that is.
+    /// Certainty of the verdict.
     pub certainty: Certainty,
     /// Cut points at which it was best or alike.
     pub cuts_won: usize,

@@ -7,7 +7,7 @@ use crate::laws::{ExponentChoice, Law};
 const MOST_TIMES: f64 = 1000.0;
 
 impl Comparison {
-    /// Which law to use, how sure that is, and what another would cost, in one sentence; `None` without a verdict.
+    /// The law to use, its certainty, and the cost of others, in one sentence; `None` without a verdict.
     ///
     /// ```
     /// use palpate::forecast::{CompareOptions, compare_laws};
@@ -93,7 +93,7 @@ impl Comparison {
             .into_iter()
             .map(|(law, cost)| match self.ranking {
                 Ranking::Forward => format!("{} is {} times", name_in_words(law), times(cost)),
-                Ranking::Information => format!("{} lies {} behind", name_in_words(law), rounded(cost)),
+                Ranking::Information => format!("the BIC of {} is higher by {}", name_in_words(law), rounded(cost)),
             })
             .collect();
         let unit = if self.ranking == Ranking::Forward { " as far off" } else { "" };

@@ -1,4 +1,4 @@
-//! Which law to use, how sure that is, and what another would cost.
+//! The law to use, its certainty, and the cost of others.
 
 use super::result::{Certainty, Comparison, Ranking, Row, Verdict};
 use crate::laws::Law;

@@ -47,7 +47,7 @@ impl LatencyLaw {
 
 /// The first `N` of φ, ∂φ/∂ln λ and ∂φ/∂n for every time; arguments as for [`decay_many`].
 ///
-/// What is not asked for is not computed.
+/// Only requested outputs are computed.
 ///
 /// # Panics
 /// If the slices differ in length, or more than three are given.

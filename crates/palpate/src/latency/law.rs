@@ -1,4 +1,4 @@
-//! The normalised closed form, and the law with its numbers put in.
+//! The normalised closed form, and the law with its parameters.
 
 #[cfg(not(feature = "std"))]
 use num_traits::Float as _;
@@ -10,7 +10,7 @@ use serde::{Deserialize, Serialize};
 /// φ = 0 from t = 1/((1 − n) λ) on. Equations (4) and (5) of the paper are x₀ φ with
 /// λ = v |x₀|ⁿ⁻¹ and x₀ of either sign. It is the q-exponential e_q(−λ t) with q = n.
 ///
-/// `scaled_time` is λ t ≥ 0 (a pure number), `exponent` is n > 0. Returns a number from 0 to 1.
+/// `scaled_time` is λ t ≥ 0 (dimensionless), `exponent` is n > 0. Returns a value from 0 to 1.
 ///
 /// Evaluated as exp(−ln(1 + p s)/p) with p = n − 1 and `ln_1p`, so that the limit n → 1 is reached
 /// smoothly: the relative error stays near |ln φ| × 1e-16 for every n.
@@ -37,7 +37,7 @@ pub fn decay(scaled_time: f64, exponent: f64) -> f64 {
     (-z.ln_1p() / p).exp()
 }
 
-/// Numbers that make no law.
+/// Invalid parameters of a law.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 pub enum LawError {
     /// The exponent must be a finite number above zero.
@@ -91,7 +91,7 @@ impl LatencyLaw {
         })
     }
 
-    /// n, a pure number.
+    /// n, dimensionless.
     #[must_use]
     pub fn exponent(&self) -> f64 {
         self.exponent
@@ -158,7 +158,7 @@ impl LatencyLaw {
         initial * decay(s, self.exponent)
     }
 
-    /// The excess strain that a steady drive `drive` = g (1/s) keeps up: sgn(g) (|g|/v)^(1/n).
+    /// The steady excess strain under a constant drive `drive` = g (1/s): sgn(g) (|g|/v)^(1/n).
     #[must_use]
     pub fn steady_excess(&self, drive: f64) -> f64 {
         drive.signum() * (drive.abs() / self.rate_coefficient).powf(1.0 / self.exponent)

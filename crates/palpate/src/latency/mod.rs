@@ -10,7 +10,7 @@
 //!
 //! | file | what | equations |
 //! |---|---|---|
-//! | `law.rs` | the closed form φ, the law with its numbers put in, and the linear law | (1)–(5), (10) |
+//! | `law.rs` | the closed form φ, the law with its parameters, and the linear law | (1)–(5), (10) |
 //! | `batch.rs` | φ and its derivatives for many times at once, at the speed of vector units | (4), (5) |
 //! | `lanes.rs` | the law for kernels over many contacts or layers | (2)–(5) |
 

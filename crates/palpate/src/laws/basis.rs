@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-/// A function of time with one or two numbers, of which laws are made; its file says which.
+/// A function of time with one or two parameters, of which laws are composed.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum BasisFunction {

@@ -77,7 +77,7 @@ impl LawCurve {
     ///
     /// ```
     /// use palpate::laws::{LawCurve, Loading, Response, BasisFunction, Term};
-    /// // After a ramp of one relaxation time 1 − 1/e of the amplitude is left.
+    /// // After a ramp of one relaxation time 1 − 1/e of the amplitude remains.
     /// let term = Term { amplitude: 3.0, shape: BasisFunction::Exponential, parameters: vec![0.25f64.ln()] };
     /// let curve = LawCurve { response: Response::Relaxation, constant: 2.0, terms: vec![term] };
     /// let start = curve.after(&Loading::ramp(4.0)?, &[0.0])[0];

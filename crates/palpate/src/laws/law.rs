@@ -62,7 +62,7 @@ pub enum Law {
     Diffusion,
 }
 
-/// Most terms of a series with free times; more are never told apart by a hold.
+/// Largest number of terms of a series with free times; a hold does not distinguish more.
 pub const MOST_TERMS: usize = 5;
 
 /// A text that names no law.

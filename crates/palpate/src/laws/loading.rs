@@ -70,7 +70,7 @@ pub enum LoadingError {
         /// First and last value.
         value: f64,
     },
-    /// A time to load in that is none.
+    /// An invalid duration of loading.
     #[error("the duration of a ramp must be above 0 s, found {found} s")]
     Duration {
         /// What was given.

@@ -48,7 +48,7 @@ pub enum ObserveError {
 }
 
 impl ObserveError {
-    /// What would help; empty where the message says it all.
+    /// A remedy; empty where the message suffices.
     #[must_use]
     pub fn hint(&self) -> &'static str {
         match self {

@@ -1,29 +1,29 @@
-//! A contact watched tick by tick, for controllers: when a hold begins, where it tends, when it slips.
+//! A contact observed tick by tick, for controllers: start of a hold, equilibrium force, time to slip.
 //!
 //! Readings of force and displacement come in one tick after the other, an [`Observation`] goes out after each.
 //!
 //! | file | what | equations |
 //! |---|---|---|
-//! | `options.rs`, `observation.rs`, `error.rs` | what goes in, what comes out, what is refused | |
-//! | `observer.rs`, `saying.rs` | from tick to tick: phase, hold, fit; and what is said of it, warnings too | |
+//! | `options.rs`, `observation.rs`, `error.rs` | options, results, errors | |
+//! | `observer.rs`, `saying.rs` | from tick to tick: phase, hold, fit; the resulting observation and warnings | |
 //! | `signal/` | noise of a signal, the signal without most of it; that a jaw, or a force, stands still | |
 //! | `hold/` | a hold of any length in 64 means, fitted, and the time when its force has fallen to that of slip | (4), (5) |
 //! | `filter.rs` | a calibrated body run beside the record | (10), (11) |
 //! | `normal.rs`, `kept.rs` | a value with its deviation; the state as bytes, to send an observer elsewhere | |
 //!
-//! In a hold of the displacement F(t) = F_e + A φ(t; λ, n), [`decay`](crate::latency::decay), equations (4) and (5). Its readings become
-//! means over lengths that grow with the time since the hold began, at most 64 of them. Each time the hold is 4 % longer F_e, A and λ are
-//! fitted to the means, n being given, and what they leave open is kept as a profile of the likelihood over λ, for the ends of the interval of
-//! n too where n is known to a deviation only. The interval of the force at a time is the widest that any of them allows; the interval of the time to slip is where that interval of the force meets the force of
-//! slip. Early in a hold it is wide, or open, as it should be.
+//! In a position hold F(t) = F_e + A φ(t; λ, n), [`decay`](crate::latency::decay), equations (4) and (5). Its readings are averaged over
+//! lengths that grow with the time since the start of the hold, at most 64 means. Each time the hold is 4 % longer F_e, A and λ are fitted
+//! to the means, n being given; a profile of the likelihood over λ represents their uncertainty, for the ends of the interval of n too if n
+//! has a standard error. The interval of the force at a time is the widest that any of them allows; the interval of the time to slip is
+//! where that interval of the force meets the force of slip. Early in a hold it is wide, or open, as it should be.
 //!
-//! A jaw stands once it has stayed within its noise (five standard deviations, found out by the observer, or 0.1 % of its travel) for as long
-//! as it would have taken at its last speed to go four times as far: some five ticks at 1 kHz. Where the force stands and the jaw creeps it
-//! is the force that is held, and nothing slips by relaxation.
+//! The jaw is at rest once it has stayed within its noise (five standard deviations, estimated by the observer, or 0.1 % of its travel) for
+//! as long as it would have taken at its last speed to move four times as far: some five ticks at 1 kHz. If the force is constant and the
+//! jaw creeps, it is a force hold, and relaxation causes no slip.
 //!
-//! With a calibrated [`Material`](crate::calibrate::Material) its model runs beside the record, so that the excess strain is known from first
-//! touch on; what the calibration leaves open, the stiffness of this body and first touch are corrected by the forces. Where these are not
-//! those of that body, the hold is fitted as it is. Displacements then count from first touch.
+//! With a calibrated [`Material`](crate::calibrate::Material) its model runs beside the record, so that the excess strain is known from
+//! first touch on; the measured forces correct the uncertain parameters, the stiffness of this body and first touch. If the forces are not
+//! those of that body, the hold is fitted without the material. Displacements are then measured from first touch.
 //!
 //! ```
 //! use palpate::latency::decay;

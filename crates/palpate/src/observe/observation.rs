@@ -45,7 +45,7 @@ impl Kept for Held {
 pub enum SlipForecast {
     /// Not known yet: no hold, or too little of it.
     Unknown,
-    /// With the confidence that was asked for. It never does where the equilibrium force is above, or the force is held.
+    /// At the requested confidence. The force never reaches it in a force hold, or if the equilibrium force is above it.
     Known {
         /// Best value, from now on.
         best: TimeToSlip,
@@ -88,7 +88,7 @@ impl Kept for Slip {
     }
 }
 
-/// What an observer says after a tick; SI units.
+/// Report of an observer after a tick, in SI units.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub struct Observation {
     /// When, s.
@@ -99,21 +99,21 @@ pub struct Observation {
     pub held: Option<Held>,
     /// When the hold began, s.
     pub held_since: Option<f64>,
-    /// True on the one tick that says that a hold began.
+    /// True on the one tick at which a hold is detected.
     pub began: bool,
-    /// The force without its noise, N: the fitted curve inside a hold, a filter's elsewhere.
+    /// Filtered force, N: the fitted curve within a hold, the output of a filter elsewhere.
     pub force: f64,
-    /// The force that a displacement hold tends to, N; `None` until its interval is narrower than the force itself.
+    /// Equilibrium force of a position hold, N; `None` until its interval is narrower than the force itself.
     pub equilibrium_force: Option<Estimate>,
     /// Force in excess of equilibrium, N.
     pub excess_force: Option<Estimate>,
-    /// Strain in excess of equilibrium; only a material tells it.
+    /// Strain in excess of equilibrium; only with a material.
     pub excess_strain: Option<Estimate>,
-    /// Rate at which the excess falls now, in shares of itself: v|x|ⁿ⁻¹ in 1/s.
+    /// Current relative rate at which the excess falls: v|x|ⁿ⁻¹ in 1/s.
     pub relative_rate: Option<f64>,
-    /// Speed of the creep (m/s) while the force is held.
+    /// Creep speed (m/s) in a force hold.
     pub creep_rate: Option<Estimate>,
-    /// How long until slip; `None` where no force of slip was given.
+    /// Time to slip; `None` without a slip force.
     pub time_to_slip: Option<SlipForecast>,
     /// Warning.
     pub slip: Slip,

@@ -89,7 +89,7 @@ kept!(
 );
 
 impl Observer {
-    /// An observer that has seen nothing.
+    /// An observer without readings.
     ///
     /// # Errors
     /// [`ObserveError::Option`] for an option out of its range, [`ObserveError::LinearMaterial`] for a material that obeys a linear law.
@@ -107,10 +107,10 @@ impl Observer {
     }
 
     /// Takes the readings at `time` (s): the displacement of the jaw (m, growing as it closes; `None` where there is no reading) and the
-    /// force (N, above 0 as the jaw presses), and says what they mean.
+    /// force (N, above 0 as the jaw presses), and returns the observation.
     ///
     /// Most ticks cost well under a microsecond; those on which a hold is fitted anew, each time it has become 4 % longer, some hundred, and
-    /// three times that where the exponent has a deviation. Nothing allocates, and the observer stays as large as it is.
+    /// three times that where the exponent has a standard error. The step does not allocate, and the observer has a constant size.
     ///
     /// # Errors
     /// [`ObserveError::NotFinite`], [`ObserveError::TimeNotRising`] and, with a material, [`ObserveError::Displacement`]; the observer is then
@@ -162,7 +162,7 @@ impl Observer {
         self.filter.as_ref().filter(|filter| self.seen.displacement_seen && filter.is_met())
     }
 
-    /// What it was told before the first tick.
+    /// Its options.
     #[must_use]
     pub fn options(&self) -> &ObserverOptions {
         &self.options

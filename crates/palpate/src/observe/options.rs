@@ -1,21 +1,21 @@
-//! What an observer is told before the first tick.
+//! Options of an observer.
 
 use serde::{Deserialize, Serialize};
 
 use super::ObserveError;
 use crate::calibrate::Material;
 
-/// What an observer is told before the first tick.
+/// Options of an observer.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct ObserverOptions {
     /// The calibrated body, if there is one: its excess strain is then known from the first tick. It has a file of its own.
     #[serde(skip)]
     pub material: Option<Material>,
-    /// Exponent n of the law where no material says it: a pure number from 1 to 30.
+    /// Exponent n of the law if no material is given, from 1 to 30.
     pub exponent: f64,
     /// Standard deviation to which that exponent is known, from 0 to 10; intervals are as much wider. 0 takes it for given.
     pub exponent_standard_error: f64,
-    /// Normal force (N) at and below which what is held slips; `None` asks for no time to slip.
+    /// Slip force (N): normal force at and below which the held object slips; `None`: no time to slip is computed.
     pub slip_force: Option<f64>,
     /// How long before slip to warn, s.
     pub warn_before: f64,

@@ -6,19 +6,19 @@ use serde::{Deserialize, Serialize};
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Termination {
-    /// No step makes the residual smaller: the optimum was found.
+    /// No step reduces the residual: the optimum is reached.
     Converged,
-    /// The optimum lies at the edge of the range of the relative rate: the data do not say how fast, or from where, it relaxes.
+    /// The relative rate is at its bound: the data determine neither the rate nor the amplitude of the relaxation.
     RateAtBound,
     /// The optimum lies at the edge of the range of the exponent.
     ExponentAtBound,
     /// The optimum lies at the edge of the range of the equilibrium strain (rate domain).
     EquilibriumAtBound,
-    /// An amplitude or the constant lies at a bound that was asked for; the others are the best beside it.
+    /// An amplitude or the constant is at a requested bound; the others are optimal given that bound.
     AmplitudeAtBound,
-    /// Two terms of a series came together: their times cannot be told apart, so fewer terms say as much.
+    /// Two terms of a series merged: their times are not distinguishable, and fewer terms suffice.
     TermsMerged,
-    /// Two numbers cannot be told apart by these data.
+    /// The data do not determine two parameters separately.
     Singular,
     /// The allowed number of steps was used up.
     IterationLimit,

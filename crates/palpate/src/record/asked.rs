@@ -8,10 +8,10 @@ use super::{Baseline, Compliance};
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum SkewChoice {
-    /// Say how much it seems to be.
+    /// Report the estimate.
     #[default]
     Report,
-    /// Take away what it seems to be, if that stands out from its error.
+    /// Correct the estimate, if it differs significantly from zero.
     Auto,
     /// The force is stamped this much too late, s.
     Given(f64),
@@ -29,6 +29,6 @@ pub struct CorrectionOptions {
     pub baseline: Option<Baseline>,
     /// From when to when there is no contact, s as in the record; found where it is not given.
     pub baseline_window: Option<(f64, f64)>,
-    /// What the machine gives way.
+    /// Compliance of the machine.
     pub compliance: Option<Compliance>,
 }

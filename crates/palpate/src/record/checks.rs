@@ -53,7 +53,7 @@ pub enum RecordError {
         /// Number of rows.
         rows: usize,
     },
-    /// Time stands still or runs backwards.
+    /// Time does not rise.
     #[error("time must rise from row to row, found {found} s after {before} s in row {row}")]
     TimeNotRising {
         /// Which row.
@@ -132,7 +132,7 @@ pub enum RecordError {
         /// Samples found.
         found: usize,
     },
-    /// A force that never changes says nothing about relaxation.
+    /// A constant force, which contains no relaxation.
     #[error("the force is {found} N in all {rows} rows: there is no relaxation")]
     ConstantForce {
         /// The one value, N.

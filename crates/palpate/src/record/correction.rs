@@ -43,7 +43,7 @@ impl Column {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Baseline {
-    /// One number.
+    /// A constant compliance.
     Constant,
     /// A straight line in time: the load cell drifts. It is drawn on through the whole record, so that a line from a short
     /// stretch before a long test means little; samples after the jaw has left hold it at the other end.
@@ -63,7 +63,7 @@ pub struct Tare {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(tag = "correction", rename_all = "snake_case")]
 pub enum Correction {
-    /// Rows that were stamped earlier than a row before them were put where their stamps say.
+    /// Rows with earlier stamps than a preceding row were sorted by time.
     StampsSorted {
         /// Whose stamps.
         clock: Clock,
@@ -83,7 +83,7 @@ pub enum Correction {
         /// Those among them that repeated a row in all their values.
         identical: usize,
     },
-    /// The file has more rows than are kept: successive ones became their mean as they were read.
+    /// The file exceeds the row limit: successive rows were averaged while reading.
     RowsAveraged {
         /// Rows of the file.
         rows: usize,

@@ -53,7 +53,7 @@ impl Record {
         &self.corrections
     }
 
-    /// What the columns are like now; [`RawColumns::report`](crate::record::RawColumns::report) says what they were like before.
+    /// Properties of the columns now; [`RawColumns::report`](crate::record::RawColumns::report) gives those before any correction.
     #[must_use]
     pub fn signals(&self) -> SignalReport {
         SignalReport::of(&self.time, self.displacement(), &self.force, None)

@@ -10,7 +10,7 @@
 //! | `checks.rs` | what every record must be: finite, of equal lengths, time rising |
 //! | `measured.rs` | the record itself |
 //! | `correct/` | corrections that make a new record |
-//! | `asked.rs` | corrections that somebody may ask for |
+//! | `asked.rs` | options of the corrections |
 //! | `correction.rs` | what was done, as a list that goes with the record |
 
 mod asked;

@@ -4,7 +4,7 @@ use super::checks::{self, RecordError};
 use super::mend::{Mended, mended};
 use super::{Clock, Record, SignalReport};
 
-/// Columns in SI as they were read: nothing is checked, nothing is mended.
+/// Columns in SI as read, without checks or repairs.
 ///
 /// ```
 /// use palpate::record::{Correction, RawColumns};
@@ -40,7 +40,7 @@ impl RawColumns {
         SignalReport::of(&self.time, self.displacement.as_deref(), &self.force, force_time)
     }
 
-    /// The record they make, with time stamps mended where that is safe.
+    /// The record of these columns, with time stamps repaired where that is safe.
     ///
     /// Rows of equal stamps become one with their mean; where at most one row in fifty is stamped earlier than a row
     /// before it, by less than a twentieth of the whole time, rows are put into order. The record says which of it was
@@ -147,7 +147,7 @@ mod tests {
         let error = raw(&time, &force).into_record().unwrap_err();
         assert_eq!(error.row(), Some(200));
         assert!(error.to_string().contains("100 of 300 rows"), "{error}");
-        assert!(error.hint().contains("starts again"), "{}", error.hint());
+        assert!(error.hint().contains("clock restarts"), "{}", error.hint());
         // One stamp that was lost in the middle: nobody knows where the row belongs.
         let mut time: Vec<f64> = (0..300).map(|i| 5.0 + 0.1 * f64::from(i)).collect();
         time[150] = 0.0;

@@ -93,7 +93,7 @@ pub enum SegmentError {
 }
 
 impl SegmentError {
-    /// What would help; options stand between `⟨` and `⟩`, to be written as users of a program write them.
+    /// A remedy; options stand between `⟨` and `⟩`, for each interface to spell.
     #[must_use]
     pub fn hint(&self) -> &'static str {
         match self {

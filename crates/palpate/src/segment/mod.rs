@@ -9,7 +9,7 @@
 //! | `standstill/` | where a column stands still |
 //! | `mode.rs` | what is held: the displacement, the force, or neither |
 //! | `phases/` | the record cut into loading, hold and unloading |
-//! | `relaxation.rs` | Type I or Type II, and how sure |
+//! | `relaxation.rs` | Type I or Type II, with its probability |
 //! | `touch/` | first touch and the zero of the force |
 
 mod error;

@@ -139,7 +139,7 @@ pub struct Rupture {
     pub time: f64,
     /// The largest force before, N.
     pub before: f64,
-    /// The force where the jaw came to stand, N.
+    /// The force where the jaw stops, N.
     pub after: f64,
 }
 
@@ -159,7 +159,7 @@ pub struct Segmentation {
     pub segments: Vec<Segment>,
     /// Where the body broke.
     pub ruptures: Vec<Rupture>,
-    /// The ripple of a jaw that hunts about the places it holds, if it does.
+    /// Ripple of a jaw that oscillates about the positions it holds, if any.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub ripple: Option<Ripple>,
     /// The thresholds used.

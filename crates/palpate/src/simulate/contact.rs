@@ -3,14 +3,14 @@
 use super::{ContactModel, LinearContact, Separation};
 use crate::contact::{RateDependence, Specimen};
 
-/// A soft body between jaws with all its numbers, whichever law it obeys.
+/// A soft body between jaws with all its parameters, under any law.
 ///
 /// ```
 /// use palpate::contact::RateDependence;
 /// use palpate::simulate::{Contact, Motion, Separation, simulate_force};
 /// use palpate::test_problems::paper_ball;
 /// let plain = Contact::from(paper_ball(Separation::Unilateral));
-/// // Ten times slower at every 0.1 of strain: after the same squeeze more force is left.
+/// // Ten times slower per 0.1 of strain: more force remains after the same squeeze.
 /// let rate = RateDependence::Strain { factor: 0.1 };
 /// let slower = Contact::Latency { model: paper_ball(Separation::Unilateral), rate };
 /// let squeeze = Motion::new(vec![0.0, 0.6, 10.6], vec![0.0, 0.005, 0.005])?;

@@ -6,7 +6,7 @@ use crate::watch::Cancelled;
 /// Why a simulation could not run.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum SimulateError {
-    /// The motion asks for a displacement that the specimen cannot take.
+    /// The motion exceeds the displacement range of the specimen.
     #[error("at t = {time} s the jaw is at {displacement} m: {source}")]
     Displacement {
         /// Time of the knot, s.
@@ -57,8 +57,8 @@ pub enum SimulateError {
     },
     /// A body whose contact grows, bonded to a jaw that goes back to first touch, under a law that remembers force.
     #[error(
-        "at t = {time} s the jaw is back at first touch, where the contact has no area for the force that a memory of force keeps: stay \
-         above 0 m, let the jaw leave the body, or let the law remember strain"
+        "at t = {time} s the jaw is back at first touch, where a law with memory of force has a force but no contact area: stay \
+         above 0 m, allow separation, or use a law with memory of strain"
     )]
     NoArea {
         /// When, s.
@@ -67,7 +67,7 @@ pub enum SimulateError {
     /// A program without a step that takes time.
     #[error("a program needs a step of positive duration, found none")]
     EmptyProgram,
-    /// A number that makes no step.
+    /// An invalid step.
     #[error("step {step}: {name} must be finite and, but for a target, above 0 {unit}, found {found} {unit}")]
     StepNumber {
         /// Number of the step, from 1.
@@ -89,7 +89,7 @@ pub enum SimulateError {
         /// The force where the body ends, N.
         most: f64,
     },
-    /// A force asked for while the jaw is off the body.
+    /// A prescribed force while the jaw is off the body.
     #[error("step {step}: at t = {time} s the jaw is off the body and cannot hold a force: move it to a force first")]
     NoContact {
         /// Number of the step, from 1.
@@ -131,7 +131,7 @@ pub enum SimulateError {
         /// m.
         found: f64,
     },
-    /// The numbers ran out of the range of doubles.
+    /// The values exceed the range of double precision.
     #[error("the simulation exceeds the range of double precision at t = {time} s")]
     OutOfRange {
         /// Time, s.

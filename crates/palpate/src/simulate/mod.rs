@@ -11,7 +11,7 @@
 //! | `layer.rs` | what the walk asks of the contact layer, whichever law it obeys |
 //! | `latency.rs`, `linear/` | the contact layer by the latency law, and by linear laws |
 //! | `walk/` | goes through a drive piece by piece: in contact, jaw off, in contact again |
-//! | `trajectory.rs` | the series at the asked times |
+//! | `trajectory.rs` | the series at the requested times |
 //! | `energy.rs`, `cycles.rs` | work of the jaw, what is stored and what is lost; the same step by step and cycle by cycle |
 //! | `summary.rs` | what a whole simulation comes to, for sweeps |
 //! | `wave/` | all layers over time (the strain wave) |

@@ -137,7 +137,7 @@ impl ContactState {
         Ok(jaw / specimen.contact_displacement(1.0))
     }
 
-    /// Contact force as it stands, N; zero while the jaw is off.
+    /// Current contact force, N; zero while the jaw is off.
     #[must_use]
     pub fn force(&self, model: &ContactModel) -> f64 {
         let strain = (self.jaw - self.behind) / model.layers.thickness(model.specimen.depth());

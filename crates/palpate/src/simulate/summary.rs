@@ -8,7 +8,7 @@ use super::{ContactEvent, ContactRef, Course, Drive, Layer, Sampling, SimulateEr
 use crate::vector::all_finite;
 use crate::watch::{Stages, Unwatched};
 
-/// A simulation in a few numbers, SI units, compression positive.
+/// Summary of a simulation, in SI units, compression positive.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Summary {
     /// When it ended, s.
@@ -37,14 +37,14 @@ pub struct Summary {
     pub events: Vec<ContactEvent>,
 }
 
-/// A simulation in a few numbers, with where its steps end.
+/// Summary of a simulation, with the ends of its steps.
 #[derive(Debug, Clone, PartialEq)]
 pub struct RunSummary {
     /// What the whole comes to.
     pub summary: Summary,
     /// The ends of the steps of a program, or of the straight pieces of a motion; nothing of a force history.
     pub ends: Vec<StepEnd>,
-    /// Forces (N) at the times that were asked for; `None` if these do not rise or lie outside the drive.
+    /// Forces (N) at the requested times; `None` if these do not rise or lie outside the drive.
     pub forces: Option<Vec<f64>>,
 }
 

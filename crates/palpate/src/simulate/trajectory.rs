@@ -1,4 +1,4 @@
-//! The series of a simulation at the asked times.
+//! The series of a simulation at the requested times.
 
 use serde::{Deserialize, Serialize};
 
@@ -174,7 +174,7 @@ impl Trajectory {
 /// assert!((result.contact_displacement[0] - 5.882_987_117_3e-3).abs() < 1e-12); // m, when 10 N are reached
 /// assert!((result.contact_displacement[1] - 7.453_005_345_3e-3).abs() < 1e-12); // m, after a minute of creep
 ///
-/// // Squeeze to 10 N at 50 mm/min, keep the place for 30 s, keep the force for 30 s, let go.
+/// // Squeeze to 10 N at 50 mm/min, hold the position for 30 s, hold the force for 30 s, release.
 /// let program = [
 ///     ProgramStep::MoveToForce { force: 10.0, rate: 0.05 / 60.0 },
 ///     ProgramStep::HoldPosition { duration: 30.0 },

@@ -29,7 +29,7 @@ pub(super) const RULE: [(f64, f64); 16] = [
     (18.444_801_663_581_753, 6.026_759_638_322_465e-08),
 ];
 
-/// E1(x) = ∫ₓ^∞ e^(−u)/u du for x > 0 (a pure number), with e^(−x), which comes for free.
+/// E1(x) = ∫ₓ^∞ e^(−u)/u du for x > 0 (dimensionless), with e^(−x), at no cost.
 ///
 /// Relative error below 1e-14; 0 from x = 700 on. E1(1) = 0.219 383 934 395 520 27. Abramowitz and Stegun 5.1.1.
 ///

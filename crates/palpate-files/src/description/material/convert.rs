@@ -250,7 +250,7 @@ fn agrees_with(
         && confidence >= 0.5
         && (high / low).ln() < ROOM * deviation
     {
-        let expected = format!("an interval as wide as the covariance says, {HAND}");
+        let expected = format!("an interval as wide as the covariance implies, {HAND}");
         return Err(source.value(key("interval"), expected, &format!("{low} to {high}")));
     }
     Ok(())

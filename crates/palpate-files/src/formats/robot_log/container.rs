@@ -147,7 +147,7 @@ impl Log<'_> {
 
     fn damaged(&self, expected: String, found: String) -> FileError {
         let place =
-            format!("record at byte {}, behind {} messages", mcap::MAGIC.len() as u64 + self.offset, self.messages);
+            format!("record at byte {}, after {} messages", mcap::MAGIC.len() as u64 + self.offset, self.messages);
         self.input.damaged(place, expected, found)
     }
 

@@ -91,7 +91,7 @@ pub(super) fn chunk(content: &[u8]) -> Result<Chunk<'_>, Fault> {
         packed: {
             let length = bytes.u64("a chunk with the length of its records")?;
             let length = usize::try_from(length).unwrap_or(usize::MAX);
-            bytes.take(length, "a chunk with as many bytes of records as it says")?
+            bytes.take(length, "a chunk with as many bytes of records as it states")?
         },
     })
 }

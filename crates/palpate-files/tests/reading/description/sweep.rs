@@ -108,7 +108,7 @@ fn sweeps_over_what_is_no_number() {
     );
     refuses("step.2.hold = \"1, 2 s\"", "sweep.step.2.hold", "unknown parameter", "step[1].hold?");
     refuses("specimen.shape = \"1, 2\"", "sweep.specimen.shape", "specimen.shape, which is none", "");
-    refuses("law.name = \"1, 2\"", "sweep.law.name", "expected a number of the protocol", "");
+    refuses("law.name = \"1, 2\"", "sweep.law.name", "expected a parameter of the protocol", "");
     refuses("law.exponent = 5", "sweep.law.exponent", "values in quotes", "");
     refuses("law.exponent = true", "sweep.law.exponent", "found true", "");
     refuses("law.exponent = [true]", "sweep.law.exponent", "a list of numbers", "");
@@ -127,7 +127,7 @@ fn values_that_make_no_sweep() {
     for (values, words) in [
         ("", "values such as"),
         ("linear 1..5", "the number of values after a comma"),
-        ("linear 5..1, 3", "rises"),
+        ("linear 5..1, 3", "a rising range"),
         ("log 0..1, 3", "above 0"),
         ("log 1..5, 1", "2 or more"),
         ("nan, 1", "values such as"),

@@ -15,7 +15,7 @@ const NO_FORECAST: &str = "its first part could not be fitted, or no samples fol
 /// What the columns mean; told once below all tables.
 pub(super) const NOTES: [&str; 3] = [
     "p: parameters of the law (of the spectrum those that the data determine). RMSE: root mean square residual of the fit to the whole hold, in % of the change.",
-    "Held-out errors after fits to the first part of the hold (its share stands above), over all that follows, in % of the change; score: their root mean square.",
+    "Held-out errors of fits to the first part of the hold (its share heads the column), over all later samples, in % of the change; score: their root mean square.",
     "ΔBIC at the effective number of samples, ΔAICc at all samples, each less the lowest. Merged: terms that are not distinguishable.",
 ];
 

@@ -66,7 +66,7 @@ pub struct HoldAnalysis {
     pub fits: Vec<LatencyFit>,
     /// How well each predicts the rest of the hold, where the fit ended early on request.
     pub predictions: Vec<Option<HoldoutError>>,
-    /// Which exponent the data ask for.
+    /// Choice of the exponent by the data.
     pub order: Option<OrderSelection>,
     /// Laws compared on the hold.
     pub comparison: Option<Comparison>,

@@ -1,4 +1,4 @@
-//! The corrections that were asked for, in order.
+//! The requested corrections, in order.
 
 use crate::analysis::{AnalysisError, AnalysisOptions, ClockSkew, Finding, clock_skew};
 use crate::contact::{Shape, Specimen, SpecimenError};
@@ -13,16 +13,16 @@ use crate::simulate::Separation;
 pub struct Corrected {
     /// The record; it knows what was done to it.
     pub record: Record,
-    /// Why there are none is for those to say who need them: a record of creep has none that come from its displacement.
+    /// An error here is reported by those who need phases: a record of creep has none from its displacement.
     pub segmentation: Result<Segmentation, SegmentError>,
-    /// What the clocks of the record as it came seem to differ by.
+    /// Estimated skew of the clocks of the uncorrected record.
     pub skew: Option<ClockSkew>,
-    /// Whether a skew was to be found and taken away.
+    /// Whether a correction of the skew was requested.
     pub skew_asked: bool,
 }
 
 impl Corrected {
-    /// The record as it came with its clocks put right, and what its columns are like then, if they are seen to differ.
+    /// The record with corrected clocks and the properties of its columns, if the clocks differ.
     #[must_use]
     pub fn aligned(&self, record: &Record) -> Option<(Record, SignalReport)> {
         let skew = self.skew.filter(ClockSkew::is_seen)?;
@@ -31,12 +31,12 @@ impl Corrected {
         Some((aligned, signals))
     }
 
-    /// [`Finding::ClocksSkewed`] if the clocks differ and nothing was done about it, [`Finding::ClocksOpen`] if that was asked for and could
-    /// not be told.
+    /// [`Finding::ClocksSkewed`] if the clocks differ and no correction was requested, [`Finding::ClocksOpen`] if it was requested and is
+    /// not determined.
     ///
-    /// They differ if it is by more than their error and a sample interval: one clock that stamps both columns at the same rows can seem to be
-    /// off by a part of an interval, since what was held between two samples is not known. It could not be told if its error is longer than
-    /// samples are apart, or too few edges show in both columns.
+    /// They differ if the skew exceeds its error and a sample interval: one clock that stamps both columns at the same rows can seem to be
+    /// off by a part of an interval, since the signal between two samples is unknown. The skew is not determined if its error exceeds
+    /// the sample interval, or too few edges appear in both columns.
     #[must_use]
     pub fn skew_finding(&self) -> Option<Finding> {
         let skew = self.skew.map(|skew| (skew, skew.interval.max(self.record.sample_interval())));
@@ -56,7 +56,7 @@ impl Corrected {
     }
 }
 
-/// Repairs single-row dropouts and makes the corrections that are asked for, as [`analyze`](crate::analysis::analyze) does: skew, sample
+/// Repairs single-row dropouts and makes the requested corrections, as [`analyze`](crate::analysis::analyze) does: skew, sample
 /// times, baseline, compliance, in this order, since each needs those before it.
 ///
 /// Edges are sought where they were measured; a baseline is the force where nothing touches; and a table of compliance
@@ -123,7 +123,8 @@ pub struct Prepared {
     pub contact: ContactPoint,
 }
 
-/// Makes the corrections that are asked for, cuts the record and sets it to zero at first touch, as [`analyze`](crate::analysis::analyze) does.
+/// Makes the requested corrections, detects the phases and sets the record to zero at first touch, as
+/// [`analyze`](crate::analysis::analyze) does.
 ///
 /// # Errors
 /// [`AnalysisError`] for a correction that cannot be made, a record without holds, and a body that the jaw would go through.

@@ -1,10 +1,10 @@
-//! A record made ready for fits: corrected as asked, cut into phases, zero at first touch.
+//! Preparation of a record for fits: requested corrections, phases, zero at first touch.
 //!
 //! A `Record` comes in, goes out as `Prepared`; what its columns give cause to say is found in one go.
 //!
 //! | file | what |
 //! |---|---|
-//! | `corrected.rs` | the corrections that were asked for, in order, then zero at first touch |
+//! | `corrected.rs` | the requested corrections, in order, then zero at first touch |
 //! | `skew.rs`, `kink.rs` | how much later the force is stamped than the displacement |
 //! | `signals.rs` | what the columns, and what was done to them, give cause to say |
 

@@ -12,16 +12,16 @@ use crate::statistics::median;
 pub struct ClockSkew {
     /// Time that the force is stamped too late, s; negative where it is too early.
     pub skew: f64,
-    /// Its standard error, s: scatter between the edges, and what half the stretch around each edge would say instead.
+    /// Its standard error, s: scatter between the edges, and the difference from estimates over half the stretch around each edge.
     pub standard_error: f64,
-    /// Starts and ends of ramps that it rests on.
+    /// Number of starts and ends of ramps used.
     pub edges: usize,
     /// Time between samples around them, s.
     pub interval: f64,
 }
 
 impl ClockSkew {
-    /// Whether it stands out from its error.
+    /// Whether it differs significantly from zero.
     #[must_use]
     pub fn is_seen(&self) -> bool {
         self.skew.abs() > SEEN * self.standard_error
@@ -42,7 +42,7 @@ const FEWEST: usize = 3;
 /// Samples on each side of an edge: fewest and most.
 const SAMPLES: (usize, usize) = (5, 50);
 
-/// How much later the force is stamped than the displacement. `None` where fewer than three edges of ramps show in both, or
+/// Delay of the force stamps after those of the displacement. `None` where fewer than three edges of ramps appear in both, or
 /// where they disagree by more than the stretches around them are long.
 ///
 /// Where a ramp starts or ends the displacement bends, and the force of any body bends in the same moment, however it

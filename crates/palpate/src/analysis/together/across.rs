@@ -9,7 +9,7 @@ use crate::segment::After;
 use crate::statistics::coverage_factor;
 use crate::watch::{Cancelled, Watch};
 
-/// How ln v goes with the equilibrium strain over the holds after loading (the trend of Table I).
+/// Trend of ln v with the equilibrium strain over the holds after loading (Table I).
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Trend {
     /// d ln v/dε_e.

@@ -27,7 +27,7 @@ pub enum JointHolds {
 pub struct JointAnalysis {
     /// Which holds.
     pub which: JointHolds,
-    /// Whether n is the common exponent or was found.
+    /// Whether n is the common exponent or was estimated.
     pub choice: ExponentChoice,
     /// Numbers of the holds in the record.
     pub holds: Vec<usize>,

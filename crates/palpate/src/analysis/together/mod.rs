@@ -5,7 +5,7 @@
 //! | `across.rs` | common exponent, trend of v, agreement of equilibrium strains |
 //! | `joint.rs` | one law for several holds against one for each |
 //! | `modulus.rs` | the modulus that the equilibrium forces imply |
-//! | `overlay.rs` | the same displacement simulated with the fitted numbers |
+//! | `overlay.rs` | the same displacement simulated with the fitted parameters |
 
 mod across;
 mod joint;

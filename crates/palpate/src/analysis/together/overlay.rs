@@ -1,4 +1,4 @@
-//! The same displacement simulated with the fitted numbers.
+//! The same displacement simulated with the fitted parameters.
 
 use crate::analysis::{AnalysisOptions, HoldAnalysis};
 use crate::contact::{Layers, Specimen};

@@ -8,19 +8,19 @@
 pub enum Curve {}
 
 impl Curve {
-    /// The last place.
+    /// The largest abscissa.
     #[must_use]
     pub fn end(&self) -> f64 {
         match *self {}
     }
 
-    /// The value at a place.
+    /// The value at an abscissa.
     #[must_use]
     pub fn value(&self, _place: f64) -> f64 {
         match *self {}
     }
 
-    /// Value and slope at a place.
+    /// Value and slope at an abscissa.
     #[must_use]
     pub fn value_and_slope(&self, _place: f64) -> (f64, f64) {
         match *self {}

@@ -33,10 +33,10 @@ struct Knot {
 }
 
 impl Curve {
-    /// The curve through `points`, each a place and a value.
+    /// The curve through `points`, each an abscissa and a value.
     ///
     /// # Errors
-    /// [`CurveError`] for fewer than two points, numbers that are not finite, places that do not rise from 0, and values that fall.
+    /// [`CurveError`] for fewer than two points, numbers that are not finite, abscissas that do not rise from 0, and values that fall.
     pub fn new(points: &[(f64, f64)]) -> Result<Self, CurveError> {
         Self::named(points, "values")
     }
@@ -80,19 +80,19 @@ impl Curve {
         })
     }
 
-    /// The last place.
+    /// The largest abscissa.
     #[must_use]
     pub fn end(&self) -> f64 {
         self.knots[self.knots.len() - 1].place
     }
 
-    /// The value at a place; that of the nearest end outside.
+    /// The value at an abscissa; outside, that of the nearest end.
     #[must_use]
     pub fn value(&self, place: f64) -> f64 {
         self.value_and_slope(place).0
     }
 
-    /// Value and slope at a place; outside, the value of the nearest end and no slope.
+    /// Value and slope at an abscissa; outside, the value of the nearest end and slope 0.
     #[must_use]
     pub fn value_and_slope(&self, place: f64) -> (f64, f64) {
         let after = self.knots.partition_point(|knot| knot.place <= place);

@@ -24,7 +24,7 @@ pub enum CurveError {
         /// How many there are.
         found: usize,
     },
-    /// A number that is not finite.
+    /// A value that is not finite.
     #[error("row {row}: expected two finite numbers, found {place} and {value}")]
     NotFinite {
         /// Which row.
@@ -34,13 +34,13 @@ pub enum CurveError {
         /// Its value.
         value: f64,
     },
-    /// Places that do not begin at first touch.
+    /// Abscissas that do not begin at first touch.
     #[error("row 1: a table must begin at a contact displacement of 0, found {found}")]
     Start {
         /// The first place.
         found: f64,
     },
-    /// Places that do not rise.
+    /// Abscissas that do not rise.
     #[error("row {row}: contact displacements must rise, found {found} after {before}")]
     NotRising {
         /// Which row.

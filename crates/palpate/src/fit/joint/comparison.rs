@@ -47,7 +47,7 @@ const NEGLIGIBLE: f64 = 0.02;
 /// Change over the range of strains, in ln, that a constant parameter must not be compatible with.
 const NOTABLE: f64 = std::f64::consts::LN_2;
 
-/// Compares a joint fit with the holds fitted alone, and asks whether the first shared parameter goes with the strain.
+/// Compares a joint fit with separate fits of the holds, and tests the first shared parameter for a trend with strain.
 ///
 /// `holds` are those of the joint fit. `strains` gives the abscissa of each; without it, it is the constant that each hold
 /// tends to. For the trend a dimensionless parameter beside (n of the latency law) is held alike in all holds, at the mean of the separate

@@ -5,7 +5,7 @@
 //!
 //! | file | what |
 //! |---|---|
-//! | `result.rs` | what is asked and returned |
+//! | `result.rs` | options and results |
 //! | `hold.rs` | how the shared parameters come to a hold, and its normal equations |
 //! | `arrow.rs` | the search: a block-arrow system, the holds eliminated |
 //! | `starts.rs` | where it starts |

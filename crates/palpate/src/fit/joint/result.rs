@@ -1,4 +1,4 @@
-//! What a joint fit is asked and what it returns.
+//! Options and results of a joint fit.
 
 use serde::{Deserialize, Serialize};
 
@@ -13,11 +13,11 @@ pub enum HoldWeights {
     /// All samples alike: the noise is the same in all holds.
     #[default]
     Equal,
-    /// By the inverse of the residual variance that each hold's own fit leaves.
+    /// By the inverse of the residual variance of the separate fit of each hold.
     SeparateVariance,
 }
 
-/// What may be asked of [`fit_joint`](crate::fit::fit_joint).
+/// Options of [`fit_joint`](crate::fit::fit_joint).
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 #[serde(default)]
 pub struct JointOptions {

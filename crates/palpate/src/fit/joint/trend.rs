@@ -17,7 +17,7 @@ pub struct SharedTrend {
     pub slope: f64,
     /// Its standard error.
     pub standard_error: f64,
-    /// Its confidence interval. Two holds lie on a line: their interval rests on the errors of their fits alone.
+    /// Its confidence interval. Two holds lie on a line: their interval follows from the errors of their fits alone.
     pub interval: (f64, f64),
     /// τ, standard deviation between holds beyond their errors, in ln.
     pub between_holds: f64,

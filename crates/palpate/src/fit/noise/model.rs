@@ -35,7 +35,7 @@ impl NoiseModel {
         }
     }
 
-    /// Samples that say as much about a mean as `samples` of this noise: N / (1 + 2 s ρ/(1 − ρ)), two at least.
+    /// Equivalent number of independent samples among `samples` of this noise: N / (1 + 2 s ρ/(1 − ρ)), at least two.
     ///
     /// ```
     /// use palpate::fit::NoiseModel;

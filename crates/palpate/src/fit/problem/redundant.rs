@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 use super::model::Model;
 use crate::optimise::Solution;
 
-/// A term of a series of exponentials that adds nothing to the others.
+/// A redundant term of a series of exponentials.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum RedundantTerm {

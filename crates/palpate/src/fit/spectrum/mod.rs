@@ -37,7 +37,7 @@ pub enum Smoothing {
     Given(f64),
 }
 
-/// What may be asked of a spectrum.
+/// Options of a spectrum.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct SpectrumOptions {

@@ -1,4 +1,4 @@
-//! The model at one place: columns, the best linear numbers and what they leave over.
+//! The model at one point: columns, the best linear parameters and the residuals.
 
 use std::cell::RefCell;
 

@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::record::{Correction, Record, RecordError};
 
-/// How far the machine (frame, load cell, grips, cantilever) gives way under a force.
+/// Compliance of the machine (frame, load cell, grips, cantilever).
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Compliance {
@@ -23,10 +23,10 @@ pub struct ComplianceTable(Vec<(f64, f64)>);
 /// How far the outer lines of a table go on, as a share of its span.
 const BEYOND: f64 = 0.01;
 
-/// Numbers that are no compliance of a machine. Rows count from 1.
+/// An invalid compliance of a machine. Rows count from 1.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 pub enum ComplianceError {
-    /// A machine gives way in the direction of the force.
+    /// The compliance must not be negative.
     #[error("expected a compliance of 0 m/N or more, found {0} m/N")]
     Negative(f64),
     /// One row is no table.
@@ -142,7 +142,7 @@ impl TryFrom<Vec<(f64, f64)>> for ComplianceTable {
 }
 
 impl Record {
-    /// The record with what the machine gave way taken off the displacement: what is left is the body's.
+    /// The record with the deflection of the machine subtracted from the displacement, which is then that of the body.
     ///
     /// d − C F, or d − δ(F) by a table. The force must count from zero, which matters for a table only: a constant shift
     /// of the force shifts the displacement by a constant. A record without displacement stays as it is.

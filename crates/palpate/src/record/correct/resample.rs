@@ -1,4 +1,4 @@
-//! Other sample times, where they are asked for.
+//! Resampling.
 
 use std::ops::Range;
 

@@ -9,7 +9,7 @@ use crate::statistics::quantile;
 pub struct Stamps {
     /// Number of stamps.
     pub rows: usize,
-    /// Stamps that are no finite number; they are passed over.
+    /// Stamps that are not finite; they are skipped.
     pub not_finite: usize,
     /// Time between stamps that rise; `None` where none does.
     pub interval: Option<SampleInterval>,
@@ -21,7 +21,7 @@ pub struct Stamps {
     pub reversals: Reversals,
 }
 
-/// Time between neighbouring stamps, s; those that repeat or step back left out.
+/// Time between neighbouring stamps, s, without those that repeat or step back.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct SampleInterval {
     /// Median, s.

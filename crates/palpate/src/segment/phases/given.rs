@@ -43,7 +43,7 @@ pub struct GivenHold {
     pub from: f64,
     /// Its last moment, s.
     pub to: f64,
-    /// What is held; `None`: seen from the record.
+    /// The held quantity; `None`: derived from the record.
     pub mode: Option<HoldMode>,
 }
 

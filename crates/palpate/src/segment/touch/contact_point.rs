@@ -40,9 +40,9 @@ pub struct ContactPoint {
     pub air_travel: f64,
     /// The rule that found it; `None` where it was given, or is the foot of the ramp.
     pub method: Option<TouchMethod>,
-    /// What every rule says that finds something; empty where first touch was given.
+    /// Estimates of all rules that find first touch; empty where first touch was given.
     pub estimates: Vec<TouchEstimate>,
-    /// Robust standard deviation of the estimates, m, if there are three or more: how much first touch hangs on the rule.
+    /// Robust standard deviation of the estimates, m, if there are three or more: the sensitivity of first touch to the rule.
     pub spread: Option<f64>,
 }
 
@@ -59,7 +59,7 @@ impl ContactPoint {
         }
     }
 
-    /// By how much first touch lies before (below 0) or behind the middle of what the other rules say, m; `None` for fewer than three.
+    /// Distance of first touch before (negative) or behind the median of the other rules, m; `None` for fewer than three.
     #[must_use]
     pub fn apart(&self) -> Option<f64> {
         let method = self.method?;

@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 use super::loading_curve::solved;
 use crate::statistics::{median, noise};
 
-/// How first touch is told from the force over the travel of the first ramp.
+/// Rule for first touch from the force over the travel of the first ramp.
 ///
 /// None is best for every record: a threshold is late by the noise, a line is late on a force that grows like a power, and a
 /// power misses a body that relaxes. Their spread says how much first touch hangs on the rule (compared for atomic force
@@ -42,7 +42,7 @@ impl TouchMethod {
     }
 }
 
-/// What one rule says.
+/// Estimate of one rule.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct TouchEstimate {
     /// The rule.

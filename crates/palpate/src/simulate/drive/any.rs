@@ -66,7 +66,7 @@ pub enum ProgramStep {
         /// Speed of the jaw, m/s.
         rate: f64,
     },
-    /// Let the jaw stand where it is for `duration` (s): the force relaxes.
+    /// Position hold for `duration` (s): the force relaxes.
     HoldPosition {
         /// How long, s.
         duration: f64,
@@ -78,7 +78,7 @@ pub enum ProgramStep {
         /// Rate of the force, N/s.
         rate: f64,
     },
-    /// Keep the force as it is for `duration` (s): the body creeps, or recovers if the force is zero.
+    /// Force hold for `duration` (s): the body creeps, or recovers if the force is zero.
     HoldForce {
         /// How long, s.
         duration: f64,

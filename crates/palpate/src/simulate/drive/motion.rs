@@ -11,7 +11,7 @@ pub struct Motion {
     displacements: Vec<f64>,
 }
 
-/// Numbers that make no motion.
+/// An invalid motion.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum MotionError {
     /// Fewer than two knots.
@@ -28,7 +28,7 @@ pub enum MotionError {
         /// Number of displacements.
         displacements: usize,
     },
-    /// A number that is NaN or infinite.
+    /// A value that is NaN or infinite.
     #[error("{what} must be finite, found {found} at point {index}")]
     NotFinite {
         /// `time` or `displacement`.
@@ -38,7 +38,7 @@ pub enum MotionError {
         /// Its index.
         index: usize,
     },
-    /// Time stands still or runs backwards.
+    /// Time does not rise.
     #[error("time must rise, found {found} s after {before} s at point {index}")]
     TimeNotRising {
         /// Time before, s.

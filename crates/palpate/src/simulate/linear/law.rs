@@ -21,13 +21,13 @@ pub struct LinearLaw {
     error: f64,
 }
 
-/// Numbers that make no linear law.
+/// Invalid parameters of a linear law.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum LinearLawError {
     /// No term at all.
     #[error("a linear law needs a term that relaxes, found none")]
     Empty,
-    /// A number that is not finite and above zero.
+    /// A parameter that is not finite and above zero.
     #[error("term {term}: {name} must be above 0 {unit}, found {found} {unit}")]
     NotPositive {
         /// Number of the term, from 1.
