@@ -361,7 +361,7 @@ fn a_channel_that_unpacks_to_too_much_is_cut_short() {
     let (_, bytes) = members.iter_mut().find(|(name, _)| name == PAUSE).unwrap();
     *bytes = vec![b'a'; 5 << 20];
     let text = refusal(&packed(&members));
-    assert!(text.contains("a list of properties has more than 4 MiB"), "{text}");
+    assert!(text.contains("a list of properties exceeds the limit of 4 MiB"), "{text}");
 }
 
 #[test]

@@ -108,7 +108,7 @@ fn sweeps_over_what_is_no_number() {
     );
     refuses("step.2.hold = \"1, 2 s\"", "sweep.step.2.hold", "unknown parameter", "step[1].hold?");
     refuses("specimen.shape = \"1, 2\"", "sweep.specimen.shape", "specimen.shape, which is none", "");
-    refuses("law.name = \"1, 2\"", "sweep.law.name", "expected a number of the protocol", "");
+    refuses("law.name = \"1, 2\"", "sweep.law.name", "expected a parameter of the protocol", "");
     refuses("law.exponent = 5", "sweep.law.exponent", "values in quotes", "");
     refuses("law.exponent = true", "sweep.law.exponent", "found true", "");
     refuses("law.exponent = [true]", "sweep.law.exponent", "a list of numbers", "");

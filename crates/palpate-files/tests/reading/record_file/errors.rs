@@ -157,7 +157,7 @@ fn numbers_that_make_no_record_name_their_line() {
     says(
         "0,1,10,1\n1,2,11,2\n2,3,12,3\n",
         clocks,
-        &["share no time"],
+        &["do not overlap in time"],
         &["units and columns of the two clocks"],
     );
 }
