@@ -279,7 +279,8 @@ fn a_unit_that_is_none_of_force_is_told_with_what_was_meant() {
         assert!(error.contains(&format!("unit = \"{meant}\"")), "{error}");
         let written = fs::read_to_string(folder.join(format!("{unit}.toml"))).unwrap();
         assert!(
-            written.contains(&format!("the file gives \"{unit}\", which is no unit of force; \"{meant}\", or one of N")),
+            written
+                .contains(&format!("the file gives \"{unit}\", which is no unit of force; \"{meant}\", or one of N")),
             "{written}"
         );
     }
