@@ -16,7 +16,7 @@ use crate::input::{OpenedFile, averaged};
 use crate::output::{check_ending, folder_of, place_file, unwritten_table};
 use crate::{JobError, Outcome};
 
-/// Under which the file says where its numbers come from.
+/// Key of the provenance in the file.
 const MARK: &str = "palpate_record";
 
 /// Convert a record of any format to a plain table in SI units, with its provenance.

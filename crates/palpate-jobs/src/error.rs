@@ -1,4 +1,4 @@
-//! Why a job gave no outcome, in words that every front end can use.
+//! Errors of jobs, with messages for every front end.
 
 use std::fmt;
 use std::io;
@@ -12,16 +12,16 @@ use palpate_files::record::ReadError;
 use palpate_report::spelling::spelled;
 use palpate_report::study::StudyError;
 
-/// What a job failed for.
+/// Kind of the failure of a job.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum ErrorKind {
-    /// An option that no computation can follow, or a description that cannot be used.
+    /// An invalid option or description.
     Option,
-    /// The operating system does not hand a file out, or takes none.
+    /// The operating system refuses to read or write a file.
     File(io::ErrorKind),
-    /// A record that cannot be read, or has nothing to analyse.
+    /// A record that cannot be read or analysed.
     Record,
-    /// Parameters that make no body, no law or no motion.
+    /// Invalid parameters of a body, a law or a motion.
     Model,
     /// Samples that no law can be fitted to.
     Fit,
@@ -31,19 +31,19 @@ pub enum ErrorKind {
     Cancelled,
 }
 
-/// Why a job gave no outcome.
+/// Error of a job.
 ///
 /// Message and hint name options between `⟨` and `⟩`, such as `⟨poisson_ratio⟩` or `⟨equilibrium=hertz⟩`; a front end writes them as its
 /// users do, by [`spelled`].
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct JobError {
-    /// What it failed for.
+    /// Its kind.
     pub kind: ErrorKind,
     /// The file that the message is about, where the message does not name it.
     pub place: Option<String>,
-    /// What is wrong: what was expected, what was found.
+    /// The error: what was expected and what was found.
     pub message: String,
-    /// What would help.
+    /// Remedy.
     pub hint: Option<String>,
 }
 

@@ -92,7 +92,7 @@ pub struct Batched {
 pub struct Refused {
     /// What is wrong, with the path.
     pub message: String,
-    /// What would help.
+    /// Remedy.
     pub hint: Option<String>,
 }
 

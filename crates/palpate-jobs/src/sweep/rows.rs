@@ -1,4 +1,4 @@
-//! What a run comes to, as a row of the table.
+//! Results of a run, as a row of the table.
 
 use std::path::Path;
 

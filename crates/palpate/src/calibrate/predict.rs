@@ -77,7 +77,7 @@ impl std::fmt::Display for Extrapolation {
             Self::ForceHeld => {
                 write!(
                     f,
-                    "the protocol holds the force, the test held the displacement: the law predicts creep that was not observed"
+                    "the force is held, while the test held the displacement: the law predicts creep that was not observed"
                 )
             }
         }

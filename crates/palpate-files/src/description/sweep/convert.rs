@@ -318,7 +318,7 @@ fn swept_parameter(
     {
         let expected = match method {
             Method::Grid => "the number of values after a comma, as in \"log 1e3..1e6 /s, 50\"",
-            Method::LatinHypercube => "a range without a number of values: method = \"latin hypercube\" uses samples",
+            Method::LatinHypercube => "a range without a number of values: a latin hypercube uses samples",
         };
         return Err(source.value(&entry.key, expected, &found));
     }
