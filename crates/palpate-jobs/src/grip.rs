@@ -131,16 +131,6 @@ pub struct PlanGrip {
         conflicts_with = "squeeze_m", help_heading = "Question",
     ))]
     pub objective: Objective,
-    /// The lower edge of the band of the force has to hold, not the best estimate.
-    #[cfg_attr(
-        feature = "clap",
-        arg(
-            long,
-            help_heading = "Question",
-            help = "The lower edge of the band of the force has to hold, not the best guess"
-        )
-    )]
-    pub assured: bool,
     /// Lower and upper edge of the band in which squeezes again and again keep the force.
     #[cfg_attr(feature = "clap", arg(
         long = "band", value_name = "FORCES", value_parser = crate::typed::band, allow_hyphen_values = true,
@@ -160,12 +150,14 @@ pub struct PlanGrip {
         requires = "band_n", help_heading = "Question",
     ))]
     pub shortest_pause_s: f64,
-    /// Coverage of the intervals, between 0 and 1.
+    /// Level at which the verdict has to hold, between 0 and 1, such as 0.95: the lower end of the interval decides; if not given, the best
+    /// estimate does, and intervals are of 95 %.
     #[cfg_attr(feature = "clap", arg(
-        long, value_name = "SHARE", default_value_t = PlanGrip::default().confidence,
-        value_parser = crate::typed::coverage, allow_hyphen_values = true,
+        long, value_name = "SHARE", value_parser = crate::typed::coverage, allow_hyphen_values = true,
+        help_heading = "Question",
+        help = "Level at which the verdict has to hold, such as 0.95; the best estimate decides if not given",
     ))]
-    pub confidence: f64,
+    pub confidence: Option<f64>,
 }
 
 /// What a schedule should have least of.
@@ -202,11 +194,10 @@ impl Default for PlanGrip {
             hold_s: None,
             hold_always: false,
             objective: Objective::Squeeze,
-            assured: false,
             band_n: None,
             regrip: RegripFor::Moves,
             shortest_pause_s: 1.0,
-            confidence: 0.95,
+            confidence: None,
         }
     }
 }
@@ -242,6 +233,9 @@ impl MaterialSource {
     }
 }
 
+/// Level of the intervals where the best estimate decides.
+const INTERVALS: f64 = 0.95;
+
 impl PlanGrip {
     fn question(&self) -> Result<Question, JobError> {
         if self.control == Control::Position && self.force_n.is_some() {
@@ -262,7 +256,7 @@ impl PlanGrip {
             force: self.force_n,
             duration: if self.hold_always { Some(f64::INFINITY) } else { self.hold_s },
             objective: self.objective,
-            assured: self.assured,
+            confidence: self.confidence,
             band: self.band_n.map(|(low, high)| Band { low, high }),
             regrip: match self.regrip {
                 RegripFor::Moves => Regrip::FewestMoves,
@@ -287,7 +281,7 @@ impl PlanGrip {
         limits.stroke = self.stroke_m;
         limits.force = self.most_force_n;
         limits.closing = self.close_within_s;
-        Grip::new(material, grasp, limits, self.confidence)
+        Grip::new(material, grasp, limits, self.confidence.unwrap_or(INTERVALS))
     }
 
     /// Plans the grip of a material.
@@ -300,7 +294,7 @@ impl PlanGrip {
         watch: &mut dyn Watch,
     ) -> Result<Outcome<GrippedBody<'a>>, JobError> {
         let question = self.question()?;
-        checked_confidence(self.confidence)?;
+        self.confidence.map(checked_confidence).transpose()?;
         let grip = self.gripper(&source.file.material).map_err(|error| ungripped(&error))?;
         let answer = grip.answer_watched(&question, watch).map_err(|error| ungripped(&error))?;
         let (holds, notes) = match answer.holds() {

@@ -44,14 +44,14 @@ EVERY_FLAG = [
     *["--safety", "1.2", "--acceleration-up", "1 m/s^2", "--acceleration-across", "0.5 m/s^2", "--acceleration-closing", "2 m/s^2"],
     *["--torque", "5 N mm", "--off-centre", "3 mm", "--gravity", "9.8 m/s^2"],
     *["--speed", "6 mm/s", "--stroke", "14 mm", "--most-force", "12 N", "--close-within", "3 s"],
-    *["--hold", "10 s", "--objective", "work", "--assured", "--band", "3.5..6 N", "--regrip", "work", "--shortest-pause", "0.5 s"],
+    *["--hold", "10 s", "--objective", "work", "--band", "3.5..6 N", "--regrip", "work", "--shortest-pause", "0.5 s"],
     *["--confidence", "0.9"],
 ]
 EVERY_KEYWORD = {
     **{"safety": 1.2, "acceleration_up_m_per_s2": 1.0, "acceleration_across_m_per_s2": 0.5, "acceleration_closing_m_per_s2": 2.0},
     **{"torque_n_m": 5e-3, "off_centre_m": 3e-3, "gravity_m_per_s2": 9.8},
     **{"speed_m_per_s": 6e-3, "stroke_m": 14e-3, "most_force_n": 12.0, "close_within_s": 3.0},
-    **{"hold_s": 10.0, "objective": "work", "assured": True, "band_n": (3.5, 6.0), "regrip": "work", "shortest_pause_s": 0.5},
+    **{"hold_s": 10.0, "objective": "work", "band_n": (3.5, 6.0), "regrip": "work", "shortest_pause_s": 0.5},
     **{"confidence": 0.9},
 }
 
@@ -183,6 +183,19 @@ def test_that_none_holds_is_an_answer(material: palpate.Material) -> None:
     always = material.grip(**LOAD, squeeze_m=8e-3)
     assert always.holds and always.time_to_slip_s == math.inf
     assert pickle.loads(pickle.dumps(always)).time_to_slip_s == math.inf
+
+
+def test_a_confidence_is_the_level_of_the_verdict(material: palpate.Material) -> None:
+    best, sure = material.grip(**LOAD, hold_s=20.0), material.grip(**LOAD, hold_s=20.0, confidence=0.9)
+    assert (best.confidence, sure.confidence) == (0.95, 0.9)
+    assert best.squeeze_m is not None and sure.squeeze_m is not None and sure.squeeze_m > best.squeeze_m
+    assert sure.time_to_slip_interval_s is not None and sure.time_to_slip_interval_s[0] == pytest.approx(20.0, rel=1e-3)
+    assert "holds for 20.0 s with 90 % confidence" in sure.verdict and "confidence" not in best.verdict
+    for grip, uncertain in ((best, True), (sure, False)):
+        assert grip.back_off is not None
+        assert ("uncertain" in repr(grip.back_off.backed)) is uncertain and ("always" in repr(grip.back_off.backed)) is not uncertain
+    with pytest.raises(palpate.OptionError, match="confidence is a share between 0 and 1, found 2"):
+        material.grip(**LOAD, confidence=2)
 
 
 def test_all_of_it_comes_back(least: palpate.Grip) -> None:

@@ -56,13 +56,15 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         );
     }
 
-    // A minute: with the best parameters, and with the lower edge of the interval.
-    for assured in [false, true] {
-        let least = grip.least(Objective::Squeeze, 60.0, assured)?;
-        println!("holds a minute, assured {assured}: {:.3} mm", 1e3 * least.displacement);
+    // A minute: by the best estimate, and with a confidence.
+    for confidence in [None, Some(0.95)] {
+        let least = grip.least(Objective::Squeeze, 60.0, confidence)?;
+        let by =
+            confidence.map_or_else(|| "by the best estimate".to_owned(), |share| format!("with {} %", 100.0 * share));
+        println!("holds for a minute {by}: {:.3} mm", 1e3 * least.displacement);
     }
 
-    let backed = grip.back_off(Some(9e-3), 60.0, false)?;
+    let backed = grip.back_off(Some(9e-3), 60.0, None)?;
     println!(
         "9 mm over {:.2} mm: {:+.4} N in a minute; squeezed plainly {:+.4} N",
         1e3 * backed.over,

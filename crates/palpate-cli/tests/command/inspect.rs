@@ -184,7 +184,7 @@ fn with_holds(text: &str) -> String {
         "{before}{}",
         holds
             .replace("# [[", "[[")
-            .replace("# from", "from")
+            .replace("# from =", "from =")
             .replace("# to", "to")
             .replace("# mode", "mode")
     )

@@ -248,11 +248,10 @@ class Material(_Value):
         force_n: float | None = None,
         hold_s: float | None = None,
         objective: Literal["squeeze", "peak-force", "work"] | None = None,
-        assured: bool = False,
         band_n: tuple[float, float] | None = None,
         regrip: Literal["moves", "work"] | None = None,
         shortest_pause_s: float | None = None,
-        confidence: float = 0.95,
+        confidence: float | None = None,
     ) -> Grip: ...
     def _repr_html_(self) -> str: ...
 

@@ -92,7 +92,7 @@ shown! {
         time_to_slip_s: Option<f64> = self.of_squeeze(|found| seconds(found.lasts)),
         /// Ends of the interval of that time by what the calibration leaves open, s; None where it says nothing.
         time_to_slip_interval_s: Option<(f64, f64)> = self.of_squeeze(slip_interval).flatten(),
-        /// Squeeze and back off, so that the hold begins relaxed; None if there is none.
+        /// Overshoot and back off (a preconditioning squeeze), so that the hold begins relaxed; None if there is none.
         back_off: Option<BackOff> = Some(BackOff::new(self.document.back_off.clone()?, self.back_off.clone()?)),
         /// The force held; None if there is none.
         force_held: Option<ForceHold> = Some(ForceHold::new(self.document.force_held.clone()?, self.force_held.clone()?)),

@@ -1,4 +1,4 @@
-//! What a planned grip is made of: a squeeze, squeeze and back off, the force held, squeeze again.
+//! What a planned grip is made of: a squeeze, overshoot and back off, the force held, squeeze again.
 //!
 //! Each is a part of the document of a grip, and its course over time.
 
@@ -95,7 +95,9 @@ part! {
 
     fn __repr__(&self) -> String {
         let found = &self.found;
+        let may_slip_at_once = slip_interval(found).is_some_and(|(low, _)| low == 0.0) && seconds(found.lasts) > 0.0;
         let time = match found.lasts.seconds {
+            _ if may_slip_at_once => "for a time that is uncertain, from 0 s on".to_owned(),
             None => "always".to_owned(),
             Some(time) => format!("for {} s", significant(time, 3)),
         };
@@ -111,7 +113,7 @@ part! {
 }
 
 part! {
-    /// Squeeze and back off, beside the plain squeeze to the same place; SI units.
+    /// Overshoot and back off (a preconditioning squeeze), beside the plain squeeze to the same position; SI units.
     BackOff(BackOffDocument, Predicted): self {
         /// Time over which drifts are told, s.
         duration_s: f64,

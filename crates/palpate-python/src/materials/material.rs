@@ -289,21 +289,20 @@ shown! {
     ///     How long it is to hold, s; ``math.inf`` for always. 60 s if neither this nor a squeeze is given.
     /// objective : str, optional
     ///     What the squeeze that is sought should have least of: "squeeze" (if left out), "peak-force" or "work".
-    /// assured : bool
-    ///     Whether the lower edge of the band of the force has to hold, not the best guess.
     /// band_n : tuple of float, optional
     ///     Two forces, N, between which squeezes again and again keep the force.
     /// regrip : str, optional
     ///     What that schedule should have least of: "moves" (if left out) or "work".
     /// shortest_pause_s : float, optional
     ///     The shortest pause between two squeezes of least work, s; 1 if left out.
-    /// confidence : float
-    ///     Coverage of the intervals, between 0 and 1.
+    /// confidence : float, optional
+    ///     Level at which the verdict has to hold, between 0 and 1: the lower end of the interval of that level decides. If left out, the
+    ///     best estimate decides, and intervals are of 95 %.
     ///
     /// Returns
     /// -------
     /// Grip
-    ///     The squeeze that is asked about, squeeze and back off, the force held and the schedule, beside one another. That none holds is an
+    ///     The squeeze that is asked about, overshoot and back off, the force held and the schedule, beside one another. That none holds is an
     ///     answer: ``holds`` is false, ``refused`` says why.
     ///
     /// Raises
@@ -341,7 +340,7 @@ shown! {
         *, mass_kg, friction, safety=1.0, acceleration_up_m_per_s2=0.0, acceleration_across_m_per_s2=0.0,
         acceleration_closing_m_per_s2=0.0, torque_n_m=0.0, off_centre_m=0.0, gravity_m_per_s2=9.80665, speed_m_per_s=None,
         stroke_m=None, most_force_n=None, close_within_s=None, control="position", squeeze_m=None, force_n=None, hold_s=None,
-        objective=None, assured=false, band_n=None, regrip=None, shortest_pause_s=None, confidence=0.95,
+        objective=None, band_n=None, regrip=None, shortest_pause_s=None, confidence=None,
     ))]
     #[expect(clippy::too_many_arguments, reason = "keywords of Python")]
     fn grip(
@@ -365,11 +364,10 @@ shown! {
         force_n: Option<f64>,
         hold_s: Option<f64>,
         objective: Option<&str>,
-        assured: bool,
         band_n: Option<(f64, f64)>,
         regrip: Option<&str>,
         shortest_pause_s: Option<f64>,
-        confidence: f64,
+        confidence: Option<f64>,
     ) -> PyResult<Grip> {
         if objective.is_some() && squeeze_m.is_some() {
             let message = "objective: expected either this or squeeze_m, found both";
@@ -402,7 +400,6 @@ shown! {
             hold_s: hold_s.filter(|time| *time != f64::INFINITY),
             hold_always: hold_s == Some(f64::INFINITY),
             objective: choice("objective", &["squeeze", "peak-force", "work"], objective.unwrap_or("squeeze"))?,
-            assured,
             band_n,
             regrip: choice("regrip", &["moves", "work"], regrip.unwrap_or("moves"))?,
             shortest_pause_s: shortest_pause_s.unwrap_or(usual.shortest_pause_s),

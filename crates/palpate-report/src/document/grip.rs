@@ -104,7 +104,7 @@ documents! {
         lasts: LastsDocument = LastsDocument::new(lasts),
     }
 
-    /// Sensitivity of squeeze and back off to a parameter of the material that is 1 % larger.
+    /// Sensitivity of overshoot and back off to a parameter of the material that is 1 % larger.
     SensitivityDocument(found: &Sensitivity) {
         /// Name of the parameter.
         parameter: String = found.name.clone(),
@@ -116,7 +116,7 @@ documents! {
         over_m: f64 = found.over,
     }
 
-    /// Squeeze and back off.
+    /// Overshoot and back off (a preconditioning squeeze).
     BackOffDocument(found: &BackOff) {
         /// The back-off.
         backed: HoldingDocument = HoldingDocument::new(&found.backed),
@@ -234,8 +234,8 @@ documents! {
         duration: Option<LastsDocument> = question.duration.map(|time| LastsDocument::new(wanted(time))),
         /// The minimised quantity: `squeeze`, `peak_force` or `work`; `null` where a squeeze was given.
         objective: Option<String> = question.squeeze.is_none().then(|| word(question.objective)),
-        /// Whether the lower edge of the band must hold the load.
-        assured: bool = question.assured,
+        /// Level at which the verdict has to hold; `null` where the best estimate decides.
+        verdict_confidence: Option<f64> = question.confidence,
         /// Whether the requested grip holds for the required duration.
         holds: bool = answer.holds() == Ok(true),
         /// The same in a sentence.
@@ -244,7 +244,7 @@ documents! {
         squeeze: Option<HoldingDocument> = answer.squeeze.as_ref().ok().map(|made| HoldingDocument::new(&made.found)),
         /// Alternative squeezes.
         neighbours: Vec<NeighbourDocument> = neighbours.collect(),
-        /// Squeeze and back off.
+        /// Overshoot and back off (a preconditioning squeeze).
         back_off: Option<BackOffDocument> = answer.back_off.as_ref().ok().map(|made| BackOffDocument::new(&made.found)),
         /// The force hold.
         force_held: Option<PressedDocument> =

@@ -9,6 +9,9 @@ use palpate::number::significant;
 use super::gripped::GrippedBody;
 use super::words::percent;
 
+/// How long a least squeeze has to hold if no time is requested, s.
+const MINUTE: f64 = 60.0;
+
 impl GrippedBody<'_> {
     /// What was asked, in a sentence.
     #[must_use]
@@ -60,7 +63,7 @@ impl GrippedBody<'_> {
         let answer = &self.answer;
         let mut remarks = Vec::new();
         if self.grip.material().uncertainty.is_none() {
-            remarks.push("The calibration left a number open: nothing is said of how sure this is.".to_owned());
+            remarks.push("The calibration left a parameter open: there are no intervals.".to_owned());
         }
         if let Ok(squeeze) = &answer.squeeze {
             remarks.extend(on_squeeze(&squeeze.found));
@@ -150,16 +153,25 @@ fn of_squeeze(body: &GrippedBody<'_>, found: &PositionHold, holds: bool) -> Stri
             format!("a squeeze of {} and back to {}", mm(over), mm(displacement))
         }
     };
-    let interval = found.interval.map_or_else(String::new, |(low, high)| {
-        let share = percent(body.grip.confidence());
-        format!(" ({share}: {} to {})", lasts(low), lasts(high))
-    });
+    let share = percent(body.grip.confidence());
+    let interval = found
+        .interval
+        .map_or_else(String::new, |(low, high)| format!(" ({share}: {} to {})", lasts(low), lasts(high)));
+    if let Some(told) = with_confidence(body, found, &what, holds) {
+        return told;
+    }
     match found.lasts {
         TimeToSlip::After(0.0) => format!(
             "{what} slips at once: {} are needed, {} are there when the jaws stop.",
             newton(found.needed_force),
             newton(found.start_force)
         ),
+        _ if found.may_slip_at_once() => {
+            let (low, high) = found.interval.map(|(low, high)| (lasts(low), lasts(high))).unwrap_or_default();
+            format!(
+                "{what} may hold: the best estimate of the force is enough, but the {share} interval of the time is {low} to {high}."
+            )
+        }
         TimeToSlip::Never if found.equilibrium_force >= found.needed_force => {
             format!(
                 "{what} holds always{interval}: the equilibrium force of {} is enough.",
@@ -172,16 +184,53 @@ fn of_squeeze(body: &GrippedBody<'_>, found: &PositionHold, holds: bool) -> Stri
             newton(found.needed_force)
         ),
         TimeToSlip::After(time) => {
-            let until = body.answer.question.duration.filter(|_| !holds).map_or_else(String::new, |wanted| {
-                if wanted.is_finite() {
-                    format!("; {} were asked for", lasted(wanted))
-                } else {
-                    "; always was asked for".to_owned()
-                }
-            });
+            let until = body
+                .answer
+                .question
+                .duration
+                .filter(|_| !holds)
+                .map_or_else(String::new, |wanted| format!("; requested: {}", requested(wanted)));
             format!("{what} holds for {}{interval}{until}.", lasted(time))
         }
     }
+}
+
+/// A time that was requested.
+fn requested(time: f64) -> String {
+    if time.is_finite() { lasted(time) } else { "always".to_owned() }
+}
+
+/// The time that a hold lasts, which ends in the end where its equilibrium force is too small.
+fn at_length(found: &PositionHold, time: TimeToSlip) -> String {
+    if time == TimeToSlip::Never && found.equilibrium_force < found.needed_force {
+        return "for more than ten years".to_owned();
+    }
+    time.seconds().map_or_else(|| "always".to_owned(), |seconds| format!("for {}", lasted(seconds)))
+}
+
+/// The same where the verdict has to hold with a confidence; nothing where it slips at once by the best estimate.
+fn with_confidence(body: &GrippedBody<'_>, found: &PositionHold, what: &str, holds: bool) -> Option<String> {
+    let question = &body.answer.question;
+    let (level, (low, high)) = (percent(question.confidence?), found.interval?);
+    if found.lasts == TimeToSlip::After(0.0) {
+        return None;
+    }
+    let best = format!("best estimate {}, interval {} to {}", lasts(found.lasts), lasts(low), lasts(high));
+    let wanted = question.duration.or((question.squeeze.is_none()).then_some(MINUTE));
+    Some(match wanted {
+        _ if low == TimeToSlip::After(0.0) => {
+            format!("with {level} confidence nothing is certain of {what}: it may slip at once ({best}).")
+        }
+        Some(wanted) if holds => {
+            let time = if wanted.is_finite() { TimeToSlip::After(wanted) } else { TimeToSlip::Never };
+            format!("{what} holds {} with {level} confidence ({best}).", at_length(found, time))
+        }
+        Some(wanted) => {
+            let (time, wanted) = (at_length(found, low), requested(wanted));
+            format!("{what} holds {time} with {level} confidence; requested: {wanted} ({best}).")
+        }
+        None => format!("{what} holds {} with {level} confidence ({best}).", at_length(found, low)),
+    })
 }
 
 fn of_pressed(found: &ForceHold, holds: bool) -> String {
@@ -250,8 +299,13 @@ fn on_back_off(found: &BackOff) -> String {
             newton(found.backed.start_force)
         )
     };
+    let uncertain = if found.backed.may_slip_at_once() {
+        " It may slip at once all the same: the interval of the time starts at 0 s, and a verdict with a confidence needs more squeeze."
+    } else {
+        ""
+    };
     format!(
-        "Squeeze to {} and go back to {}: {how} ({} N in {}; {lost} N after a plain squeeze to the same place).{open}",
+        "Overshoot and back off (a preconditioning squeeze): squeeze to {} and go back to {}: {how} ({} N in {}; {lost} N after a plain squeeze to the same position).{uncertain}{open}",
         mm(found.over),
         mm(found.backed.displacement),
         // A drift of rounding alone is none.

@@ -26,11 +26,11 @@ impl GrippedBody<'_> {
     /// Grips that there are not, by name, and why.
     #[must_use]
     pub fn refused(&self) -> Vec<(&'static str, &GripError)> {
-        let names = ["squeeze", "squeeze and back off", "force held", "squeeze again"];
+        let names = ["squeeze", "overshoot and back off", "force held", "squeeze again"];
         names.into_iter().zip(self.grips()).filter_map(|(name, made)| Some((name, made?.err()?))).collect()
     }
 
-    /// Squeeze, squeeze and back off, force held and schedule: the course of each, or why there is none; a schedule only if one was asked for.
+    /// Squeeze, overshoot and back off, force held and schedule: the course of each, or why there is none; a schedule only if one was asked for.
     #[must_use]
     pub fn grips(&self) -> [Option<Result<&Prediction, &GripError>>; 4] {
         let answer = &self.answer;

@@ -34,8 +34,8 @@ pub struct Question {
     pub duration: Option<f64>,
     /// What the squeeze should have least of.
     pub objective: Objective,
-    /// Whether the lower edge of the band has to hold.
-    pub assured: bool,
+    /// Level at which the verdict has to hold: the lower end of the interval of that level decides. If not given, the best estimate does.
+    pub confidence: Option<f64>,
     /// Band for a schedule of squeezes.
     pub band: Option<Band>,
     /// What the schedule has least of.
@@ -62,7 +62,7 @@ pub struct Answer {
     pub squeeze: Result<WithPrediction<PositionHold>, GripError>,
     /// How long squeezes a little less and more deep hold, by displacement in m.
     pub neighbours: Vec<(f64, TimeToSlip)>,
-    /// Squeeze and back off, to the same place if that holds relaxed.
+    /// Overshoot and back off (a preconditioning squeeze), to the same position if that holds relaxed.
     pub back_off: Result<WithPrediction<BackOff>, GripError>,
     /// The force held.
     pub force_hold: Result<WithPrediction<ForceHold>, GripError>,
@@ -77,7 +77,7 @@ const MINUTE: f64 = 60.0;
 const SAMPLES: usize = 200;
 
 impl Grip<'_> {
-    /// Answers a question: the squeeze with its neighbours, squeeze and back off, the force held, and the schedule, beside one another.
+    /// Answers a question: the squeeze with its neighbours, overshoot and back off, the force held, and the schedule, beside one another.
     ///
     /// # Errors
     /// Of numbers that make no question ([`GripError::Number`]); what cannot be had is told in its place in the answer.
@@ -93,7 +93,7 @@ impl Grip<'_> {
         let stages = RefCell::new(Stages::new("searching for grips".to_owned(), watch));
         let heard = Grip {
             heard: Some(&stages),
-            ..self.clone()
+            ..self.at(question.confidence)?
         };
         let answer = heard.answered(question);
         stages.borrow_mut().finish()?;
@@ -113,13 +113,12 @@ impl Grip<'_> {
         self.enter(0.3)?;
         let wanted = question.duration.unwrap_or(MINUTE);
         check_duration(wanted)?;
-        self.check_assured(question.assured)?;
         let squeeze = match question.squeeze {
             Some(displacement) => {
                 super::error::above_zero("squeeze", displacement, " m")?;
                 self.holding(&Plan::squeeze(displacement, self.limits.speed))
             }
-            None => self.least(question.objective, wanted, question.assured),
+            None => self.least(question.objective, wanted, question.confidence),
         };
         let shown = shown(question, squeeze.as_ref().ok());
         let around = |found: &PositionHold| {
@@ -130,7 +129,7 @@ impl Grip<'_> {
         let neighbours = squeeze.as_ref().map(around).unwrap_or_default();
         let same = question.squeeze.filter(|place| self.equilibrium_force(*place) >= self.needed_force(*place));
         self.enter(0.2)?;
-        let back_off = self.back_off(same, shown, question.assured);
+        let back_off = self.back_off(same, shown, question.confidence);
         self.enter(0.1)?;
         let force_hold = self.force_hold(question.force, shown);
         self.enter(0.1)?;
@@ -169,7 +168,7 @@ impl Answer {
             Control::Position => {
                 let found = &self.squeeze.as_ref().map_err(Clone::clone)?.found;
                 let lasts = match found.interval {
-                    Some((low, _)) if self.question.assured => low,
+                    Some((low, _)) if self.question.confidence.is_some() => low,
                     _ => found.lasts,
                 };
                 let wanted = self.question.duration.or((self.question.squeeze.is_none()).then_some(MINUTE));

@@ -40,8 +40,8 @@ pub struct BackOff {
 
 impl Grip<'_> {
     /// Squeezes over and goes back to `displacement` (m) at the speed of the gripper, so that the hold begins with no excess strain: the force at its
-    /// start is the relaxed one and stays. Without a displacement it is the least whose equilibrium force is enough; with `assured` the least
-    /// at which the lower edge of the band of the force is, at the start of the hold and after `duration`.
+    /// start is the relaxed one and stays. Without a displacement it is the least whose equilibrium force is enough; with a `confidence` the
+    /// least at which the lower end of the interval of the force of that level is, at the start of the hold and after `duration`.
     ///
     /// The turning point is found to the last bits as the one from which the force at the end of the retreat is F_e: farther, and it rises
     /// during the hold; nearer, and it falls. `duration` (s) is the time over which drifts are told. A linear law of several terms has
@@ -50,13 +50,22 @@ impl Grip<'_> {
     /// # Errors
     /// [`GripError::NoSqueeze`] if no equilibrium force within the limits is enough; [`GripError::NoBackOff`] if they end before the turning point;
     /// [`GripError::BeyondLimit`] for a displacement beyond them.
-    pub fn back_off(&self, displacement: Option<f64>, duration: f64, assured: bool) -> Result<BackOff, GripError> {
+    pub fn back_off(
+        &self,
+        displacement: Option<f64>,
+        duration: f64,
+        confidence: Option<f64>,
+    ) -> Result<BackOff, GripError> {
         check_duration(duration)?;
-        self.check_assured(assured)?;
+        self.at(confidence)?.back_off_by(displacement, duration, confidence.is_some())
+    }
+
+    /// The same where the lower end of the interval decides, or the best estimate.
+    fn back_off_by(&self, displacement: Option<f64>, duration: f64, by_interval: bool) -> Result<BackOff, GripError> {
         let (deepest, by) = self.limits.deepest(self.contact.specimen());
         let displacement = match displacement {
             Some(displacement) => displacement,
-            None if assured => self.assured_squeeze(self.relaxed_squeeze(deepest, by)?, duration)?,
+            None if by_interval => self.squeeze_by_interval(self.relaxed_squeeze(deepest, by)?, duration)?,
             None => self.relaxed_squeeze(deepest, by)?,
         };
         let speed = self.limits.speed;
@@ -88,14 +97,14 @@ impl Grip<'_> {
         Ok((bisected(0.0, deepest, |d| Ok(is_enough(d)))?.1 * (1.0 + 1e-9)).min(deepest))
     }
 
-    /// The least displacement from `least` (m) on at which the lower edge of the band is enough all through the hold.
-    fn assured_squeeze(&self, least: f64, duration: f64) -> Result<f64, GripError> {
+    /// The least displacement from `least` (m) on at which the lower end of the interval is enough all through the hold.
+    fn squeeze_by_interval(&self, least: f64, duration: f64) -> Result<f64, GripError> {
         /// By how much a squeeze is larger than the one tried before.
         const MORE: f64 = 1.02;
         /// To which the least is found, as a share.
         const CLOSE: f64 = 1e-6;
         // What the parameters leave of an excess fades, and the band with it: between its ends it is no lower than there.
-        let is_assured = |displacement: f64| -> Result<bool, GripError> {
+        let is_enough = |displacement: f64| -> Result<bool, GripError> {
             let plan = Plan::back_off(self.turning_point(displacement)?, displacement, self.limits.speed);
             let start = self.ends(&plan.steps)?.last().map_or(0.0, |end| end.time);
             let at = vec![start, start + duration.min(ALWAYS)];
@@ -105,13 +114,13 @@ impl Grip<'_> {
         };
         let (mut short, mut enough) = (least, least);
         // The limits end it: there is no turning point beyond them.
-        while !is_assured(enough)? {
+        while !is_enough(enough)? {
             short = enough;
             enough *= MORE;
         }
         while enough - short > CLOSE * enough {
             let middle = 0.5 * (short + enough);
-            if is_assured(middle)? { enough = middle } else { short = middle }
+            if is_enough(middle)? { enough = middle } else { short = middle }
         }
         Ok(enough)
     }

@@ -87,8 +87,8 @@ pub enum GripError {
         /// Force that is needed, N.
         needed: f64,
     },
-    /// Nothing to be assured by.
-    #[error("the calibration left its numbers open and has no intervals: nothing can be assured")]
+    /// A confidence where there are no intervals.
+    #[error("the calibration left a parameter open and has no intervals: no verdict holds with a confidence")]
     NoIntervals,
     /// A simulation that could not be run.
     #[error(transparent)]
@@ -123,7 +123,9 @@ impl GripError {
             Self::BeyondLimit { .. } => "ask for less, or raise the limit",
             Self::TooManyMoves { .. } => "widen the band, allow shorter pauses, or hold the force",
             Self::BandSlips { .. } => "raise the lower edge of the band",
-            Self::NoIntervals => "ask for the best guess, or calibrate on a test that tells all numbers",
+            Self::NoIntervals => {
+                "leave the confidence out, so that the best estimate decides, or calibrate on a test that determines all parameters"
+            }
             Self::Bonded => "calibrate on a test with separation = true in [contact]",
             Self::Number { .. } | Self::Simulate(_) | Self::Cancelled(_) => "",
         }
@@ -166,4 +168,8 @@ pub(super) fn at_least(name: &'static str, found: f64, least: f64, unit: &'stati
 
 pub(super) fn above_zero(name: &'static str, found: f64, unit: &'static str) -> Result<(), GripError> {
     check(name, found, unit, "finite and above 0", found.is_finite() && found > 0.0)
+}
+
+pub(super) fn check_confidence(confidence: f64) -> Result<(), GripError> {
+    check("confidence", confidence, "", "between 0 and 1", confidence > 0.0 && confidence < 1.0)
 }

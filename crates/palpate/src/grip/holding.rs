@@ -2,7 +2,7 @@
 
 use std::cell::RefCell;
 
-use super::{ALWAYS, Grasp, GripError, Limits, Plan, PlanKind, TimeToSlip, check};
+use super::{ALWAYS, Grasp, GripError, Limits, Plan, PlanKind, TimeToSlip, check_confidence};
 use crate::calibrate::{Material, Prediction};
 use crate::simulate::{Contact, ProgramStep, Sampling, Separation, SimulateError, StepEnd, step_ends, work_by_step};
 use crate::watch::{Cancelled, Progress, Stages};
@@ -77,6 +77,14 @@ pub struct PositionHold {
     pub sharpness: Option<f64>,
 }
 
+impl PositionHold {
+    /// Whether the interval of the time to slip starts at 0, though the best estimate does not: nothing says that it holds at all.
+    #[must_use]
+    pub fn may_slip_at_once(&self) -> bool {
+        self.lasts != TimeToSlip::After(0.0) && self.interval.is_some_and(|(low, _)| low == TimeToSlip::After(0.0))
+    }
+}
+
 impl<'a> Grip<'a> {
     /// A body, its load and the gripper.
     ///
@@ -85,7 +93,7 @@ impl<'a> Grip<'a> {
     pub fn new(material: &'a Material, grasp: Grasp, limits: Limits, confidence: f64) -> Result<Self, GripError> {
         grasp.check()?;
         limits.check()?;
-        check("confidence", confidence, "", "between 0 and 1", confidence > 0.0 && confidence < 1.0)?;
+        check_confidence(confidence)?;
         if material.body.separation == Separation::Bonded {
             return Err(GripError::Bonded);
         }

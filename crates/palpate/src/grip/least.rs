@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::{ALWAYS, Grip, GripError, Plan, PositionHold, check, peak};
+use super::{ALWAYS, Grip, GripError, Plan, PositionHold, check, check_confidence, peak};
 use crate::number::significant;
 
 /// What a plan should have least of.
@@ -26,18 +26,27 @@ impl Grip<'_> {
     ///
     /// Tried are squeezes at one speed, for which any closing time within the limits may serve, and a force that is kept while the body creeps until
     /// the time to close is over. For each the least displacement or force is found, at which the force at the end of the hold is the one that
-    /// is needed; with `assured`, at which the lower edge of its band is.
+    /// is needed; with a `confidence`, at which the lower end of its interval of that level is.
     ///
     /// # Errors
-    /// [`GripError::NoSqueeze`] if none holds, [`GripError::Number`] for a duration that is not above zero.
-    pub fn least(&self, objective: Objective, duration: f64, assured: bool) -> Result<PositionHold, GripError> {
+    /// [`GripError::NoSqueeze`] if none holds, [`GripError::NoIntervals`] for a confidence where there are none, [`GripError::Number`] for a duration that is not above zero.
+    pub fn least(
+        &self,
+        objective: Objective,
+        duration: f64,
+        confidence: Option<f64>,
+    ) -> Result<PositionHold, GripError> {
         check_duration(duration)?;
-        self.check_assured(assured)?;
+        self.at(confidence)?.least_by(objective, duration, confidence.is_some())
+    }
+
+    /// The same where the lower end of the interval decides, or the best estimate.
+    fn least_by(&self, objective: Objective, duration: f64, by_interval: bool) -> Result<PositionHold, GripError> {
         let closing = |i: f64| self.limits.slowest_closing() * 10f64.powf(2.0 * (i / f64::from(TRIED - 1) - 1.0));
         let mut best: Option<(f64, f64, Plan)> = None;
         let mut none = None;
         for i in 0..TRIED {
-            match self.squeeze_within(closing(f64::from(i)), duration, assured) {
+            match self.squeeze_within(closing(f64::from(i)), duration, by_interval) {
                 Ok(plan) => {
                     let cost = self.cost(objective, &plan)?;
                     if best.as_ref().is_none_or(|best| cost < best.0) {
@@ -53,7 +62,7 @@ impl Grip<'_> {
             for _ in 0..24 {
                 let (left, right) = (high - 0.618_034 * (high - low), low + 0.618_034 * (high - low));
                 let mut tried = |i: f64| -> Result<f64, GripError> {
-                    let Ok(found) = self.squeeze_within(closing(i), duration, assured) else {
+                    let Ok(found) = self.squeeze_within(closing(i), duration, by_interval) else {
                         return Ok(f64::INFINITY);
                     };
                     let found_cost = self.cost(objective, &found)?;
@@ -65,7 +74,7 @@ impl Grip<'_> {
                 if tried(left)? <= tried(right)? { high = right } else { low = left }
             }
         }
-        if let Some(settled) = self.settled(duration, assured)? {
+        if let Some(settled) = self.settled(duration, by_interval)? {
             let cost = self.cost(objective, &settled)?;
             if best.as_ref().is_none_or(|best| cost < best.0) {
                 best = Some((cost, 0.0, settled));
@@ -88,7 +97,7 @@ impl Grip<'_> {
     }
 
     /// The least squeeze that closes within a time (s).
-    fn squeeze_within(&self, closing: f64, duration: f64, assured: bool) -> Result<Plan, GripError> {
+    fn squeeze_within(&self, closing: f64, duration: f64, by_interval: bool) -> Result<Plan, GripError> {
         let plan = |displacement: f64| Plan::squeeze(displacement, (displacement / closing).min(self.limits.speed));
         let (mut high, mut by) = self.limits.reach(self.contact.specimen());
         if let Some(limit) = self.limits.force {
@@ -103,7 +112,7 @@ impl Grip<'_> {
         if high <= 0.0 {
             return Err(self.no_squeeze(0.0, duration, by));
         }
-        let surplus = |displacement: f64| self.surplus(&plan(displacement), duration, assured);
+        let surplus = |displacement: f64| self.surplus(&plan(displacement), duration, by_interval);
         if surplus(high)? < 0.0 {
             let reached = surplus(high)? + self.needed_force(high);
             return Err(self.no_squeeze(reached, duration, by));
@@ -112,7 +121,7 @@ impl Grip<'_> {
     }
 
     /// The least force that, kept until the time to close is over, holds from there; `None` if the limits have none.
-    fn settled(&self, duration: f64, assured: bool) -> Result<Option<Plan>, GripError> {
+    fn settled(&self, duration: f64, by_interval: bool) -> Result<Option<Plan>, GripError> {
         let (deepest, _) = self.limits.deepest(self.contact.specimen());
         // What cannot be simulated, since no displacement carries it, is beyond the limits as well.
         let plan = |force: f64| -> Option<Plan> {
@@ -123,7 +132,7 @@ impl Grip<'_> {
             (settling >= 0.0 && end.displacement <= deepest && self.limits.force.is_none_or(|limit| force <= limit))
                 .then_some(plan)
         };
-        let holds = |plan: &Plan| -> Result<bool, GripError> { Ok(self.surplus(plan, duration, assured)? >= 0.0) };
+        let holds = |plan: &Plan| -> Result<bool, GripError> { Ok(self.surplus(plan, duration, by_interval)? >= 0.0) };
         let mut low = self.needed_force(deepest);
         let mut high = low;
         loop {
@@ -141,18 +150,28 @@ impl Grip<'_> {
         Ok(plan(found.1))
     }
 
-    /// Force at the end of a hold (or the lower edge of its band) less the one that is needed there, N.
-    fn surplus(&self, plan: &Plan, duration: f64, assured: bool) -> Result<f64, GripError> {
+    /// Force at the end of a hold (or the lower end of its interval) less the one that is needed there, N.
+    fn surplus(&self, plan: &Plan, duration: f64, by_interval: bool) -> Result<f64, GripError> {
         let program = plan.held(duration.min(ALWAYS));
         let ends = self.ends(&program)?;
         let end = ends.last().copied().unwrap_or_default();
-        let force = if assured { self.predict(&program, vec![end.time])?.force_interval(0).0 } else { end.force };
+        let force = if by_interval { self.predict(&program, vec![end.time])?.force_interval(0).0 } else { end.force };
         Ok(force - self.needed_force(end.displacement))
     }
 
-    /// Whether there are intervals to be assured by.
-    pub(super) fn check_assured(&self, assured: bool) -> Result<(), GripError> {
-        if assured && self.material.uncertainty.is_none() { Err(GripError::NoIntervals) } else { Ok(()) }
+    /// The same with intervals of the level at which a verdict is to hold, where there is one.
+    pub(super) fn at(&self, confidence: Option<f64>) -> Result<Self, GripError> {
+        let Some(confidence) = confidence else {
+            return Ok(self.clone());
+        };
+        check_confidence(confidence)?;
+        if self.material.uncertainty.is_none() {
+            return Err(GripError::NoIntervals);
+        }
+        Ok(Self {
+            confidence,
+            ..self.clone()
+        })
     }
 
     pub(super) fn no_squeeze(&self, reached: f64, duration: f64, by: String) -> GripError {

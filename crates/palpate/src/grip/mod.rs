@@ -32,7 +32,7 @@ mod time_to_slip;
 pub use answer::{Answer, Control, Question, WithPrediction};
 pub use back_off::{BackOff, Sensitivity};
 pub use error::GripError;
-use error::{above_zero, at_least, check};
+use error::{above_zero, at_least, check, check_confidence};
 pub use force_hold::ForceHold;
 pub use grasp::{Grasp, STANDARD_GRAVITY};
 pub use holding::{Grip, PositionHold};

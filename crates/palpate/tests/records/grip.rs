@@ -133,7 +133,7 @@ fn the_least_squeeze_holds_as_long_as_was_asked_and_less_does_not() {
     for material in [ball(None), linear(1), linear(3)] {
         let grip = grip(&material, 0.25);
         for duration in [1.0, 60.0, f64::INFINITY] {
-            let least = grip.least(Objective::Squeeze, duration, false).unwrap();
+            let least = grip.least(Objective::Squeeze, duration, None).unwrap();
             assert!(least.lasts.covers(duration.min(3.1e8) * (1.0 - 1e-6)), "{least:?}");
             let PlanKind::Squeeze { displacement, speed } = least.plan.kind else {
                 panic!("{least:?}")
@@ -141,8 +141,8 @@ fn the_least_squeeze_holds_as_long_as_was_asked_and_less_does_not() {
             let less = grip.holding(&Plan::squeeze(displacement * (1.0 - 1e-4), speed)).unwrap();
             assert!(!less.lasts.covers(duration.min(3.1e8)), "{less:?}");
             // Of the other objectives none squeezes less, each has least of its own.
-            let [peak, work] = [Objective::PeakForce, Objective::Work]
-                .map(|objective| grip.least(objective, duration, false).unwrap());
+            let [peak, work] =
+                [Objective::PeakForce, Objective::Work].map(|objective| grip.least(objective, duration, None).unwrap());
             assert!(peak.displacement >= displacement * (1.0 - 1e-9));
             assert!(peak.peak_force <= least.peak_force && peak.peak_force <= work.peak_force * (1.0 + 1e-9));
             assert!(work.work <= least.work && work.work <= peak.work * (1.0 + 1e-9));
@@ -154,16 +154,17 @@ fn the_least_squeeze_holds_as_long_as_was_asked_and_less_does_not() {
     }
     let sure = ball(Some([0.02, 0.01, 0.05, 0.01]));
     let grip = grip(&sure, 0.25);
-    let [best, assured] = [false, true].map(|assured| grip.least(Objective::Squeeze, 60.0, assured).unwrap());
-    assert!(assured.displacement > best.displacement);
-    assert!((seconds(assured.interval.unwrap().0) / 60.0 - 1.0).abs() < 1e-3, "{assured:?}");
+    let [best, confident] =
+        [None, Some(0.95)].map(|confidence| grip.least(Objective::Squeeze, 60.0, confidence).unwrap());
+    assert!(confident.displacement > best.displacement);
+    assert!((seconds(confident.interval.unwrap().0) / 60.0 - 1.0).abs() < 1e-3, "{confident:?}");
 }
 
 #[test]
 fn after_a_retreat_the_force_stays_where_it_is() {
     let material = ball(Some([0.02, 0.01, 0.05, 0.01]));
     let grip = grip(&material, 0.25);
-    let found = grip.back_off(None, 3600.0, false).unwrap();
+    let found = grip.back_off(None, 3600.0, None).unwrap();
     assert!(found.over > found.backed.displacement && found.backed.displacement == found.plain.displacement);
     assert!(found.drift.abs() < 1e-9 * found.backed.start_force, "{}", found.drift);
     assert!(found.plain_drift < -0.5 * found.backed.start_force, "{}", found.plain_drift);
@@ -193,7 +194,7 @@ fn after_a_retreat_the_force_stays_where_it_is() {
     // One linear term has one excess, which can be made to vanish; of three the sum can, and a drift is left.
     let [one, three] = [linear(1), linear(3)].map(|material| {
         let grip = self::grip(&material, 0.25);
-        let found = grip.back_off(Some(0.008), 60.0, false).unwrap();
+        let found = grip.back_off(Some(0.008), 60.0, None).unwrap();
         found.drift / found.backed.start_force
     });
     assert!(one.abs() < 1e-9 && three.abs() > 1e-3, "{one} {three}");
@@ -201,24 +202,24 @@ fn after_a_retreat_the_force_stays_where_it_is() {
 
 /// Half of the numbers that go with the record slip from the least squeeze whose equilibrium force is enough.
 #[test]
-fn an_assured_retreat_holds_with_the_lower_edge_of_its_band() {
+fn a_retreat_with_a_confidence_holds_with_the_lower_end_of_its_interval() {
     let material = ball(Some([0.02, 0.01, 0.05, 0.01]));
     let grip = grip(&material, 0.25);
-    let [best, assured] = [false, true].map(|assured| grip.back_off(None, 3600.0, assured).unwrap());
+    let [best, confident] = [None, Some(0.95)].map(|confidence| grip.back_off(None, 3600.0, confidence).unwrap());
     assert_eq!(best.backed.interval.unwrap().0, TimeToSlip::After(0.0));
-    assert!(grip.holding(&assured.backed.plan).unwrap().interval.unwrap().0.covers(3600.0), "{assured:?}");
-    let less = grip.back_off(Some(assured.backed.displacement * (1.0 - 1e-5)), 3600.0, false).unwrap();
+    assert!(grip.holding(&confident.backed.plan).unwrap().interval.unwrap().0.covers(3600.0), "{confident:?}");
+    let less = grip.back_off(Some(confident.backed.displacement * (1.0 - 1e-5)), 3600.0, None).unwrap();
     assert!(!less.backed.interval.unwrap().0.covers(3600.0), "{less:?}");
     // Not more than a few standard errors of the equilibrium force, which rises with the square of the squeeze.
-    let more = assured.backed.displacement / best.backed.displacement - 1.0;
+    let more = confident.backed.displacement / best.backed.displacement - 1.0;
     assert!((0.01..0.1).contains(&more), "{more}");
     let limits = Limits {
         stroke: Some(best.over * 1.001),
         ..Limits::new(SPEED).unwrap()
     };
     let short = Grip::new(&material, *grip.grasp(), limits, 0.95).unwrap();
-    assert!(short.back_off(None, 3600.0, false).is_ok());
-    assert!(matches!(short.back_off(None, 3600.0, true), Err(GripError::NoBackOff { .. })));
+    assert!(short.back_off(None, 3600.0, None).is_ok());
+    assert!(matches!(short.back_off(None, 3600.0, Some(0.95)), Err(GripError::NoBackOff { .. })));
 }
 
 #[test]
@@ -277,17 +278,17 @@ fn schedules_keep_the_force_in_the_band() {
 #[test]
 fn impossible_grasps_are_answers_and_wrong_numbers_are_not() {
     let material = ball(None);
-    let heavy = grip(&material, 50.0).least(Objective::Squeeze, 10.0, false).unwrap_err();
+    let heavy = grip(&material, 50.0).least(Objective::Squeeze, 10.0, None).unwrap_err();
     assert!(heavy.is_answer() && heavy.to_string().starts_with("no squeeze within the limits holds"), "{heavy}");
     let limits = Limits {
         force: Some(2.5),
         ..Limits::new(SPEED).unwrap()
     };
     let careful = Grip::new(&material, Grasp::new(0.25, 0.6).unwrap(), limits, 0.95).unwrap();
-    let hour = careful.least(Objective::PeakForce, 3600.0, false).unwrap_err();
+    let hour = careful.least(Objective::PeakForce, 3600.0, None).unwrap_err();
     assert!(hour.to_string().contains("largest force of 2.500 N"), "{hour}");
     assert!(matches!(
-        careful.back_off(None, 60.0, false),
+        careful.back_off(None, 60.0, None),
         Err(GripError::NoBackOff { .. } | GripError::BeyondLimit { .. })
     ));
     assert!(matches!(careful.holding(&Plan::squeeze(0.008, SPEED)), Err(GripError::BeyondLimit { .. })));
@@ -299,7 +300,7 @@ fn impossible_grasps_are_answers_and_wrong_numbers_are_not() {
         assert!(Grip::new(&material, Grasp::new(0.1, 0.5).unwrap(), Limits::new(SPEED).unwrap(), confidence).is_err());
     }
     for duration in [0.0, -1.0, f64::NAN] {
-        let error = grip(&material, 0.25).least(Objective::Squeeze, duration, false).unwrap_err();
+        let error = grip(&material, 0.25).least(Objective::Squeeze, duration, None).unwrap_err();
         assert!(!error.is_answer(), "{error}");
     }
 }
@@ -357,16 +358,16 @@ fn the_time_to_close_is_a_limit_of_every_grip() {
     };
     let free = grip(&material, 0.25);
     let (squeeze, retreat, held) = (
-        free.least(Objective::Squeeze, 60.0, false).unwrap(),
-        free.back_off(None, 60.0, false).unwrap(),
+        free.least(Objective::Squeeze, 60.0, None).unwrap(),
+        free.back_off(None, 60.0, None).unwrap(),
         free.force_hold(None, 60.0).unwrap(),
     );
     for (closing, gets) in [(squeeze.closing, true), (0.9 * squeeze.displacement / SPEED, false)] {
-        assert_eq!(within(closing * 1.001).least(Objective::Squeeze, 60.0, false).is_ok(), gets, "{closing}");
+        assert_eq!(within(closing * 1.001).least(Objective::Squeeze, 60.0, None).is_ok(), gets, "{closing}");
     }
     let late = within(0.99 * retreat.backed.closing);
-    assert!(within(1.01 * retreat.backed.closing).back_off(None, 60.0, false).is_ok());
-    let refused = late.back_off(Some(retreat.backed.displacement), 60.0, false).unwrap_err();
+    assert!(within(1.01 * retreat.backed.closing).back_off(None, 60.0, None).is_ok());
+    let refused = late.back_off(Some(retreat.backed.displacement), 60.0, None).unwrap_err();
     assert!(matches!(&refused, GripError::NoBackOff { by, .. } if by.starts_with("closed within")), "{refused}");
     assert!(within(1.01 * held.closing).force_hold(Some(held.force), 60.0).is_ok());
     let refused = within(0.99 * held.closing).force_hold(Some(held.force), 60.0).unwrap_err();
@@ -380,7 +381,7 @@ fn the_time_to_close_is_a_limit_of_every_grip() {
         ),
         "{refused}"
     );
-    let refused = within(0.1).least(Objective::Squeeze, 60.0, false).unwrap_err();
+    let refused = within(0.1).least(Objective::Squeeze, 60.0, None).unwrap_err();
     assert!(refused.is_answer() && refused.to_string().contains("closed within 0.1"), "{refused}");
 }
 
@@ -412,15 +413,15 @@ fn forces_and_squeezes_beyond_the_body_are_answers() {
     assert!(heavy.to_string().contains("when the jaws stop"), "{heavy}");
 }
 
-/// The least squeeze for ten years was said to hold for any time, and the best guess to be assured.
+/// The least squeeze for ten years was said to hold for any time, and the best estimate to be certain.
 #[test]
-fn more_than_ten_years_and_assurance_without_intervals_are_refused() {
+fn more_than_ten_years_and_confidence_without_intervals_are_refused() {
     let material = ball(None);
     let grip = grip(&material, 0.25);
-    assert!(matches!(grip.least(Objective::Squeeze, 4e8, false), Err(GripError::Number { .. })));
-    assert!(grip.least(Objective::Squeeze, f64::INFINITY, false).is_ok());
-    assert_eq!(grip.least(Objective::Squeeze, 60.0, true), Err(GripError::NoIntervals));
-    assert_eq!(grip.back_off(None, 60.0, true), Err(GripError::NoIntervals));
+    assert!(matches!(grip.least(Objective::Squeeze, 4e8, None), Err(GripError::Number { .. })));
+    assert!(grip.least(Objective::Squeeze, f64::INFINITY, None).is_ok());
+    assert_eq!(grip.least(Objective::Squeeze, 60.0, Some(0.95)), Err(GripError::NoIntervals));
+    assert_eq!(grip.back_off(None, 60.0, Some(0.95)), Err(GripError::NoIntervals));
     assert!(!GripError::NoIntervals.is_answer());
 }
 
@@ -429,7 +430,7 @@ fn a_search_for_grips_reports_progress_and_ends_when_it_is_told_to() {
     let material = ball(Some([0.02, 0.02, 0.05, 0.02]));
     let grip = grip(&material, 0.25);
     let question = Question {
-        assured: true,
+        confidence: Some(0.95),
         duration: Some(60.0),
         ..Question::default()
     };

@@ -12,7 +12,7 @@ pub fn grip_figure(body: &GrippedBody<'_>, name: &str) -> Figure {
     let answer = &body.answer;
     let named = [
         ("displacement held", Role::Fitted),
-        ("squeeze and back off", Role::Alternative(0)),
+        ("overshoot and back off", Role::Alternative(0)),
         ("force held", Role::Alternative(1)),
         ("squeezed again", Role::Alternative(2)),
     ];

@@ -28,7 +28,7 @@ pub fn grip_bundle(body: &GrippedBody<'_>, pictures: Pictures) -> Result<Bundle,
     let mut page = Page::new("Grip", "Time to slip and closing motion").section(verdict);
     let sections = [
         ("Alternative squeezes", neighbour_table(body)),
-        ("Squeeze and back off", sensitivity_table(body)),
+        ("Overshoot and back off", sensitivity_table(body)),
         ("Squeeze again", schedule_table(body)),
         ("Material", Some(material_table(body.grip.material()))),
     ];

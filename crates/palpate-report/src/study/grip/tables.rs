@@ -42,7 +42,7 @@ pub fn grip_table(body: &GrippedBody<'_>) -> Table {
             Cell::Number(found.peak_force, 4),
             Cell::Number(end, 4),
             Cell::Number(found.needed_force, 4),
-            lasts(found.lasts),
+            if found.may_slip_at_once() { Cell::text("uncertain") } else { lasts(found.lasts) },
             interval(|(low, _)| low),
             interval(|(_, high)| high),
             Cell::Number(1e3 * found.work, 3),
@@ -52,7 +52,7 @@ pub fn grip_table(body: &GrippedBody<'_>) -> Table {
         table = table.row(holding("squeeze", &squeeze.found, end(&squeeze.course)));
     }
     if let Ok(back_off) = &answer.back_off {
-        table = table.row(holding("squeeze and back off", &back_off.found.backed, end(&back_off.course)));
+        table = table.row(holding("overshoot and back off", &back_off.found.backed, end(&back_off.course)));
     }
     if let Ok(pressed) = &answer.force_hold {
         let found = &pressed.found;
@@ -102,14 +102,14 @@ fn lasts(time: TimeToSlip) -> Cell {
     time.seconds().map_or_else(|| Cell::text("always"), |seconds| Cell::Number(seconds, 4))
 }
 
-/// What the numbers of the material do to squeeze and back off.
+/// What the numbers of the material do to overshoot and back off.
 #[must_use]
 pub fn sensitivity_table(body: &GrippedBody<'_>) -> Option<Table> {
     let found = &body.answer.back_off.as_ref().ok()?.found.sensitivities;
     let caption =
-        "Squeeze and back off: sensitivity to a parameter of the material that is 1 % larger than its estimate.";
+        "Overshoot and back off: sensitivity to a parameter of the material that is 1 % larger than its estimate.";
     Table::of("sensitivities", caption, found)
-        .column("Number", "number", "", |one| Cell::text(one.name.replace('_', " ")))
+        .column("Parameter", "parameter", "", |one| Cell::text(one.name.replace('_', " ")))
         .column("known to", "standard_error_percent", "%", |one| {
             Cell::number_or(one.error.map(|error| 100.0 * error), 2, "no standard error")
         })
