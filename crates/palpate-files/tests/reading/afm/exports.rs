@@ -237,7 +237,7 @@ fn time_without_a_series_is_put_together() {
     // 8 s for four points is 2 s a point, though fewer were recorded.
     assert_eq!(column(&contents, "time"), [0.0, 2.0, 4.0, 6.0, 8.0, 10.0, 12.0, 14.0, 16.0]);
     let time = metadata(&contents.parts[0], "time").unwrap();
-    assert!(time.starts_with("computed from the durations"), "{time}");
+    assert!(time.starts_with("computed from the requested durations"), "{time}");
 }
 
 fn refused_as_record(exports: &[Export]) -> ReadError {
