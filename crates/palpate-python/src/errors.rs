@@ -4,7 +4,8 @@ use std::fmt::Display;
 use std::io;
 
 use palpate::analysis::Finding;
-use palpate_files::description::DescriptionError;
+use palpate::units::UnitError;
+use palpate_files::description::{DescriptionError, KeyProblem};
 use palpate_jobs::{ErrorKind, JobError};
 use palpate_report::spelling::spelled;
 use pyo3::exceptions::{PyUserWarning, PyValueError};
@@ -109,9 +110,50 @@ pub(crate) fn keyword(name: &str, value: Option<&str>) -> String {
     }
 }
 
+/// What is wrong with the text that a mapping was made to: it has keys, and no lines that anybody wrote.
+pub(crate) fn of_mapping(mut error: DescriptionError) -> DescriptionError {
+    if let DescriptionError::Key { place, .. } = &mut error {
+        place.line = None;
+    }
+    error
+}
+
+/// What else would help where the value of a key of a mapping is a number without its unit: a key that says the unit.
+fn with_unit_in_key(error: &DescriptionError) -> Option<String> {
+    let DescriptionError::Key {
+        place,
+        problem:
+            KeyProblem::Quantity {
+                found,
+                error: UnitError::MissingUnit { dimension, .. },
+            },
+    } = error
+    else {
+        return None;
+    };
+    // The endings that `palpate._with_units` takes.
+    let endings = [
+        ("m", "m"),
+        ("s", "s"),
+        ("N", "n"),
+        ("Pa", "pa"),
+        ("m^2", "m2"),
+        ("/s", "per_s"),
+        ("m/s", "m_per_s"),
+        ("N/s", "n_per_s"),
+    ];
+    let si = dimension.units().iter().find_map(|(unit, _)| endings.iter().find(|(symbol, _)| symbol == unit));
+    let unit = si?.1;
+    let key = place.key.rsplit('.').next()?;
+    (place.line.is_none() && !found.starts_with('"')).then(|| format!("; or a number in SI: {key}_{unit} = {found}"))
+}
+
 /// What a description cannot be used for.
 pub(crate) fn undescribed(error: DescriptionError) -> PyErr {
-    failed(error.into())
+    let more = with_unit_in_key(&error).unwrap_or_default();
+    let mut error = JobError::from(error);
+    error.hint = error.hint.map(|hint| hint + &more);
+    failed(error)
 }
 
 /// One of the choices of an option, by its name with hyphens.

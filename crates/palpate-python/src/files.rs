@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use palpate::laws::Law;
-use palpate_files::description::read_material;
+use palpate_files::description::{parse_test, read_material};
 use palpate_jobs::input::{Described, NamedRecords, OpenedFile};
 use palpate_jobs::output::write_bundle;
 use palpate_jobs::{Batch, Convert, HoldSeen, Inspect, Reproduce, Seen, Sweep, WatchLog};
@@ -11,7 +11,7 @@ use palpate_report::document::{WatchDocument, WatchSummaryDocument};
 use palpate_report::study::{Pictures, reproduction_bundle};
 use pyo3::prelude::*;
 
-use crate::errors::{OptionError, failed, refused_plainly};
+use crate::errors::{OptionError, failed, of_mapping, refused_plainly, undescribed};
 use crate::fits::fit;
 use crate::work::{job, plain};
 
@@ -33,7 +33,10 @@ pub(crate) fn described(test: Given<'_, '_>, part: Given<'_, '_>) -> PyResult<(D
 /// The description in a file or in a text.
 pub(crate) fn read_or_parsed(path: Option<&Path>, text: Option<String>, part: Option<&str>) -> PyResult<Described> {
     match text {
-        Some(text) => Described::parse(text, part),
+        Some(text) => {
+            parse_test(&text, Path::new("test")).map_err(of_mapping).map_err(undescribed)?;
+            Described::parse(text, part)
+        }
         None => Described::read(path, part),
     }
     .map_err(failed)

@@ -81,6 +81,11 @@ macro_rules! shown {
                 self.to_arrow()?.__arrow_c_stream__(py, requested_schema)
             }
 
+            /// The rows of the table, a dict each: ``pandas.DataFrame`` takes them.
+            fn __iter__<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+                self.to_arrow()?.__iter__(py)
+            }
+
             $($methods)*
         }
     };

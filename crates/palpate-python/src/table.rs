@@ -13,7 +13,7 @@ use numpy::{PyArray1, PyArrayMethods};
 use palpate::number::significant;
 use pyo3::exceptions::{PyKeyError, PyRuntimeError, PyTypeError};
 use pyo3::prelude::*;
-use pyo3::types::{PyBytes, PyList, PyType};
+use pyo3::types::{PyBytes, PyDict, PyList, PyString, PyType};
 use pyo3_arrow::PyTable;
 
 use crate::errors::refused_plainly;
@@ -23,7 +23,8 @@ use crate::work::Made;
 ///
 /// ``table["force_n"]`` is an array where the column holds numbers (NaN where one is missing) and a list with None where it holds
 /// texts or truths. ``polars.DataFrame(table)``, ``pandas.DataFrame.from_arrow(table)`` and ``pyarrow.table(table)`` take it without
-/// a copy.
+/// a copy; ``pandas.DataFrame(table)`` copies it, row by row, and of a table without rows it has no columns. ``for row in table`` goes
+/// through the rows, a dict each.
 ///
 /// Examples
 /// --------
@@ -127,8 +128,26 @@ impl Table {
         self.batch.num_rows()
     }
 
-    fn __iter__<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
-        Ok(PyList::new(py, self.column_names())?.try_iter()?.into_any())
+    /// The rows, a dict each: ``pandas.DataFrame(table)`` is a table of them.
+    pub(crate) fn __iter__<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        let names = self.column_names();
+        let cells = |name: &String| -> PyResult<Bound<'py, PyAny>> {
+            let column = self.__getitem__(py, PyString::new(py, name).as_any())?;
+            // A row of several values stays an array.
+            let single = column.getattr("ndim").is_ok_and(|ndim| ndim.eq(1).unwrap_or(false));
+            if single { column.call_method0("tolist") } else { Ok(column) }
+        };
+        let columns: Vec<Bound<'py, PyAny>> = names.iter().map(cells).collect::<PyResult<_>>()?;
+        let row = |index: usize| -> PyResult<Bound<'py, PyDict>> {
+            let row = PyDict::new(py);
+            names
+                .iter()
+                .zip(&columns)
+                .try_for_each(|(name, column)| row.set_item(name, column.get_item(index)?))?;
+            Ok(row)
+        };
+        let rows: Vec<Bound<'py, PyDict>> = (0..self.__len__()).map(row).collect::<PyResult<_>>()?;
+        Ok(PyList::new(py, rows)?.try_iter()?.into_any())
     }
 
     fn __contains__(&self, name: &Bound<'_, PyAny>) -> bool {

@@ -148,6 +148,30 @@ def test_a_prediction_is_that_of_the_command_line_to_the_last_bit(material: palp
         assert prediction.confidence == keywords.get("confidence", 0.95)
 
 
+def test_a_record_is_predicted_along_its_own_displacement(
+    record: palpate.Record, calibration: palpate.Calibration, material: palpate.Material
+) -> None:
+    prediction = material.predict(record)
+    assert prediction.extrapolations == []
+    # The record it was calibrated on: the same motion, and the same force.
+    assert np.array_equal(prediction.time_s, calibration.time_s)
+    np.testing.assert_allclose(prediction.force_n, calibration.simulated_n, rtol=1e-9, atol=1e-9)
+    within = (prediction.reading_low_n < calibration.force_n) & (calibration.force_n < prediction.reading_high_n)
+    assert np.mean(within) == pytest.approx(0.95, abs=0.02)
+    at = material.predict(record, at_s=[10.0, 20.0], confidence=0.5)
+    assert at.time_s.tolist() == [10.0, 20.0] and at.confidence == 0.5
+    # Its body is the material's: a description that says none serves as well.
+    assert np.array_equal(material.predict(palpate.Record.from_arrays(
+        time_s=record.time_s, force_n=record.force_n, displacement_m=record.displacement_m
+    ), at_s=[10.0, 20.0]).time_s, at.time_s)
+    with pytest.raises(palpate.RecordError, match="needs the displacement of the jaw"):
+        material.predict(palpate.Record.from_arrays(time_s=record.time_s, force_n=record.force_n))
+    with pytest.raises(palpate.ModelError, match="sample times must rise"):
+        material.predict(record, at_s=[1e4])
+    with pytest.raises(palpate.OptionError, match="confidence is a share between 0 and 1, found 1"):
+        material.predict(record, confidence=1)
+
+
 def test_intervals_lie_in_each_other(material: palpate.Material) -> None:
     prediction = material.predict(SQUEEZE, at_s=[0.6, 5.0])
     assert prediction.extrapolations == []

@@ -74,6 +74,29 @@ def test_tables_go_to_every_library() -> None:
         table["nothing"]
 
 
+def test_pandas_takes_a_table_as_it_is() -> None:
+    table = palpate.fit_many(TIMES, [*SIGNALS[:3], SIGNALS[3] * 0])
+    frame, whole = pandas.DataFrame(table), pandas.DataFrame.from_arrow(table)
+    assert list(frame.columns) == table.column_names and len(frame) == 4
+    for name in table.column_names:
+        if isinstance(table[name], np.ndarray):
+            assert np.array_equal(frame[name].to_numpy(float), whole[name].to_numpy(float), equal_nan=True), name
+        else:
+            assert [None if pandas.isna(value) else value for value in frame[name]] == table[name], name
+    runs = palpate.simulate_many(
+        {
+            "specimen": {"shape": "ball", "radius": "35 mm", "modulus": "28 kPa"},
+            "law": {"name": "latency", "exponent": 5, "rate_coefficient": "2e4 /s"},
+            "step": [{"to": "5 mm", "rate": "500 mm/min", "hold": "10 s"}],
+        },
+        {"specimen.radius": [0.03, 0.035]},
+        times_s=[0.6, 10.6],
+    )
+    assert np.array_equal(np.stack(list(pandas.DataFrame(runs)["force_n"])), runs["force_n"])
+    record = palpate.Record.from_arrays(time_s=TIMES[0], force_n=SIGNALS[0])
+    assert pandas.DataFrame(record)["force_n"].tolist() == record.force_n.tolist()
+
+
 def test_wrong_columns_are_refused() -> None:
     with pytest.raises(palpate.OptionError, match="a column of lists of numbers"):
         palpate.fit_many(pyarrow.array(["a"]), pyarrow.array(["b"]))
@@ -145,8 +168,11 @@ def test_the_columns_are_those_of_the_law_whatever_the_curves_are(law: str) -> N
 def test_a_table_is_a_mapping_of_columns_and_shows_itself() -> None:
     table = palpate.fit_many(TIMES, [*SIGNALS[:3], SIGNALS[3] * 0])
     assert "exponent" in table and "nothing" not in table and 0 not in table
-    assert list(table) == table.keys() == table.column_names
-    assert list(dict(table)) == table.column_names
+    assert table.keys() == list(dict(table)) == table.column_names
+    rows = list(table)
+    assert len(rows) == len(table) == 4 and all(list(row) == table.column_names for row in rows)
+    assert [row["exponent"] for row in rows[:3]] == table["exponent"][:3].tolist() and np.isnan(rows[3]["exponent"])
+    assert [row["error"] for row in rows] == table["error"]
     assert table["samples"].dtype == np.float64 and np.isnan(table["samples"][3])
     page = table._repr_html_()
     assert page.count("<tr>") == 5 and "<th>exponent</th>" in page and "4 rows" in page

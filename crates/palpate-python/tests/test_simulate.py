@@ -14,7 +14,7 @@ import numpy as np
 import palpate
 import polars
 import pytest
-from conftest import relaxation
+from conftest import ROOT, relaxation
 
 PAPER: dict[str, Any] = {
     "specimen": {"shape": "ball", "radius": "35 mm", "modulus": "28 kPa"},
@@ -80,6 +80,54 @@ def test_a_state_can_be_copied_and_sent() -> None:
     # Under a force that stays the body creeps, at first not at all.
     assert state.step_force(1e-9, state.force_n) == pytest.approx(3e-3, rel=1e-5)
     assert state.step_force(0.1, state.force_n) > 3e-3
+
+
+def test_a_number_in_si_stands_under_a_key_with_its_unit() -> None:
+    bare: dict[str, Any] = {
+        "specimen": {"shape": "ball", "radius_m": 0.035, "modulus_pa": np.float64(28e3)},
+        "law": {"name": "latency", "exponent": 5, "rate_coefficient_per_s": 20_000},
+        "step": [{"to_m": 0.005, "rate_m_per_s": 0.5 / 60, "hold_s": 10}],
+        "output": {"times_s": np.array([0.6, 5.0])},
+    }
+    texts: dict[str, Any] = {
+        "specimen": {"shape": "ball", "radius": "0.035 m", "modulus": "28 kPa"},
+        "law": {"name": "latency", "exponent": 5, "rate_coefficient": "2e4 /s"},
+        "step": [{"to": "5 mm", "rate": "500 mm/min", "hold": "10 s"}],
+        "output": {"times": ["0.6 s", "5 s"]},
+    }
+    assert palpate.simulate(bare).force_n == pytest.approx(palpate.simulate(texts).force_n, rel=1e-12)
+    wrong: list[tuple[dict[str, Any], str]] = [
+        ({"radius_m": "35 mm"}, "specimen.radius_m: expected a number in m, found '35 mm'\nhint: write the number alone, or radius = \"... m\""),
+        ({"radius_m": float("nan")}, "specimen.radius_m: expected a finite number, found nan"),
+        ({"radius_m": 0.035, "radius": "35 mm"}, "specimen.radius_m: expected either this or specimen.radius, found both"),
+        ({"radius_s": 0.035}, 'specimen.radius = "0.035 s": "s" is not a unit of length'),
+    ]
+    for specimen, told in wrong:
+        with pytest.raises(palpate.OptionError) as caught:
+            palpate.simulate({**texts, "specimen": {"shape": "ball", "modulus": "28 kPa", **specimen}})
+        assert told in str(caught.value)
+    with pytest.raises(palpate.OptionError, match=r'specimen.radius = 0.035: .*\n.*radius = "0.035 mm".*; or a number in SI: radius_m = 0.035'):
+        palpate.simulate({**texts, "specimen": {"shape": "ball", "modulus": "28 kPa", "radius": 0.035}})
+
+
+def test_a_wrong_key_of_a_mapping_is_named_by_its_path() -> None:
+    step = {"to": "5 mm", "rate": "500 mm/min"}
+    material = palpate.Material.read(ROOT / "examples/records/ball-material.toml")
+    wrong = [{**step, "holds": "10 s"}]
+    for call in (
+        lambda: palpate.simulate({**PAPER, "step": wrong}),
+        lambda: palpate.simulate_many({**PAPER, "step": wrong}, {"law.exponent": [5.0]}),
+        lambda: material.predict(wrong),
+    ):
+        with pytest.raises(palpate.OptionError) as caught:
+            call()
+        assert str(caught.value).startswith("protocol: step[1].holds: unknown key") and "did you mean hold?" in str(caught.value)
+    with pytest.raises(palpate.OptionError, match=r"^protocol: step\[2\].hold = 10: expected a unit"):
+        material.predict([step, {**step, "hold": 10}])
+    with pytest.raises(palpate.OptionError, match=r"^test: specimen.radus: unknown key"):
+        palpate.read(ROOT / "examples/records/ball.csv", test={"specimen": {"shape": "ball", "radus": "35 mm"}})
+    with pytest.raises(palpate.OptionError, match=r"^model: law.exponents: unknown key"):
+        palpate.ContactState({**PAPER, "law": {"name": "latency", "exponents": 5}})
 
 
 def test_what_no_body_can_do_is_refused() -> None:

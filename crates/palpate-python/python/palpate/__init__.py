@@ -142,6 +142,54 @@ def _with_body(table: Mapping[str, Any]) -> Mapping[str, Any]:
     return {**{name: table[name] for name in table if name != "material"}, **{name: body[name] for name in tables}}
 
 
+#: What a key of a mapping may end in, where its value is a number in SI, or several: ``radius_m`` is ``radius`` in m.
+_UNITS = {
+    "_m_per_s": "m/s",
+    "_n_per_s": "N/s",
+    "_per_s": "/s",
+    "_pa": "Pa",
+    "_m2": "m^2",
+    "_n": "N",
+    "_s": "s",
+    "_m": "m",
+}
+
+
+def _with_units(table: Mapping[str, Any], path: str = "") -> dict[str, Any]:
+    """A mapping whose numbers under a key with a unit are texts with it, under the key without."""
+    from numbers import Real
+
+    def said(value: Any, unit: str, key: str) -> Any:
+        if isinstance(value, (list, tuple, np.ndarray)):
+            return [said(one, unit, f"{key}[{i}]") for i, one in enumerate(value, 1)]
+        if isinstance(value, Real) and not isinstance(value, (bool, np.bool_)):
+            if not np.isfinite(float(value)):
+                raise OptionError(f"{key}: expected a finite number, found {float(value)}")
+            return f"{float(value)!r} {unit}"
+        hint = f"hint: write the number alone, or {key.rpartition('.')[2][: -len(ending(key))]} = \"... {unit}\""
+        raise OptionError(f"{key}: expected a number in {unit}, found {value!r}\n{hint}")
+
+    def ending(key: str) -> str:
+        return next((end for end in _UNITS if key.endswith(end) and len(key) > len(end)), "")
+
+    def nested(value: Any, key: str) -> Any:
+        if isinstance(value, Mapping):
+            return _with_units(value, f"{key}.")
+        if isinstance(value, (list, tuple)):
+            return [nested(one, f"{key}[{i}]") for i, one in enumerate(value, 1)]
+        return value
+
+    made: dict[str, Any] = {}
+    for name, value in table.items():
+        name, key = str(name), f"{path}{name}"
+        end = ending(name)
+        bare = name.removesuffix(end)
+        if bare in made or (end and bare in table):
+            raise OptionError(f"{key}: expected either this or {path}{bare}, found both\nhint: remove one of them")
+        made[bare] = said(value, _UNITS[end], key) if end else nested(value, key)
+    return made
+
+
 def _toml(table: Mapping[str, Any]) -> str:
     import json
     import math
@@ -168,7 +216,7 @@ def _toml(table: Mapping[str, Any]) -> str:
             return repr(float(entry))
         raise OptionError(f"{key}: expected a text, a number, a list or a table, found {type(entry).__name__}")
 
-    table = _with_body(table)
+    table = _with_units(_with_body(table))
     return "".join(f"{text(str(key))} = {value(table[key], str(key))}\n" for key in table)
 
 
@@ -387,7 +435,8 @@ def simulate(
     ----------
     protocol
         Path of a protocol (TOML), or a mapping with its tables: ``{"specimen": {...}, "law": {...}, "step": [{...}, ...]}``.
-        Quantities are texts with a unit, such as ``"5 mm"``. ``"material"``, a `Material` or the path of its file, stands for
+        Quantities are texts with a unit, such as ``"radius": "35 mm"``, or numbers in SI under a key that says the unit, such as
+        ``"radius_m": 0.035``; ``_m``, ``_s``, ``_n``, ``_pa``, ``_m2``, ``_per_s``, ``_m_per_s`` and ``_n_per_s`` do. ``"material"``, a `Material` or the path of its file, stands for
         specimen, law and contact.
     specimen, law, contact, output
         Tables that stand in place of those of a mapping.

@@ -10,7 +10,7 @@ use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyList, PyTuple, PyType};
 
 use crate::arrays::doubles;
-use crate::errors::{ModelError, OptionError, refused_plainly, undescribed};
+use crate::errors::{ModelError, OptionError, of_mapping, refused_plainly, undescribed};
 use crate::files::said;
 use crate::shown::shown;
 use crate::work::{Made, briefly};
@@ -22,7 +22,7 @@ fn described(model: &Bound<'_, PyAny>) -> PyResult<(ContactModel, String)> {
         Some(path) => (latency(read_scene(&path))?, std::fs::read_to_string(&path)?, path),
         None => {
             let (text, path) = (text.unwrap_or_default(), PathBuf::from("model"));
-            (latency(parse_scene(&text, &path))?, text, path)
+            (latency(parse_scene(&text, &path).map_err(of_mapping))?, text, path)
         }
     };
     Ok((model, self_contained(&text, &path).map_err(undescribed)?))

@@ -10,7 +10,7 @@ use palpate_report::study::write_trajectory;
 use pyo3::prelude::*;
 use serde::{Deserialize, Serialize};
 
-use crate::errors::{ModelError, refused_plainly, undescribed};
+use crate::errors::{ModelError, of_mapping, refused_plainly, undescribed};
 use crate::shown::shown;
 use crate::table::{Column, Table};
 use crate::work::at_length;
@@ -28,7 +28,7 @@ pub(crate) struct Trajectory {
 pub(crate) fn simulate(py: Python<'_>, path: Option<PathBuf>, text: Option<&str>) -> PyResult<Trajectory> {
     let protocol = match path {
         Some(path) => read_protocol(&path),
-        None => parse_protocol(text.unwrap_or_default(), Path::new("protocol")),
+        None => parse_protocol(text.unwrap_or_default(), Path::new("protocol")).map_err(of_mapping),
     };
     let protocol = protocol.map_err(undescribed)?;
     let series = at_length(py, move |_| walk(protocol.drive(), &protocol.contact, &protocol.sampling))?;

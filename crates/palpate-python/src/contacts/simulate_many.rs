@@ -17,7 +17,7 @@ use pyo3::prelude::*;
 use rayon::prelude::*;
 
 use crate::arrays::doubles;
-use crate::errors::{ModelError, PalpateError, refused_plainly, undescribed};
+use crate::errors::{ModelError, PalpateError, of_mapping, refused_plainly, undescribed};
 use crate::table::Table;
 use crate::work::{Heard, at_length_told};
 
@@ -35,6 +35,7 @@ pub(crate) fn simulate_many(
     times_s: Option<&Bound<'_, PyAny>>,
     progress: Option<Py<PyAny>>,
 ) -> PyResult<Table> {
+    let of_text = path.is_none();
     let (path, text) = match path {
         Some(path) => match std::fs::read_to_string(&path) {
             Ok(text) => (path, text),
@@ -50,7 +51,8 @@ pub(crate) fn simulate_many(
     };
     let columns = numbers.iter().map(|(name, values)| Ok((name.as_str(), doubles(values, name)?)));
     let columns: Vec<(&str, Vec<f64>)> = columns.collect::<PyResult<_>>()?;
-    let sweep = parse_runs(&text, &path, &columns).map_err(undescribed)?;
+    let lines = |error| if of_text { of_mapping(error) } else { error };
+    let sweep = parse_runs(&text, &path, &columns).map_err(lines).map_err(undescribed)?;
     let times = times_s.map(|times| doubles(times, "times_s")).transpose()?;
     if let Some(times) = &times {
         // Times outside the motion are wrong for all runs alike, but for those whose holds are swept.

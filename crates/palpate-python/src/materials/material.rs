@@ -14,7 +14,9 @@ use serde::de::Error;
 use serde::{Deserialize, Deserializer, Serializer};
 
 use crate::arrays::doubles;
-use crate::errors::{ModelError, OptionError, choice, failed, refused, refused_plainly, undescribed, unwritten, warn};
+use crate::errors::{
+    ModelError, OptionError, choice, failed, of_mapping, refused, refused_plainly, undescribed, unwritten, warn,
+};
 use crate::files::said;
 use crate::fits::fit::{PyEstimate, square, told};
 use crate::materials::grip::Grip;
@@ -71,6 +73,18 @@ impl Material {
 
     fn estimated(&self) -> &[MaterialParameter] {
         &self.source.file.material.parameters
+    }
+}
+
+/// Times of which each gets a row, in their order; none if they are left out.
+pub(crate) fn rising_times(at_s: Option<&Bound<'_, PyAny>>) -> PyResult<Vec<f64>> {
+    let at_s = at_s.map(|times| doubles(times, "at_s")).transpose()?.unwrap_or_default();
+    match (1..at_s.len()).find(|index| at_s[*index] <= at_s[index - 1]) {
+        Some(index) => {
+            let message = format!("at_s: expected times that rise, found {} s at index {index}", at_s[index]);
+            Err(refused_plainly::<ModelError>(message))
+        }
+        None => Ok(at_s),
     }
 }
 
@@ -192,16 +206,19 @@ shown! {
         self.source.file.to_toml()
     }
 
-    /// What the body does under a protocol, with intervals: what ``palpate predict`` says.
+    /// What the body does under a protocol, or along the measured displacement of a record, with intervals: what ``palpate predict`` says.
     ///
     /// The variance of the force is the sum over the columns of a root of the covariance, C = L L^T, of ((f(+L_k) - f(-L_k))/2)^2.
     ///
     /// Parameters
     /// ----------
-    /// protocol : path, mapping or sequence of mappings
+    /// protocol : path, mapping, sequence of mappings, or Record
     ///     A protocol whose body, if it has one, is left aside; or its steps alone: ``[{"to": "12 mm", "rate": "500 mm/min", "hold": "60 s"}]``.
+    ///     Of a record the displacement is taken, from first touch on, corrected as its description says; the times are on its clock, and
+    ///     its force serves to find first touch alone.
     /// at_s : array_like, shape (N,), optional
-    ///     Times at which the force is wanted, s, rising and inside the motion; those of the protocol's output if left out.
+    ///     Times at which the force is wanted, s, rising and inside the motion; if left out those of the protocol's output, or the samples of
+    ///     the record.
     /// confidence : float
     ///     Coverage of the intervals, between 0 and 1.
     ///
@@ -216,6 +233,8 @@ shown! {
     ///     A protocol that says what no contact can do; a coverage that is no share.
     /// ModelError
     ///     A motion that the body cannot take, a time outside it.
+    /// RecordError
+    ///     A record without a displacement, or without phases.
     ///
     /// Warns
     /// -----
@@ -230,19 +249,20 @@ shown! {
         at_s: Option<&Bound<'_, PyAny>>,
         confidence: f64,
     ) -> PyResult<Prediction> {
+        // A record knows how its own motion is found; what it needs is what is known of the body.
+        if let Ok(by_record) = protocol.getattr("_predicted_by") {
+            let predicted = by_record.call1((self.clone(), at_s, confidence))?;
+            self.warn_of_open(py)?;
+            return Ok(predicted.cast::<Prediction>()?.get().clone());
+        }
         let (path, text) = said("_driven", protocol)?;
         let place = path.clone().unwrap_or_else(|| PathBuf::from("protocol"));
         let protocol = match path {
             Some(path) => read_protocol_of(&path, &self.source.file),
-            None => parse_protocol_of(&text.unwrap_or_default(), &place, &self.source.file),
+            None => parse_protocol_of(&text.unwrap_or_default(), &place, &self.source.file).map_err(of_mapping),
         };
         let protocol = protocol.map_err(undescribed)?;
-        let at_s = at_s.map(|times| doubles(times, "at_s")).transpose()?.unwrap_or_default();
-        // A row comes back for every time, in their order.
-        if let Some(index) = (1..at_s.len()).find(|index| at_s[*index] <= at_s[index - 1]) {
-            let message = format!("at_s: expected times that rise, found {} s at index {index}", at_s[index]);
-            return Err(refused_plainly::<ModelError>(message));
-        }
+        let at_s = rising_times(at_s)?;
         let (question, source) = (Predict { at_s, confidence }, self.source.clone());
         let done = job(py, move |watch| {
             let place = place.display().to_string();

@@ -16,7 +16,7 @@ use crate::table::Table;
 ///
 /// Made by `Material.predict`.
 #[pyclass(name = "Prediction", module = "palpate", frozen, eq)]
-#[derive(PartialEq, Serialize, Deserialize)]
+#[derive(Clone, PartialEq, Serialize, Deserialize)]
 #[serde(transparent)]
 pub(crate) struct Prediction {
     predicted: Predicted,

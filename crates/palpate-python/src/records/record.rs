@@ -9,9 +9,11 @@ use arrow_cast::cast;
 use arrow_schema::DataType;
 use numpy::PyArray1;
 use palpate::analysis::corrected;
+use palpate::calibrate::CalibrateError;
 use palpate::record::Record as Measured;
+use palpate::simulate::SimulateError;
 use palpate_jobs::input::{Described, Measurement, OpenedFile};
-use palpate_jobs::{Analyze, Calibrate, Compare};
+use palpate_jobs::{Analyze, Calibrate, Compare, ErrorKind, JobError};
 use palpate_report::result::{Input, word};
 use pyo3::prelude::*;
 use pyo3::types::PyType;
@@ -23,6 +25,8 @@ use crate::errors::{OptionError, RecordError, choice, refused, refused_plainly};
 use crate::files::{self, Given, all_laws, described, read_or_parsed};
 use crate::fits::fit;
 use crate::materials::calibration::Calibration;
+use crate::materials::material::{Material, rising_times};
+use crate::materials::prediction::Prediction;
 use crate::records::analysis::Analysis;
 use crate::records::compare::RecordComparison;
 use crate::records::kept::Kept;
@@ -511,6 +515,34 @@ shown! {
         Calibration::of(py, self.measured(test)?, job)
     }
 
+    /// The prediction of `Material.predict` along the displacement of this record.
+    #[pyo3(signature = (material, at_s, confidence))]
+    fn _predicted_by(
+        &self,
+        py: Python<'_>,
+        material: &Material,
+        at_s: Option<&Bound<'_, PyAny>>,
+        confidence: f64,
+    ) -> PyResult<Prediction> {
+        let (at, body) = (rising_times(at_s)?, material.body());
+        let Measurement { record, options, .. } = self.measured(None)?;
+        if !(confidence > 0.0 && confidence < 1.0) {
+            let message = format!("confidence is a share between 0 and 1, found {confidence}");
+            return Err(refused_plainly::<OptionError>(message));
+        }
+        let predicted = job(py, move |watch| {
+            body.predict_record(&record, &options, &at, confidence, watch).map_err(|error| {
+                let kind = match error {
+                    CalibrateError::Cancelled(_) | CalibrateError::Simulate(SimulateError::Cancelled(_)) => ErrorKind::Cancelled,
+                    CalibrateError::NoDisplacement | CalibrateError::Analysis(_) => ErrorKind::Record,
+                    _ => ErrorKind::Model,
+                };
+                JobError::new(kind, &error, error.hint())
+            })
+        })?;
+        Prediction::of(py, predicted)
+    }
+
     /// Which law predicts the holds of the record, how sure that is, and what another would cost: what ``palpate compare`` finds.
     ///
     /// Parameters
@@ -568,6 +600,11 @@ shown! {
         columns.extend(self.record.displacement().map(|values| ("displacement_m", column(values))));
         columns.push(("force_n", column(self.record.force())));
         Table::of(columns)
+    }
+
+    /// The rows of the table, a dict each: ``pandas.DataFrame`` takes them.
+    fn __iter__<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        self.to_arrow()?.__iter__(py)
     }
 
     #[pyo3(signature = (requested_schema=None))]

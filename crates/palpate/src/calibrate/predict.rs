@@ -2,8 +2,10 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::Material;
+use super::{CalibrateError, CalibrationData, Material};
+use crate::analysis::{AnalysisOptions, Geometry};
 use crate::number::significant;
+use crate::record::Record;
 use crate::simulate::{Contact, Drive, ProgramStep, Sampling, SimulateError, Trajectory, simulate_watched};
 use crate::statistics::coverage_factor;
 use crate::watch::{Cancelled, Stages, Unwatched, Watch};
@@ -157,6 +159,34 @@ impl Material {
         watch: &mut dyn Watch,
     ) -> Result<Prediction, SimulateError> {
         self.predicted(drive.into(), sampling, confidence, watch)
+    }
+
+    /// The same along the measured displacement of a record, at the times (s) `at` on its clock, or at its samples if there are none: corrected,
+    /// cut and set to zero at first touch as [`CalibrationData::of_record`] does, with this body in place of the one of `options`. The
+    /// record's force serves to find first touch alone.
+    ///
+    /// # Errors
+    /// As for [`CalibrationData::of_record`] and [`predict`](Self::predict).
+    pub fn predict_record(
+        &self,
+        record: &Record,
+        options: &AnalysisOptions,
+        at: &[f64],
+        confidence: f64,
+        watch: &mut dyn Watch,
+    ) -> Result<Prediction, CalibrateError> {
+        let options = AnalysisOptions {
+            geometry: Some(Geometry {
+                shape: self.body.shape.clone(),
+                sides: self.body.sides,
+                modulus: None,
+            }),
+            separation: self.body.separation,
+            ..options.clone()
+        };
+        let data = CalibrationData::of_record(record, &options)?;
+        let times = if at.is_empty() { data.times() } else { at };
+        Ok(self.predict_watched(data.motion(), &Sampling::Times(times.to_vec()), confidence, watch)?)
     }
 
     /// Without generics, so that it is compiled here, once, and not wherever it is called.

@@ -48,6 +48,18 @@ impl Places {
         self.entries.iter().find(|entry| entry.path == path).map(|entry| entry.key.start)
     }
 
+    /// The path of a key with the numbers of list entries in it, where the reader left them out: `step[1].hold` for `step.hold`.
+    pub(crate) fn numbered(&self, path: String) -> String {
+        let without = |path: &str| {
+            path.split('[').map(|part| part.split_once(']').map_or(part, |(_, rest)| rest)).collect::<String>()
+        };
+        let plain = |entry: &&Entry| without(&entry.path) == path;
+        match self.start_exactly(&path) {
+            Some(_) => path,
+            None => self.entries.iter().find(plain).map_or_else(|| path.clone(), |entry| entry.path.clone()),
+        }
+    }
+
     /// Where the key with this path starts, or the nearest table around it that is there.
     pub(crate) fn start_of(&self, path: &str) -> Option<usize> {
         self.start_exactly(path).or_else(|| self.start_of(path.rsplit_once('.')?.0))
@@ -108,5 +120,7 @@ mod tests {
         assert_eq!(places.start_of("a.b.missing"), text.find("b]"));
         assert_eq!(places.start_of("step[2].to"), text.rfind("to"));
         assert_eq!(places.start_of("nothing"), None);
+        assert_eq!(places.numbered("step.to".to_owned()), "step[1].to");
+        assert_eq!(places.numbered("a.b.missing".to_owned()), "a.b.missing");
     }
 }

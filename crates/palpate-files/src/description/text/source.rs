@@ -71,8 +71,9 @@ impl Source<'_> {
     }
 
     pub(crate) fn place(&self, key: impl Into<String>) -> KeyPlace {
-        let key = key.into();
-        let start = Places::of(self.text).start_of(&key);
+        let places = Places::of(self.text);
+        let key = places.numbered(key.into());
+        let start = places.start_of(&key);
         KeyPlace {
             path: self.path.to_owned(),
             line: start.map(|start| self.line_and_column(start).0),
