@@ -14,9 +14,20 @@ use palpate_report::document::{
 use schemars::{JsonSchema, schema_for};
 use serde_json::Value;
 
+/// What `palpate --version` prints: what a report of a fault needs.
+const LONG_VERSION: &str = concat!(
+    env!("CARGO_PKG_VERSION"),
+    "\ncommit ",
+    env!("PALPATE_COMMIT"),
+    "\ntarget ",
+    env!("PALPATE_TARGET"),
+    "\nfeatures ",
+    env!("PALPATE_FEATURES"),
+);
+
 /// Viscoelastic contact: laws from squeeze-and-hold tests, and forces from laws.
 #[derive(Debug, Parser)]
-#[command(name = "palpate", version, about, max_term_width = 100, after_help = AFTER_HELP)]
+#[command(name = "palpate", version, long_version = LONG_VERSION, about, max_term_width = 100, after_help = AFTER_HELP)]
 pub(crate) struct Arguments {
     #[command(subcommand)]
     pub(crate) command: Command,
@@ -472,8 +483,8 @@ Examples:
   palpate watch gripper.csv --speed 1
   palpate watch gripper.csv --format jsonl --every \"0.1 s\" | jq .time_to_slip_s")]
 pub(crate) struct WatchArguments {
-    /// Log with time, force and, preferably, displacement
-    #[arg(value_name = "LOG")]
+    /// Log with time, force and, preferably, displacement; - or nothing is standard input
+    #[arg(value_name = "LOG", default_value = "-", hide_default_value = true)]
     pub(crate) log: PathBuf,
     /// Test description (TOML): columns and units
     #[arg(long, value_name = "TEST.toml")]

@@ -117,7 +117,7 @@ fn strain_rates() -> Figure {
     Figure::new(
         "strain-rates",
         "Strain rate against strain during five holds with the fitted law (a), and what the law \
-         leaves over (b).",
+         leaves as a residual (b).",
     )
     .panel(panel)
     .panel(residuals.zero_line().share(0.4))

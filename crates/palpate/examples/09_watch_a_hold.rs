@@ -33,7 +33,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         if seen.began {
             println!("{time:.3} s: a hold began at {:.3} s", seen.held_since.unwrap_or(time));
         }
-        if seen.phase == ContactPhase::PositionHold && time > 0.7 + 2.0 * f64::from(told) && told < 4 {
+        if seen.phase == ContactPhase::Holding && time > 0.7 + 2.0 * f64::from(told) && told < 4 {
             told += 1;
             match seen.time_to_slip {
                 Some(SlipForecast::Known {

@@ -125,3 +125,19 @@ fn rows_out_of_order_are_told_and_readings_that_are_none_are_refused() {
     let none = file(folder.path(), "none.csv", rows.join("\n"));
     assert!(refused(folder.path(), &["watch", &none]).contains("expected a finite number"));
 }
+
+#[test]
+fn a_log_comes_through_a_pipe() {
+    let folder = tempdir().unwrap();
+    let log = file(folder.path(), "log.csv", ramp_and_hold(5.0, 100.0));
+    let piped = |arguments: &[&str]| {
+        let input = std::fs::File::open(&log).unwrap();
+        let mut command = std::process::Command::new(env!("CARGO_BIN_EXE_palpate"));
+        let output = command.args(arguments).current_dir(folder.path()).stdin(input).output().unwrap();
+        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+        String::from_utf8(output.stdout).unwrap()
+    };
+    let named = done(folder.path(), &["watch", &log, "--every", "10 s"]);
+    assert_eq!(piped(&["watch", "-", "--every", "10 s"]), named);
+    assert_eq!(piped(&["watch", "--every", "10 s"]), named);
+}

@@ -283,7 +283,7 @@ fn every_dependency_builds_with_our_rust() {
 }
 
 /// Words of this project's own for which the field has one, and that one.
-const REFUSED_WORDS: [(&str, &str); 10] = [
+const REFUSED_WORDS: [(&str, &str); 24] = [
     ("foretell", "predict"),
     ("foretold", "predicted, held-out"),
     ("rival", "alternative"),
@@ -294,6 +294,20 @@ const REFUSED_WORDS: [(&str, &str); 10] = [
     ("even-strain", "uniform-strain"),
     ("evenstrain", "UniformStrain"),
     ("materialnumber", "MaterialParameter"),
+    ("pure number", "dimensionless"),
+    ("numbers of the law", "parameters of the law"),
+    ("numbers of a law", "parameters of a law"),
+    ("numbers of the material", "parameters of the material"),
+    ("numbers of a material", "parameters of a material"),
+    ("do as well", "are not distinguishable from the best"),
+    ("does as well", "is not distinguishable from the best"),
+    ("best or as good", "not distinguishable from the best"),
+    ("leaves over", "residual"),
+    ("--assured", "--confidence"),
+    ("ghost", "redundant term"),
+    ("exponent_fixed", "law"),
+    ("prediction_error", "holdout_error"),
+    ("force_deviation_n", "force_standard_error_n"),
 ];
 
 /// Messages, options, identifiers, snapshots and documents speak the language of the field.

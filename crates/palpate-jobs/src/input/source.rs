@@ -27,8 +27,18 @@ pub(crate) struct Source {
 }
 
 impl Source {
-    /// The file at `path`.
+    /// The file at `path`; `-` is standard input, read to its end.
     pub(crate) fn open(path: &Path) -> Result<Self, JobError> {
+        if path == Path::new("-") {
+            let mut bytes = Vec::new();
+            let read = io::stdin().lock().read_to_end(&mut bytes);
+            read.map_err(|error| JobError::unread(Path::new("standard input"), &error))?;
+            let digest = sha256(&bytes);
+            return Ok(Self {
+                input: Input::from_bytes(Path::new("standard input"), bytes).map_err(ReadError::File)?,
+                digest: LazyCell::new(Box::new(|| Ok(digest))),
+            });
+        }
         let short = std::fs::metadata(path).is_ok_and(|about| about.is_file() && about.len() <= IN_MEMORY);
         let (input, digest): (_, Box<dyn FnOnce() -> Result<String, JobError>>) =
             match short.then(|| std::fs::read(path)) {

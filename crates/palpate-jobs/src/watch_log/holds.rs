@@ -66,7 +66,7 @@ impl Holds {
     /// Takes an observation and says what happened with it.
     pub(super) fn follow(&mut self, seen: &Observation) -> Vec<Event> {
         let mut events = Vec::new();
-        if seen.phase != ContactPhase::PositionHold
+        if seen.phase != ContactPhase::Holding
             && let Some(hold) = self.now.take()
         {
             self.ended.push(hold);

@@ -14,7 +14,7 @@ use crate::shown::shown;
 use crate::table::{Column, Table, columns};
 use crate::work::{job, plain, printed};
 
-/// One set of parameters for a whole record, ramps and holds alike: a material, what its law leaves over, and its alternatives.
+/// One set of parameters for a whole record, ramps and holds alike: a material, the residuals of its law, and its alternatives.
 ///
 /// Made by `Record.calibrate`. ``print(calibration)`` shows what ``palpate calibrate`` does; series are tables for polars, pandas and
 /// pyarrow, and a notebook shows tables and figure.

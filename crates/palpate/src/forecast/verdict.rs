@@ -38,7 +38,7 @@ pub(super) fn judge(comparison: &Comparison) -> Option<Verdict> {
     let usable = || figures().filter(move |(row, _)| row.is_good() || !any_good);
     let best = usable().next()?.1;
     let alike: Vec<(&Row, f64)> = usable().filter(|(_, figure)| comparison.as_good(*figure, best)).collect();
-    // A spectrum has no parameters to carry to another test, so a law that does as well goes first.
+    // A spectrum has no parameters to carry to another test, so a law that is not distinguishable from it goes first.
     let (chosen, figure) = *alike.iter().min_by(|(a, one), (b, other)| {
         let spectrum = |row: &Row| row.law == Law::Spectrum;
         let simpler = spectrum(a).cmp(&spectrum(b)).then(a.effective_parameters.total_cmp(&b.effective_parameters));

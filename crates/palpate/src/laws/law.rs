@@ -67,10 +67,17 @@ pub const MOST_TERMS: usize = 5;
 
 /// A text that names no law.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
-#[error("no law is called {found:?}; laws are {}", Law::NAMES.join(", "))]
+#[error("no law is called {found:?}; laws, the most similar name first, are {}", nearest(found).join(", "))]
 pub struct UnknownLaw {
     /// What was given.
     pub found: String,
+}
+
+/// The names of laws, those most similar to `found` first.
+fn nearest(found: &str) -> Vec<&'static str> {
+    let mut names = Law::NAMES.to_vec();
+    names.sort_by(|a, b| strsim::jaro_winkler(b, found).total_cmp(&strsim::jaro_winkler(a, found)));
+    names
 }
 
 impl Law {

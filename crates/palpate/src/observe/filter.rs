@@ -12,7 +12,7 @@ use crate::contact::RateDependence;
 use crate::latency::LatencyLaw;
 use crate::simulate::{Contact, ContactModel, ContactState, StepError};
 
-/// Readings closer than this (s) tell no more than one: what a model leaves over lasts longer.
+/// Readings closer than this (s) tell no more than one: the residuals of a model last longer.
 const APART: f64 = 0.01;
 /// A mean square of normalised surprises above which the body is not the one that was calibrated.
 const INNOVATION_LIMIT: f64 = 6.0;

@@ -43,7 +43,7 @@
 //! }
 //! assert!(warned.is_some_and(|time| time < 0.5 + 0.81));
 //! let seen = observer.feed(60.0, Some(0.005), 1.2 + 1.7 * decay(6.0 * 59.5, 5.0))?;
-//! assert_eq!(seen.phase, ContactPhase::PositionHold);
+//! assert_eq!(seen.phase, ContactPhase::Holding);
 //! assert!((seen.held_since.unwrap() - 0.5).abs() < 2e-3);
 //! assert!((seen.equilibrium_force.unwrap().value - 1.2).abs() < 1e-3);
 //! # Ok::<(), palpate::observe::ObserveError>(())

@@ -15,7 +15,7 @@ pub enum ContactPhase {
     /// The jaw closes, or the force rises.
     Loading,
     /// Displacement or force is held.
-    PositionHold,
+    Holding,
     /// The jaw opens, or the force falls as no body relaxes.
     Unloading,
 }

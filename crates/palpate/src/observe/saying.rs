@@ -15,7 +15,7 @@ impl Observer {
     /// What is said after the tick at `time` (s).
     pub(super) fn say(&self, time: f64, began: bool) -> Observation {
         let phase = match &self.seen.hold {
-            Some(_) => ContactPhase::PositionHold,
+            Some(_) => ContactPhase::Holding,
             None if self.is_open() => ContactPhase::Free,
             None if self.direction() < 0.0 => ContactPhase::Unloading,
             None => ContactPhase::Loading,
@@ -79,7 +79,7 @@ impl Observer {
         let Some(slip) = self.options.slip_force else {
             return Slip::None;
         };
-        if said.phase != ContactPhase::PositionHold {
+        if said.phase != ContactPhase::Holding {
             return Slip::None;
         }
         let noise = self.seen.force_noise.deviation().unwrap_or(0.0) * Smooth::kept();

@@ -9,7 +9,7 @@ use crate::vector::elementary::exp;
 /// Below this the faces do not feel each other: what the images add is below 2e-16 of the slope.
 const FACES_APART_BELOW: f64 = 1.0 / 15.0;
 
-/// φ = (8/π²) Σ exp(−k² s)/k² over odd k, and ∂φ/∂ln s; `s` = λt ≥ 0 with λ = π² D/L² (a pure number).
+/// φ = (8/π²) Σ exp(−k² s)/k² over odd k, and ∂φ/∂ln s; `s` = λt ≥ 0 with λ = π² D/L² (dimensionless).
 ///
 /// φ falls from 1, at first as 1 − 4 √(s/π³). Relative error below 1e-14 in φ and in the derivative; at s = 1
 /// φ = 0.298 203. Both are 0 from s = 700 on.

@@ -29,7 +29,7 @@ pub struct MittagLeffler {
 
 /// φ = E_α(−s^α) = Σ (−s^α)^k / Γ(αk + 1) with its derivatives.
 ///
-/// `s` = λt ≥ 0 (a pure number), 0.05 ≤ `alpha` ≤ 1; α = 1 is exp(−s), α = ½ is eˢ erfc(√s), and for large s
+/// `s` = λt ≥ 0 (dimensionless), 0.05 ≤ `alpha` ≤ 1; α = 1 is exp(−s), α = ½ is eˢ erfc(√s), and for large s
 /// φ → s^(−α)/Γ(1 − α). Relative error of φ below 1e-11 for s up to 1e30, of the derivatives below 1e-10.
 /// At s = 1, α = ½ φ = e·erfc(1) = 0.427 583 576 155 807.
 ///

@@ -81,7 +81,7 @@ fn a_hold_is_told_within_a_few_ticks_and_once() {
         assert!((began[0].held_since.unwrap() - STOP).abs() < 2.5 / RATE, "{seed}: {began:?}");
         assert_eq!(began[0].held, Some(Held::Displacement));
         assert!(
-            seen.iter().all(|seen| (seen.time >= began[0].time) == (seen.phase == ContactPhase::PositionHold)),
+            seen.iter().all(|seen| (seen.time >= began[0].time) == (seen.phase == ContactPhase::Holding)),
             "{seed}"
         );
     }
@@ -154,7 +154,7 @@ fn the_warning_comes_before_slip() {
         let (mut early, mut all) = (0.0, 0.0);
         for seed in 0..100 {
             let seen = watched(&course, seed, &options);
-            let holding = || seen.iter().filter(|seen| seen.phase == ContactPhase::PositionHold);
+            let holding = || seen.iter().filter(|seen| seen.phase == ContactPhase::Holding);
             let first = holding().find(|seen| seen.slip != Slip::None).unwrap().time;
             // The lower end of an interval of 95 % comes after the truth in every fortieth.
             let due = STOP + slip_after - 0.8 * options.warn_before;
@@ -209,7 +209,7 @@ fn a_force_that_is_held_creeps_and_never_slips() {
         last = Some(seen);
     }
     let seen = last.unwrap();
-    assert_eq!((seen.phase, seen.held, began), (ContactPhase::PositionHold, Some(Held::Force), 1));
+    assert_eq!((seen.phase, seen.held, began), (ContactPhase::Holding, Some(Held::Force), 1));
     assert_eq!((seen.time_to_slip, seen.slip), (Some(NEVER), Slip::None));
     let (creep, truth) = (seen.creep_rate.unwrap(), (displacement - before) * RATE / 500.0);
     // the line goes through the later half, over which the creep slows down
@@ -240,11 +240,11 @@ fn unloading_and_a_second_squeeze_are_told_apart() {
         [0.3, 2.0, 5.04, 6.5, 7.55, 11.0].map(at),
         [
             ContactPhase::Loading,
-            ContactPhase::PositionHold,
+            ContactPhase::Holding,
             ContactPhase::Unloading,
             ContactPhase::Free,
             ContactPhase::Loading,
-            ContactPhase::PositionHold
+            ContactPhase::Holding
         ]
     );
     assert_eq!(seen.iter().filter(|seen| seen.began).count(), 2);
@@ -326,7 +326,7 @@ fn a_gap_in_a_hold_is_bridged() {
         last = Some(seen);
     }
     let seen = last.unwrap();
-    assert_eq!((began, seen.phase), (1, ContactPhase::PositionHold));
+    assert_eq!((began, seen.phase), (1, ContactPhase::Holding));
     assert!((seen.force - course.last().unwrap().2).abs() < 0.02);
 }
 
@@ -611,7 +611,7 @@ fn a_hold_is_told_of_where_it_was_held_to_its_last_tick() {
         let force = contact.step(&model, 0.05, place.min(20e-3)).unwrap();
         let seen = observer.feed(time, Some(place.min(20e-3) + 1e-6 * noise.normal()), force + 0.01 * noise.normal());
         let seen = seen.unwrap();
-        if time > 1.5 && time < 5.5 && seen.phase == ContactPhase::PositionHold {
+        if time > 1.5 && time < 5.5 && seen.phase == ContactPhase::Holding {
             if let Some(before) = held {
                 let equilibrium = |seen: &Observation| seen.equilibrium_force.unwrap().value;
                 assert!((equilibrium(&seen) / equilibrium(&before) - 1.0).abs() < 0.01, "{time}: {seen:?}");
@@ -630,7 +630,7 @@ fn a_warning_does_not_flutter() {
     let mut changes = 0;
     for seed in 0..20 {
         let seen = watched(&course, seed, &slipping_at(1.7));
-        let held = seen.iter().filter(|seen| seen.phase == ContactPhase::PositionHold && seen.time > 1.0);
+        let held = seen.iter().filter(|seen| seen.phase == ContactPhase::Holding && seen.time > 1.0);
         let slips: Vec<Slip> = held.map(|seen| seen.slip).collect();
         changes += slips.windows(2).filter(|pair| pair[0] != pair[1]).count();
         assert_eq!(slips.last(), Some(&Slip::Slipping));

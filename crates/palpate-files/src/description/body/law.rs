@@ -102,7 +102,7 @@ impl LawTable {
         self.shares.iter().flatten().enumerate().map(term).collect()
     }
 
-    /// All numbers of the law must be there, and no other but those it may have.
+    /// All parameters of the law must be there, and no other but those it may have.
     fn check_numbers(&self, source: &Source<'_>) -> Result<(), DescriptionError> {
         let wanted = self.name.numbers();
         let is_latency = self.name == LawName::Latency;

@@ -118,7 +118,7 @@ impl SweptParameter {
     }
 }
 
-/// Symbol of the SI unit of a dimension, none of a pure number.
+/// Symbol of the SI unit of a dimension, none of a dimensionless number.
 fn si_unit(dimension: Option<Dimension>) -> &'static str {
     dimension.map_or("", |dimension| dimension.units()[0].0)
 }

@@ -102,7 +102,7 @@ fn lasts(time: TimeToSlip) -> Cell {
     time.seconds().map_or_else(|| Cell::text("always"), |seconds| Cell::Number(seconds, 4))
 }
 
-/// What the numbers of the material do to overshoot and back off.
+/// What the parameters of the material do to overshoot and back off.
 #[must_use]
 pub fn sensitivity_table(body: &GrippedBody<'_>) -> Option<Table> {
     let found = &body.answer.back_off.as_ref().ok()?.found.sensitivities;
