@@ -131,7 +131,7 @@ fn a_log_comes_through_a_pipe() {
     let folder = tempdir().unwrap();
     let log = file(folder.path(), "log.csv", ramp_and_hold(5.0, 100.0));
     let piped = |arguments: &[&str]| {
-        let input = std::fs::File::open(&log).unwrap();
+        let input = std::fs::File::open(folder.path().join(&log)).unwrap();
         let mut command = std::process::Command::new(env!("CARGO_BIN_EXE_palpate"));
         let output = command.args(arguments).current_dir(folder.path()).stdin(input).output().unwrap();
         assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));

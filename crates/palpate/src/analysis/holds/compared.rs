@@ -27,7 +27,7 @@ pub(super) fn comparison_findings(comparison: &Comparison) -> Vec<Finding> {
     let merged = laws(&|fit| {
         matches!(fit.termination, Termination::Singular | Termination::TermsMerged) || !fit.redundant_terms.is_empty()
     });
-    // A law that contains the chosen one must do as well.
+    // A law that contains the chosen one predicts at least as well.
     let alike = comparison.verdict.as_ref().map_or_else(Vec::new, |verdict| {
         let alternatives = verdict.alike.iter().filter(|law| !law.contains(verdict.law));
         [verdict.law].iter().chain(alternatives).copied().collect()
