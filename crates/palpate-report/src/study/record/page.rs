@@ -43,9 +43,9 @@ pub fn analysis_bundle(analysis: &Analysis, input: Input, pictures: Pictures) ->
         answer::law_of_record(&compared, &answer).iter().for_each(|table| bundle.table(table));
     }
     tables::all(analysis).iter().for_each(|table| bundle.table(table));
-    let document = AnalysisDocument::new(analysis, input.clone());
-    bundle.table(&parameters_table(&document.parameter_rows()));
     let page = page(analysis, &input, &figures, which_law)?;
+    let document = AnalysisDocument::new(analysis, input);
+    bundle.table(&parameters_table(&document.parameter_rows()));
     bundle.text("report.html", page.to_html());
     bundle.json("analysis.json", &document)?;
     Ok(bundle)

@@ -58,7 +58,7 @@ impl Fitted {
             curve: self.curve(),
             loading: None,
             domain: Domain::Time,
-            parameters: parameters,
+            parameters,
             searched: self.names(),
             values,
             white_covariance: assessed.white,

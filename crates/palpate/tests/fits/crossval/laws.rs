@@ -129,7 +129,7 @@ fn every_law_reaches_the_optima_of_the_reference() {
         }
         far[3] = (fit.residual_square / case.chi_square - 1.0).abs();
         for (name, [value, error]) in &case.derived {
-            let estimate = fit.estimate(&name).unwrap_or_else(|| panic!("{}: {name}", case.name));
+            let estimate = fit.estimate(name).unwrap_or_else(|| panic!("{}: {name}", case.name));
             far[4] = far[4].max((estimate.value - value).abs() / error);
             far[4] = far[4].max((estimate.white_standard_error.unwrap() / error - 1.0).abs());
         }
