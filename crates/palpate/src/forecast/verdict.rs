@@ -55,7 +55,7 @@ pub(super) fn judge(comparison: &Comparison) -> Option<Verdict> {
         Ranking::Forward => next >= 2.0 * figure,
         Ranking::Information => next - figure >= 10.0,
     });
-    // A law that contains the chosen one must do as well; that says nothing against it.
+    // A law that contains the chosen one predicts at least as well; that says nothing against it.
     let alternative = |law: Law| !law.contains(chosen.law);
     let alternatives = usable().filter(|(row, _)| alternative(row.law)).count();
     let alike_alternatives = alike.iter().filter(|(row, _)| alternative(row.law)).count();
