@@ -43,7 +43,7 @@ const MOST_STEPS: usize = 40;
 /// use palpate::analysis::Geometry;
 /// use palpate::calibrate::{CalibrationData, Candidate, EquilibriumLaw, calibrate, profile};
 /// use palpate::simulate::{Separation, simulate_force};
-/// use palpate::test_problems::{Noise, paper_ball, paper_test_a};
+/// use palpate::test_problems::{Rng, paper_ball, paper_test_a};
 /// use palpate::watch::Unwatched;
 /// let (motion, model) = (paper_test_a(), paper_ball(Separation::Unilateral));
 /// let mut noise = Rng::new(1);

@@ -57,7 +57,7 @@ const NOTABLE: f64 = std::f64::consts::LN_2;
 /// use palpate::fit::{JointOptions, Samples, TrendVerdict, compare_joint, fit_joint};
 /// use palpate::latency::decay;
 /// use palpate::laws::{ExponentChoice, Law};
-/// use palpate::test_problems::Noise;
+/// use palpate::test_problems::Rng;
 /// // Three holds at strains of 0.1, 0.2 and 0.3 whose v falls: ln v = 10 − 6 ε_e.
 /// let times: Vec<f64> = (0..200).map(|i| 0.1 * f64::from(i)).collect();
 /// let mut noise = Rng::new(3);
