@@ -89,7 +89,7 @@ impl<'a> Grip<'a> {
     /// A body, its load and the gripper.
     ///
     /// # Errors
-    /// [`GripError::Parameter`] for parameters that describe none, a confidence outside 0…1 among them; [`GripError::Bonded`].
+    /// [`GripError::Number`] for parameters that describe none, a confidence outside 0…1 among them; [`GripError::Bonded`].
     pub fn new(material: &'a Material, grasp: Grasp, limits: Limits, confidence: f64) -> Result<Self, GripError> {
         grasp.check()?;
         limits.check()?;
