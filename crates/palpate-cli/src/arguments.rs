@@ -7,7 +7,7 @@ use palpate::calibrate::RateLaw;
 use palpate::laws::Law;
 use palpate_files::description::{schema_material, schema_protocol, schema_test};
 use palpate_jobs as jobs;
-use palpate_jobs::typed::{Choice, coverage, exponent, force, law, length, number, one_of, seconds, time};
+use palpate_jobs::typed::{Choice, NamedColumns, columns, coverage, exponent, force, law, length, number, one_of, seconds, time};
 use palpate_report::document::{
     AnalysisDocument, CalibrationDocument, ComparisonDocument, GripDocument, ReproductionDocument, WatchDocument,
 };
@@ -95,6 +95,9 @@ pub(crate) struct SimulateArguments {
     /// Test description (TOML) of the record that drives
     #[arg(long, value_name = "TEST.toml", requires = "drive")]
     pub(crate) test: Option<PathBuf>,
+    /// Columns of the record by name or number, with their units: these go before the description
+    #[arg(long, value_name = "QUANTITY=COLUMN:UNIT,…", value_parser = columns, requires = "drive")]
+    pub(crate) columns: Option<NamedColumns>,
     /// File for the series (CSV); standard output if not given
     #[arg(long, value_name = "FILE.csv")]
     pub(crate) out: Option<PathBuf>,
@@ -184,11 +187,14 @@ pub(crate) struct InspectArguments {
     #[arg(value_name = "RECORD", required_unless_present = "machines")]
     pub(crate) record: Option<PathBuf>,
     /// List the machines and grippers that a test description can name, and nothing else
-    #[arg(long, conflicts_with_all = ["record", "test", "part", "figure", "write_test"])]
+    #[arg(long, conflicts_with_all = ["record", "test", "columns", "part", "figure", "write_test"])]
     pub(crate) machines: bool,
     /// Test description (TOML): columns, units, geometry
     #[arg(long, value_name = "TEST.toml")]
     pub(crate) test: Option<PathBuf>,
+    /// Columns of the record by name or number, with their units: these go before the description
+    #[arg(long, value_name = "QUANTITY=COLUMN:UNIT,…", value_parser = columns)]
+    pub(crate) columns: Option<NamedColumns>,
     /// The one test of a file that holds several: its name (a sheet, a curve, a `test_id`), or its number from 1
     #[arg(long, value_name = "NAME")]
     pub(crate) part: Option<String>,
@@ -220,6 +226,9 @@ pub(crate) struct ConvertArguments {
     /// Test description (TOML): columns, units
     #[arg(long, value_name = "TEST.toml")]
     pub(crate) test: Option<PathBuf>,
+    /// Columns of the record by name or number, with their units: these go before the description
+    #[arg(long, value_name = "QUANTITY=COLUMN:UNIT,…", value_parser = columns)]
+    pub(crate) columns: Option<NamedColumns>,
     /// The one test of a file that holds several: its name, or its number from 1
     #[arg(long, value_name = "NAME")]
     pub(crate) part: Option<String>,
@@ -241,6 +250,9 @@ pub(crate) struct AnalyzeArguments {
     /// Test description (TOML): columns, units, geometry, options
     #[arg(long, value_name = "TEST.toml")]
     pub(crate) test: Option<PathBuf>,
+    /// Columns of the record by name or number, with their units: these go before the description
+    #[arg(long, value_name = "QUANTITY=COLUMN:UNIT,…", value_parser = columns)]
+    pub(crate) columns: Option<NamedColumns>,
     /// The one test of a file that holds several: its name (a sheet, a curve, a `test_id`), or its number from 1
     #[arg(long, value_name = "NAME")]
     pub(crate) part: Option<String>,
@@ -285,6 +297,9 @@ pub(crate) struct BatchArguments {
     /// Test description (TOML): columns, units, geometry, options; for all records
     #[arg(long, value_name = "TEST.toml")]
     pub(crate) test: Option<PathBuf>,
+    /// Columns of the record by name or number, with their units: these go before the description
+    #[arg(long, value_name = "QUANTITY=COLUMN:UNIT,…", value_parser = columns)]
+    pub(crate) columns: Option<NamedColumns>,
     #[command(flatten)]
     pub(crate) job: jobs::Batch,
 }
@@ -309,6 +324,9 @@ pub(crate) struct CompareArguments {
     /// Test description (TOML): columns, units, geometry, options; for all records
     #[arg(long, value_name = "TEST.toml")]
     pub(crate) test: Option<PathBuf>,
+    /// Columns of the record by name or number, with their units: these go before the description
+    #[arg(long, value_name = "QUANTITY=COLUMN:UNIT,…", value_parser = columns)]
+    pub(crate) columns: Option<NamedColumns>,
     /// The one test of a file that holds several: its name (a sheet, a curve, a `test_id`), or its number from 1
     #[arg(long, value_name = "NAME")]
     pub(crate) part: Option<String>,
@@ -344,6 +362,9 @@ pub(crate) struct CalibrateArguments {
     /// Test description (TOML): columns, units, the body
     #[arg(long, value_name = "TEST.toml")]
     pub(crate) test: Option<PathBuf>,
+    /// Columns of the record by name or number, with their units: these go before the description
+    #[arg(long, value_name = "QUANTITY=COLUMN:UNIT,…", value_parser = columns)]
+    pub(crate) columns: Option<NamedColumns>,
     /// The one test of a file that holds several: its name (a sheet, a curve, a `test_id`), or its number from 1
     #[arg(long, value_name = "NAME")]
     pub(crate) part: Option<String>,
@@ -478,6 +499,9 @@ pub(crate) struct WatchArguments {
     /// Test description (TOML): columns and units
     #[arg(long, value_name = "TEST.toml")]
     pub(crate) test: Option<PathBuf>,
+    /// Columns of the record by name or number, with their units: these go before the description
+    #[arg(long, value_name = "QUANTITY=COLUMN:UNIT,…", value_parser = columns)]
+    pub(crate) columns: Option<NamedColumns>,
     /// The one test of a file that holds several: its name (a sheet, a curve, a `test_id`), or its number from 1
     #[arg(long, value_name = "NAME")]
     pub(crate) part: Option<String>,

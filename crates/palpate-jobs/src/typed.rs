@@ -6,6 +6,7 @@ use palpate::forecast::RampChoice;
 use palpate::grip::{Control, Objective};
 use palpate::laws::Law;
 use palpate::units::{Dimension, parse, split_number};
+use palpate_files::description::{ColumnChoices, parse_columns};
 
 /// A value of an option: its name, what it is, and what it says.
 pub type Choice<T> = (&'static str, &'static str, T);
@@ -188,6 +189,28 @@ pub fn law(text: &str) -> Result<Law, String> {
 /// What was expected.
 pub fn share(text: &str) -> Result<f64, String> {
     number(text, |share| share > 0.0 && share < 1.0, "shares of the hold between 0 and 1, such as 0.25,0.5")
+}
+
+/// Columns of a record as they were typed.
+#[derive(Debug, Clone, PartialEq)]
+pub struct NamedColumns {
+    /// What was typed.
+    pub text: String,
+    /// What it says.
+    pub columns: ColumnChoices,
+}
+
+/// Columns of a record by their names.
+///
+/// # Errors
+/// What was expected.
+pub fn columns(text: &str) -> Result<NamedColumns, String> {
+    let columns = parse_columns(text).map_err(|error| match &error.source {
+        Some(unit) => unit.to_string(),
+        None => error.to_string(),
+    })?;
+    let text = text.to_owned();
+    Ok(NamedColumns { text, columns })
 }
 
 /// A coverage of intervals.

@@ -14,7 +14,7 @@ use crate::progress::Bars;
 use crate::terminal::{note_report, notes, print};
 
 pub(crate) fn run(arguments: &AnalyzeArguments) -> Result<Verdict, JobError> {
-    let described = Described::read(arguments.test.as_deref(), arguments.part.as_deref())?;
+    let described = Described::read(arguments.test.as_deref(), arguments.part.as_deref())?.with_columns(arguments.columns.as_ref());
     let records = NamedRecords::find(&arguments.records, described)?;
     let air = arguments.air_run.as_ref().map(|air| OpenedFile::open(air, &records.described)).transpose()?;
     let air = air.map(|air| air.read(air.only()?, &mut Bars::default())).transpose()?.map(|air| air.record);

@@ -10,7 +10,7 @@ use crate::progress::Bars;
 use crate::terminal::{note_report, notes, print};
 
 pub(crate) fn run(arguments: &CompareArguments) -> Result<Verdict, JobError> {
-    let described = Described::read(arguments.test.as_deref(), arguments.part.as_deref())?;
+    let described = Described::read(arguments.test.as_deref(), arguments.part.as_deref())?.with_columns(arguments.columns.as_ref());
     let records = NamedRecords::find(&arguments.records, described)?;
     let alone = arguments.records == records.paths;
     let outcome = arguments.job.run(&records, alone, &mut Bars::default(), notes)?;

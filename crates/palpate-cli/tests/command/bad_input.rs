@@ -26,6 +26,32 @@ fn files_that_are_no_records() {
     refuses("force_n\n1\n2\n3\n", &["column"]);
 }
 
+/// A header in another language, or without units, was exit code 2 and a file to write.
+#[test]
+fn a_header_that_is_not_understood_is_one_option_away() {
+    let folder = tempdir().unwrap();
+    let rows = ramp_and_hold(5.0, 20.0).replacen("time_s,displacement_mm,force_n", "Zt,Eindrückung,Krft", 1);
+    let record = file(folder.path(), "record.csv", &rows);
+    let option = "force=Krft:N,displacement=Eindrückung:mm,time=Zt:s";
+    let (analyze, batch) = (["analyze", &record], ["batch", &record, "--out", "b.csv"]);
+    let error = refused(folder.path(), &analyze);
+    assert!(error.contains(&format!("--columns \"{option}\"")), "{error}");
+    let convert = ["convert", &record, "--out", "c.csv"];
+    let others = ["inspect", "compare", "watch"].map(|command| [command, &record]);
+    let asked = others.iter().map(|asked| &asked[..]).chain([&analyze[..], &batch, &convert]);
+    for asked in asked {
+        done(folder.path(), &[asked, &["--columns", option]].concat());
+    }
+    // What was typed stands in what is kept.
+    let kept = std::fs::read_to_string(folder.path().join("c.csv")).unwrap();
+    assert!(kept.lines().next().unwrap().contains("--columns") && kept.contains("time_s,displacement_m,force_n"));
+    let error = refused(folder.path(), &[&analyze[..], &["--columns", "Krft"]].concat());
+    assert!(error.contains("force=Kraft:N,displacement=Weg:mm,time=Zeit:s"), "{error}");
+    let bare = file(folder.path(), "bare.csv", rows.replacen("Zt,Eindrückung,Krft", "Zeit,Weg,Kraft", 1));
+    let error = refused(folder.path(), &["analyze", &bare]);
+    assert!(error.contains("--columns \"time=Zeit:s,displacement=Weg:mm,force=Kraft:N\""), "{error}");
+}
+
 #[test]
 fn cells_that_are_no_numbers() {
     let good = ramp_and_hold(5.0, 20.0);

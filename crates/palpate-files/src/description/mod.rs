@@ -34,7 +34,7 @@ pub use sweep::{Plan, Spacing, Sweep, SweptParameter, parse_runs, parse_sweep, r
 pub(crate) use test::contradicts;
 pub use test::{
     About, ChoiceError, ClockChoice, ColumnChoice, ColumnChoices, Machine, TestDescription, machines, machines_of,
-    parse_hold_start, parse_test, parse_touch, read_test,
+    parse_columns, parse_hold_start, parse_test, parse_touch, read_test,
 };
 pub(crate) use text::quoted;
 pub use text::{DescriptionError, DescriptionKind, KeyPlace, KeyProblem};

@@ -54,7 +54,7 @@ pub enum ColumnError {
         problem: Box<UnitProblem>,
     },
     /// The description names a column that the file does not have, or has more than once.
-    #[error("{key}: expected {}, found {found} in the description", snippet::choices(columns))]
+    #[error("{key}: expected {}, found {found}", snippet::choices(columns))]
     NoSuchColumn {
         /// Key of the description.
         key: String,
@@ -116,22 +116,31 @@ impl ColumnError {
     #[must_use]
     pub fn hint(&self) -> String {
         match self {
-            Self::Missing(_, columns) => {
-                format!("say which column holds what in a test description:\n{}", snippet::of_columns(columns))
-            }
+            Self::Missing(_, columns) => snippet::of_columns(columns),
             Self::TimeAsText(..) => {
                 "write seconds, or 2024-03-12 10:11:12.5, 12.03.2024 10:11:12.5 or 10:11:12.5 in every row".to_owned()
             }
             Self::NotNumbers(_, found) => crate::error::hint_of_text(found, DecimalMark::Point).to_owned(),
             Self::Ambiguous(quantity, candidates) => {
-                let first = candidates.first().map_or(1, |column| column.number);
-                format!("choose one in a test description:\n[columns.{quantity}]\ncolumn = {first}")
+                let number = candidates.first().map_or(1, |column| column.number);
+                let said = candidates.first().map(|first| {
+                    let same = candidates.iter().filter(|other| other.name == first.name).count();
+                    snippet::entry(*quantity, first, None, same == 1)
+                });
+                let said = snippet::option(said);
+                format!("choose one: {said}\nor in a test description:\n[columns.{quantity}]\ncolumn = {number}")
             }
             Self::Unclear { candidates, columns } => snippet::of_unclear(candidates, columns),
             Self::NoUnit(columns) => {
                 let lines = columns.iter().map(|(key, unit, column)| snippet::of_unit(key, unit, column));
-                let lines: Vec<String> = lines.collect();
-                format!("say it in a test description:\n{}", lines.join("\n"))
+                let lines = lines.collect::<Vec<_>>().join("\n");
+                let said = columns.iter().map(|(key, unit, column)| {
+                    Some(snippet::entry(snippet::quantity_of(key)?, column, Some(unit), true))
+                });
+                match said.collect::<Option<Vec<_>>>() {
+                    Some(said) => format!("say it: {}, or in a test description:\n{lines}", snippet::option(said)),
+                    None => format!("say it in a test description:\n{lines}"),
+                }
             }
             Self::Unit { column, key, problem } => problem.hint(column, key),
             Self::NoSuchColumn { .. } => "columns count from 1 at the left; a name may go without its unit".to_owned(),
@@ -153,8 +162,13 @@ impl UnitProblem {
     fn hint(&self, column: &NamedColumn, key: &str) -> String {
         match self {
             Self::Unknown(quantity, unit) if unit_factor(unit, Dimension::Voltage).is_none() => {
-                let lines = snippet::of_unit_and_column(key, quantity.unit_meant(unit), column);
-                format!("if another unit is meant, say it in a test description:\n{lines}")
+                let meant = quantity.unit_meant(unit);
+                let lines = snippet::of_unit_and_column(key, meant, column);
+                let said = snippet::quantity_of(key).map_or_else(String::new, |quantity| {
+                    let entry = snippet::entry(quantity, column, Some(meant), true);
+                    format!(": {}, or", snippet::option([entry]))
+                });
+                format!("if another unit is meant, say it{said} in a test description:\n{lines}")
             }
             Self::Unknown(_, unit) if key == "columns.force.unit" && column.name.as_deref() == Some(UNCALIBRATED) => {
                 snippet::of_bending(column, unit)

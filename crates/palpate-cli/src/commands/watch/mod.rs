@@ -34,10 +34,12 @@ trait Shown {
 }
 
 pub(crate) fn run(arguments: &WatchArguments) -> Result<Verdict, JobError> {
-    let described = Described::read(arguments.test.as_deref(), arguments.part.as_deref())?;
+    let described = Described::read(arguments.test.as_deref(), arguments.part.as_deref())?.with_columns(arguments.columns.as_ref());
     let material = arguments.material.as_deref().map(read_material).transpose()?;
-    let (job, place) = (arguments.job(), arguments.log.display().to_string());
+    let job = arguments.job();
     let opened = OpenedFile::open(&arguments.log, &described)?;
+    let log = opened.contents.input.name.clone();
+    let place = log.display().to_string();
     notes(&opened.notes());
     let measured = opened.measurement(opened.only()?, &mut Bars::default())?;
     notes(&measured.notes);

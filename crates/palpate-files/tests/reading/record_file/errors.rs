@@ -115,7 +115,7 @@ fn columns_that_are_not_there() {
         table,
         "columns.force.column = 9",
         &[
-            "columns.force.column: expected a number from 1 to 3 or a name that one column has (\"Time\", \"Force\", \"Force\"), found 9 in the description",
+            "columns.force.column: expected a number from 1 to 3 or a name that one column has (\"Time\", \"Force\", \"Force\"), found 9",
         ],
         &["count from 1"],
     );
