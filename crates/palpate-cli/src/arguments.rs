@@ -16,10 +16,24 @@ use serde_json::Value;
 
 /// Soft contact that remembers: squeeze-and-hold tests turned into laws, and laws into forces.
 #[derive(Debug, Parser)]
-#[command(name = "palpate", version, about, max_term_width = 100, after_help = AFTER_HELP)]
+#[command(name = "palpate", version, long_version = build(), about, max_term_width = 100, after_help = AFTER_HELP)]
 pub(crate) struct Arguments {
     #[command(subcommand)]
     pub(crate) command: Command,
+}
+
+/// What a report of a bug needs to know of this build.
+fn build() -> String {
+    let features = [
+        ("arrow", cfg!(feature = "arrow")),
+        ("png", cfg!(feature = "png")),
+        ("robot-log", cfg!(feature = "robot-log")),
+    ];
+    let enabled: Vec<&str> = features.iter().filter(|(_, enabled)| *enabled).map(|(name, _)| *name).collect();
+    let features = if enabled.is_empty() { "none".to_owned() } else { enabled.join(", ") };
+    let (version, commit, target) =
+        (env!("CARGO_PKG_VERSION"), env!("PALPATE_COMMIT"), env!("PALPATE_TARGET"));
+    format!("{version}\ncommit: {commit}\ntarget: {target}\nfeatures: {features}")
 }
 
 const AFTER_HELP: &str = "\
