@@ -505,10 +505,11 @@ an event and one each --every. The end is a table of the holds.
 Examples:
   palpate watch gripper.csv --test gripper.toml --slip-force \"2 N\" --warn-before \"1 s\"
   palpate watch gripper.csv --speed 1
+  palpate watch - < gripper.csv
   palpate watch gripper.csv --format jsonl --every \"0.1 s\" | jq .time_to_slip_s")]
 pub(crate) struct WatchArguments {
-    /// Log with time, force and, best, displacement
-    #[arg(value_name = "LOG")]
+    /// Log with time, force and, best, displacement; - reads standard input to its end
+    #[arg(value_name = "LOG", default_value = "-")]
     pub(crate) log: PathBuf,
     /// Test description (TOML): columns and units
     #[arg(long, value_name = "TEST.toml")]

@@ -1,6 +1,8 @@
 //! `palpate watch`: a log as if live.
 #![expect(clippy::unwrap_used, reason = "a test that cannot run has failed")]
 
+use std::process::Command;
+
 use crate::common::{data, done, file, palpate, ramp_and_hold, refused, root};
 use serde_json::Value;
 use tempfile::tempdir;
@@ -61,6 +63,21 @@ fn the_steps_of_the_example_are_holds_with_their_equilibrium() {
     let told = objects(&done(folder.path(), &["watch", &ball(), "--material", &material, "--format", "jsonl"]));
     let strain = told.iter().find_map(|line| line["excess_strain"].as_f64()).unwrap();
     assert!((0.09..0.14).contains(&strain), "{strain}");
+}
+
+/// A log through a pipe was "no such file".
+#[test]
+fn a_log_through_a_pipe_is_watched() {
+    let folder = tempdir().unwrap();
+    let log = file(folder.path(), "log.csv", ramp_and_hold(5.0, 100.0));
+    let by_name = done(folder.path(), &["watch", &log]);
+    for arguments in [&["watch", "-"][..], &["watch"]] {
+        let piped = std::fs::File::open(folder.path().join(&log)).unwrap();
+        let output = Command::new(env!("CARGO_BIN_EXE_palpate")).args(arguments).stdin(piped).output().unwrap();
+        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+        assert_eq!(String::from_utf8(output.stdout).unwrap(), by_name);
+    }
+    assert!(refused(folder.path(), &["watch", "-"]).contains("standard input: the file is empty"));
 }
 
 #[test]

@@ -15,7 +15,7 @@ impl FileError {
         let help = match &self.problem {
             FileProblem::NotFound(_) => "check the spelling of the path",
             FileProblem::Directory => "name one file inside it",
-            FileProblem::NoFile => "write what comes through the pipe to a file first",
+            FileProblem::NoFile => "read what comes through the pipe as `-`, or write it to a file first",
             FileProblem::Unreadable(source) if source.kind() == io::ErrorKind::PermissionDenied => {
                 "check who owns the file and that you may read it"
             }

@@ -56,7 +56,7 @@ pub(crate) fn run(arguments: &WatchArguments) -> Result<Verdict, JobError> {
     let mut shown: Box<dyn Shown> = match arguments.format {
         WatchFormat::Jsonl => Box::new(jsonl::Jsonl),
         WatchFormat::Text if on_terminal => {
-            Box::new(view::View::new(&arguments.log, record.time(), speed, arguments.slip_force))
+            Box::new(view::View::new(&log, record.time(), speed, arguments.slip_force))
         }
         WatchFormat::Text => Box::new(lines::Lines {
             slip_force: arguments.slip_force,
