@@ -57,11 +57,31 @@ fn cells_that_are_no_numbers() {
     let good = ramp_and_hold(5.0, 20.0);
     let text = good.replacen("\n2.0000,1.00000,1.668740", "\n2.0000,1.00000,slack", 1);
     refuses(text, &["line 42", "force", "slack", "number", "hint:"]);
-    let nan = good.replacen("\n2.0000,1.00000,1.668740", "\n2.0000,1.00000,NaN", 1);
-    assert!(nan.contains("NaN"));
-    refuses(nan, &["line 42", "NaN"]);
     let infinite = good.replacen("\n2.0000,1.00000,1.668740", "\n2.0000,1.00000,inf", 1);
     refuses(infinite, &["line 42", "inf"]);
+}
+
+/// One `n/a` among thousands of rows refused the file.
+#[test]
+fn a_cell_without_a_number_costs_its_row_alone() {
+    let folder = tempdir().unwrap();
+    let good = ramp_and_hold(5.0, 20.0);
+    for (number, word) in ["n/a", "", "NaN", "-"].into_iter().enumerate() {
+        let one = good.replacen("\n2.0000,1.00000,1.668740", &format!("\n2.0000,1.00000,{word}"), 1);
+        let both = one.replacen("\n3.0000,", &format!("\n{word},"), 1);
+        assert_ne!(one, both);
+        let record = file(folder.path(), &format!("{number}.csv"), &both);
+        let told = done(folder.path(), &["inspect", &record]);
+        assert!(told.contains("2 of 121 rows left out, in which a cell holds no number (lines 42, 62)"), "{told}");
+        let told = done(folder.path(), &["analyze", &record, "--no-compare"]);
+        assert!(told.contains("2 of 121 rows left out"), "{told}");
+    }
+    // More than a few in a hundred are no slip.
+    let bad = good.lines().enumerate().map(|(line, row)| match line % 20 {
+        5 => format!("{},n/a\n", row.rsplit_once(',').unwrap().0),
+        _ => format!("{row}\n"),
+    });
+    refuses(bad.collect::<String>(), &["line 6", "n/a"]);
 }
 
 #[test]

@@ -130,7 +130,7 @@ fn rows_out_of_order_are_told_and_readings_that_are_none_are_refused() {
     let told = palpate(folder.path(), &["watch", &late]);
     let said = String::from_utf8(told.stderr).unwrap();
     assert!(told.status.success() && said.contains("1 row that came up to 0.0100 s late"), "{said}");
-    rows[300] = "2.9900,nan,1.5";
+    rows[300] = "2.9900,inf,1.5";
     let none = file(folder.path(), "none.csv", rows.join("\n"));
     assert!(refused(folder.path(), &["watch", &none]).contains("expected a finite number"));
 }

@@ -128,7 +128,7 @@ impl ColumnError {
                     snippet::entry(*quantity, first, None, same == 1)
                 });
                 let said = snippet::option(said);
-                format!("choose one: {said}\nor in a test description:\n[columns.{quantity}]\ncolumn = {number}")
+                format!("choose one: {said}, or in a test description:\n[columns.{quantity}]\ncolumn = {number}")
             }
             Self::Unclear { candidates, columns } => snippet::of_unclear(candidates, columns),
             Self::NoUnit(columns) => {

@@ -133,9 +133,15 @@ pub fn read_part(
         rows: read.rows(),
         averaged: read.averaged,
     });
+    let lacking = std::mem::take(&mut read.ignored.lacking);
+    let left_out = (lacking.rows > 0).then(|| Correction::RowsLeftOut {
+        rows: read.rows() + lacking.rows,
+        left_out: lacking.rows,
+        lines: lacking.lines,
+    });
     let of_stress = plan.per_unit_area.then_some(Correction::StressAsForce);
     let bent = bent.map(|largest| Correction::DeflectionRemoved { largest });
-    let done = of_stress.into_iter().chain(averaged).chain(bent);
+    let done = left_out.into_iter().chain(of_stress).chain(averaged).chain(bent);
     let record = raw.into_record().map(|record| record.corrected_before(done)).map_err(|source| ReadError::Record {
         path: path.to_owned(),
         part: about.name.clone(),

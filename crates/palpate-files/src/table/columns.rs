@@ -5,6 +5,8 @@
 //! evenly spaced rows is what a recorder with a longer integration time would have written; how many rows each mean
 //! is made of is in the result ([`Columns::averaged`]).
 
+use super::lacking::LackingRows;
+
 /// Most rows that are kept of a file (16,777,216). Of more, successive ones are averaged.
 pub const MOST_ROWS: usize = 1 << 24;
 
@@ -35,6 +37,8 @@ pub struct IgnoredLines {
     pub blank: usize,
     /// Lines at the very end that are no data.
     pub footer: Option<Footer>,
+    /// Rows of data in which a cell holds no number.
+    pub lacking: LackingRows,
 }
 
 /// Lines at the very end of a file that are no data.
