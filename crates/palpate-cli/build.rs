@@ -11,7 +11,9 @@ fn main() {
     println!("cargo::rerun-if-changed=build.rs");
     // What changes with a commit or a checkout; a path that is not there would run this in every build.
     let paths = ["HEAD", "logs/HEAD"].iter().filter_map(|name| git(&["rev-parse", "--git-path", name]));
-    paths.filter(|path| Path::new(path).exists()).for_each(|path| println!("cargo::rerun-if-changed={path}"));
+    paths
+        .filter(|path| Path::new(path).exists())
+        .for_each(|path| println!("cargo::rerun-if-changed={path}"));
 }
 
 /// The commit of our own repository; none where the sources were unpacked, perhaps inside the repository of another project.

@@ -5,9 +5,9 @@ use std::path::PathBuf;
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use palpate::calibrate::RateLaw;
 use palpate::laws::Law;
-use palpate_files::description::{schema_material, schema_protocol, schema_test};
+use palpate_files::description::{NamedColumns, schema_material, schema_protocol, schema_test};
 use palpate_jobs as jobs;
-use palpate_jobs::typed::{Choice, NamedColumns, columns, coverage, exponent, force, law, length, number, one_of, seconds, time};
+use palpate_jobs::typed::{Choice, columns, coverage, exponent, force, law, length, number, one_of, seconds, time};
 use palpate_report::document::{
     AnalysisDocument, CalibrationDocument, ComparisonDocument, GripDocument, ReproductionDocument, WatchDocument,
 };
@@ -31,8 +31,7 @@ fn build() -> String {
     ];
     let enabled: Vec<&str> = features.iter().filter(|(_, enabled)| *enabled).map(|(name, _)| *name).collect();
     let features = if enabled.is_empty() { "none".to_owned() } else { enabled.join(", ") };
-    let (version, commit, target) =
-        (env!("CARGO_PKG_VERSION"), env!("PALPATE_COMMIT"), env!("PALPATE_TARGET"));
+    let (version, commit, target) = (env!("CARGO_PKG_VERSION"), env!("PALPATE_COMMIT"), env!("PALPATE_TARGET"));
     format!("{version}\ncommit: {commit}\ntarget: {target}\nfeatures: {features}")
 }
 

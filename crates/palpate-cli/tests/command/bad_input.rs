@@ -116,6 +116,47 @@ fn records_with_nothing_to_fit() {
     assert!(error.contains("3 samples"), "{error}");
 }
 
+/// "entity already exists" said nothing of what stands in the way.
+#[test]
+fn what_stands_where_a_report_should_go_is_told() {
+    let folder = tempdir().unwrap();
+    let record = file(folder.path(), "record.csv", ramp_and_hold(5.0, 20.0));
+    std::fs::create_dir(folder.path().join("other")).unwrap();
+    file(&folder.path().join("other"), "tables", "notes");
+    let error = refused(folder.path(), &["analyze", &record, "--no-compare", "--out", "other"]);
+    assert!(error.contains("other/tables: cannot write: expected a folder, found a file of 5 bytes"), "{error}");
+    assert_eq!(std::fs::read_dir(folder.path().join("other")).unwrap().count(), 1, "something was written");
+    let error = refused(folder.path(), &["batch", &record, "--out", "other"]);
+    assert!(
+        error.contains("a directory that holds tables") && error.contains("--out other/table.parquet"),
+        "{error}"
+    );
+    let error = refused(folder.path(), &["convert", &record, "--out", "other"]);
+    assert!(error.contains("a directory that holds tables") && error.contains("other/FILE.csv"), "{error}");
+}
+
+/// "invalid float literal" for `3;5`, and a list of laws in which the one meant had to be found.
+#[test]
+fn lists_and_names_that_are_mistyped_are_shown_as_they_should_be() {
+    let folder = tempdir().unwrap();
+    let record = file(folder.path(), "record.csv", ramp_and_hold(5.0, 20.0));
+    for (asked, expected) in [
+        (&["analyze", "--exponents", "3;5"][..], "numbers above 0 with commas between them, such as 3,5"),
+        (&["analyze", "--exponents", "x"], "such as 1,3,5"),
+        (&["compare", "--cuts", "0.1 0.2"], "such as 0.1,0.2"),
+        (&["compare", "--laws", "latency;prony:2"], "such as latency,prony:2"),
+        (
+            &["compare", "--laws", "latncy"],
+            "no law is called \"latncy\"; did you mean latency? Other laws are latency:N, ",
+        ),
+        (&["compare", "--laws", "Pronny:3"], "did you mean prony:K?"),
+        (&["analyze", "--part", "2"], "expected the one test that the file holds, found \"2\""),
+    ] {
+        let error = refused(folder.path(), &[asked, &[&record]].concat());
+        assert!(error.contains(expected), "{asked:?}: {error}");
+    }
+}
+
 #[test]
 fn descriptions_that_make_no_sense() {
     let folder = tempdir().unwrap();
@@ -165,6 +206,7 @@ fn output_that_cannot_be_written_leaves_nothing_behind() {
     assert!(error.contains("taken") && error.contains("cannot write"), "{error}");
     let error = refused(folder.path(), &["analyze", &record, "--out", "taken/below"]);
     assert!(error.contains("cannot write"), "{error}");
+    assert!(error.contains("found a file of 20 bytes") && error.contains("choose another name"), "{error}");
     let mut names: Vec<_> = std::fs::read_dir(folder.path()).unwrap().map(|e| e.unwrap().file_name()).collect();
     names.sort();
     assert_eq!(names, ["record.csv", "taken"]);

@@ -103,7 +103,9 @@ fn wrong_options_are_refused() {
 
 #[test]
 fn a_gripper_that_holds_a_force_creeps_and_does_not_slip() {
-    let Some(log) = data("gripper-fruit/banana_ForceData_20240824_210940_refined.csv") else { return };
+    let Some(log) = data("gripper-fruit/banana_ForceData_20240824_210940_refined.csv") else {
+        return;
+    };
     let own = tempdir().unwrap();
     let test = root().join("examples/tests/gripper.toml").display().to_string();
     let told = objects(&done(

@@ -268,7 +268,7 @@ pub enum ReadError {
         parts: Vec<String>,
     },
     /// The file holds no test of the name that was given.
-    #[error("{}: expected one of {}, found \"{found}\"", path.display(), first(parts))]
+    #[error("{}: expected {}, found \"{found}\"", path.display(), one_of_parts(parts))]
     NoSuchPart {
         /// The file.
         path: PathBuf,
@@ -293,8 +293,11 @@ impl ReadError {
                     "choose one by its name or number: --part \"{first}\", or in a test description:\n[file]\npart = \"{first}\""
                 ))
             }
-            Self::NoSuchPart { .. } => {
-                Some("name a part as the file does, or give its number, counted from 1".to_owned())
+            Self::NoSuchPart { parts, .. } if parts.len() == 1 => {
+                Some("leave out the part: the file holds one test".to_owned())
+            }
+            Self::NoSuchPart { parts, .. } => {
+                Some(format!("name a part as the file does, or give its number from 1 to {}", parts.len()))
             }
         }
     }
@@ -302,6 +305,15 @@ impl ReadError {
 
 fn behind_comma(what: Option<&impl fmt::Display>) -> String {
     what.map_or_else(String::new, |what| format!(", {what}"))
+}
+
+/// What could be said of a file with these parts.
+fn one_of_parts(parts: &[String]) -> String {
+    let numbered = parts.iter().enumerate().map(|(index, part)| format!("{} (\"{part}\")", index + 1));
+    match parts.len() {
+        1 => "the one test that the file holds".to_owned(),
+        _ => format!("one of {} parts, {}", parts.len(), few(numbered, 12, ", ")),
+    }
 }
 
 /// The first few names of parts.

@@ -5,8 +5,6 @@
 //! evenly spaced rows is what a recorder with a longer integration time would have written; how many rows each mean
 //! is made of is in the result ([`Columns::averaged`]).
 
-use super::lacking::LackingRows;
-
 /// Most rows that are kept of a file (16,777,216). Of more, successive ones are averaged.
 pub const MOST_ROWS: usize = 1 << 24;
 
@@ -50,6 +48,15 @@ pub struct Footer {
     pub lines: usize,
     /// The first of them, shortened.
     pub sample: String,
+}
+
+/// Rows that were left out because a cell of theirs is empty or says that there is no number.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub struct LackingRows {
+    /// How many.
+    pub rows: usize,
+    /// The first of their lines, from 1.
+    pub lines: Vec<usize>,
 }
 
 /// Rows on successive lines.

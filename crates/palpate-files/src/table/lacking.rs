@@ -1,21 +1,12 @@
 //! Rows in which a cell holds no number: left out where they are few.
 
-use super::columns::Columns;
+use super::columns::{Columns, LackingRows};
 use crate::error::FileError;
 
 /// How many lines of such rows are named.
 const NAMED: usize = 3;
 /// Largest share of the rows that may lack a number, in percent. More are no slip of a logger: the file is not what it seems.
 const MOST_PERCENT: usize = 3;
-
-/// Rows that were left out because a cell of theirs is empty or says that there is no number.
-#[derive(Debug, Clone, Default, PartialEq, Eq)]
-pub struct LackingRows {
-    /// How many.
-    pub rows: usize,
-    /// The first of their lines, from 1.
-    pub lines: Vec<usize>,
-}
 
 /// Such rows while a file is read, with what is wrong with the first.
 #[derive(Default)]

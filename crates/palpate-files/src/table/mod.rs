@@ -31,13 +31,12 @@ pub(crate) mod recognise;
 
 pub(crate) use block::Block;
 pub use column_ref::ColumnRef;
-pub use columns::{Columns, Footer, IgnoredLines, MOST_ROWS};
+pub use columns::{Columns, Footer, IgnoredLines, LackingRows, MOST_ROWS};
 pub(crate) use decimal::Doubt;
 pub(crate) use epoch::EPOCH;
 pub(crate) use footer::Suspect;
 pub(crate) use header::Header;
 pub(crate) use lacking::Lacking;
-pub use lacking::LackingRows;
 pub use layout::Layout;
 pub use part::{Clock, ColumnInfo, ColumnKind, Label, Metadata, Part, SkippedPart};
 pub use reader::ReadOptions;

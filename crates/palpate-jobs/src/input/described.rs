@@ -3,10 +3,9 @@
 use std::path::{Path, PathBuf};
 
 use palpate::analysis::AnalysisOptions;
-use palpate_files::description::{TestDescription, parse_test, read_test};
+use palpate_files::description::{NamedColumns, TestDescription, parse_test, read_test};
 
 use crate::JobError;
-use crate::typed::NamedColumns;
 
 /// What is said about the tests in a file, and where it stands; the default says nothing.
 #[derive(Debug, Clone, Default, PartialEq)]

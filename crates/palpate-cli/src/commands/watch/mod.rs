@@ -34,7 +34,8 @@ trait Shown {
 }
 
 pub(crate) fn run(arguments: &WatchArguments) -> Result<Verdict, JobError> {
-    let described = Described::read(arguments.test.as_deref(), arguments.part.as_deref())?.with_columns(arguments.columns.as_ref());
+    let described =
+        Described::read(arguments.test.as_deref(), arguments.part.as_deref())?.with_columns(arguments.columns.as_ref());
     let material = arguments.material.as_deref().map(read_material).transpose()?;
     let job = arguments.job();
     let opened = OpenedFile::open(&arguments.log, &described)?;
@@ -55,9 +56,7 @@ pub(crate) fn run(arguments: &WatchArguments) -> Result<Verdict, JobError> {
     let speed = arguments.speed.or(on_terminal.then_some(10.0)).filter(|times| times.is_finite());
     let mut shown: Box<dyn Shown> = match arguments.format {
         WatchFormat::Jsonl => Box::new(jsonl::Jsonl),
-        WatchFormat::Text if on_terminal => {
-            Box::new(view::View::new(&log, record.time(), speed, arguments.slip_force))
-        }
+        WatchFormat::Text if on_terminal => Box::new(view::View::new(&log, record.time(), speed, arguments.slip_force)),
         WatchFormat::Text => Box::new(lines::Lines {
             slip_force: arguments.slip_force,
         }),

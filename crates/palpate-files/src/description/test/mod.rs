@@ -28,5 +28,5 @@ pub use convert::{parse_test, read_test};
 pub use description::{About, TestDescription};
 pub(crate) use machines::contradicts;
 pub use machines::machines_of;
-pub use named_columns::parse_columns;
+pub use named_columns::NamedColumns;
 pub use preset::{Machine, machines};

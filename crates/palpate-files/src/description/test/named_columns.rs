@@ -14,19 +14,36 @@ use crate::{
 const COLUMNS: &str = "a list of time, displacement, force or stress, each as QUANTITY=COLUMN:UNIT, such as \
     \"force=Kraft:N,displacement=Weg:mm,time=Zeit:s\" (a column by its name or its number from 1; a unit in the header may be left out)";
 
-/// Which columns hold what: `force=Kraft:N,displacement=Weg:mm,time=Zeit:s`, with names or numbers of columns.
-///
-/// # Errors
-/// [`ChoiceError`] for any other text, and for a unit that the quantity does not take.
-///
-/// ```
-/// use palpate_files::{description::parse_columns, table::ColumnRef};
-/// let columns = parse_columns("force=Kraft:N,time=1:ms")?;
-/// assert_eq!(columns.force.and_then(|force| force.column), Some(ColumnRef::Name("Kraft".to_owned())));
-/// assert_eq!(columns.time.and_then(|time| time.unit).as_deref(), Some("ms"));
-/// # Ok::<(), palpate_files::description::ChoiceError>(())
-/// ```
-pub fn parse_columns(text: &str) -> Result<ColumnChoices, ChoiceError> {
+/// Columns of a record as they were typed.
+#[derive(Debug, Clone, PartialEq)]
+pub struct NamedColumns {
+    /// What was typed.
+    pub text: String,
+    /// What it says.
+    pub columns: ColumnChoices,
+}
+
+impl NamedColumns {
+    /// Which columns hold what: `force=Kraft:N,displacement=Weg:mm,time=Zeit:s`, with names or numbers of columns.
+    ///
+    /// # Errors
+    /// [`ChoiceError`] for any other text, and for a unit that the quantity does not take.
+    ///
+    /// ```
+    /// use palpate_files::{description::NamedColumns, table::ColumnRef};
+    /// let columns = NamedColumns::parse("force=Kraft:N,time=1:ms")?.columns;
+    /// assert_eq!(columns.force.and_then(|force| force.column), Some(ColumnRef::Name("Kraft".to_owned())));
+    /// assert_eq!(columns.time.and_then(|time| time.unit).as_deref(), Some("ms"));
+    /// # Ok::<(), palpate_files::description::ChoiceError>(())
+    /// ```
+    pub fn parse(text: &str) -> Result<Self, ChoiceError> {
+        let columns = parsed(text)?;
+        let text = text.to_owned();
+        Ok(Self { text, columns })
+    }
+}
+
+fn parsed(text: &str) -> Result<ColumnChoices, ChoiceError> {
     let error = |source| ChoiceError {
         expected: COLUMNS,
         found: text.to_owned(),
@@ -117,7 +134,7 @@ mod tests {
 
     #[test]
     fn names_may_hold_colons_commas_and_blanks() {
-        let columns = parse_columns("force=Kraft, gefiltert:kN, displacement = Pos: x:mm,time=3").unwrap();
+        let columns = parsed("force=Kraft, gefiltert:kN, displacement = Pos: x:mm,time=3").unwrap();
         let column = |choice: Option<ColumnChoice>| choice.and_then(|choice| Some((choice.column?, choice.unit)));
         let named = |name: &str, unit: &str| Some((ColumnRef::Name(name.to_owned()), Some(unit.to_owned())));
         assert_eq!(column(columns.force), named("Kraft, gefiltert", "kN"));
@@ -127,21 +144,22 @@ mod tests {
 
     #[test]
     fn what_is_no_list_of_columns_is_shown_one() {
-        for text in ["", "Kraft", "force", "force=", "force=:N", "kraft=Kraft:N", "force=a,force=b", "force=a,stress=b"] {
-            let error = parse_columns(text).unwrap_err();
+        for text in ["", "Kraft", "force", "force=", "force=:N", "kraft=Kraft:N", "force=a,force=b", "force=a,stress=b"]
+        {
+            let error = parsed(text).unwrap_err();
             assert!(error.to_string().contains("force=Kraft:N,displacement=Weg:mm,time=Zeit:s"), "{text}: {error}");
         }
-        let error = parse_columns("force=Kraft:mm").unwrap_err();
+        let error = parsed("force=Kraft:mm").unwrap_err();
         assert!(error.hint().contains("mm") && error.hint().contains("kN"), "{}", error.hint());
     }
 
     #[test]
     fn what_is_typed_goes_before_what_is_described() {
-        let mut described = parse_columns("stress=Spannung:MPa,displacement=2:mm").unwrap();
+        let mut described = parsed("stress=Spannung:MPa,displacement=2:mm").unwrap();
         if let Some(displacement) = &mut described.displacement {
             displacement.sign = -1.0;
         }
-        described.lay_over(&parse_columns("force=Kraft:N,displacement=Weg").unwrap());
+        described.lay_over(&parsed("force=Kraft:N,displacement=Weg").unwrap());
         let displacement = described.displacement.unwrap();
         assert_eq!((described.stress, displacement.sign, displacement.unit.as_deref()), (None, -1.0, Some("mm")));
         assert_eq!(displacement.column, Some(ColumnRef::Name("Weg".to_owned())));

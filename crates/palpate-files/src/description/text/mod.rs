@@ -18,6 +18,7 @@ pub(super) mod words;
 
 pub use error::{DescriptionError, KeyPlace, KeyProblem};
 pub use kind::DescriptionKind;
+pub use words::nearest_first;
 
 /// A text as TOML writes it.
 pub(crate) fn quoted(text: &str) -> String {

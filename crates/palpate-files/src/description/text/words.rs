@@ -49,6 +49,22 @@ pub(crate) fn any_of(names: &[String]) -> String {
     }
 }
 
+/// Names in the order of how little they differ from one that is none of them.
+///
+/// ```
+/// use palpate_files::description::nearest_first;
+/// assert_eq!(nearest_first("latncy", &["maxwell", "latency", "power"])[0], "latency");
+/// ```
+#[must_use]
+pub fn nearest_first<'n>(found: &str, names: &[&'n str]) -> Vec<&'n str> {
+    let mut names = names.to_vec();
+    let found = found.to_lowercase();
+    // What stands behind a colon is a number, whatever the name.
+    let plain = |name: &str| name.split(':').next().unwrap_or_default().to_owned();
+    names.sort_by_key(|name| strsim::levenshtein(&plain(&found), &plain(name)));
+    names
+}
+
 /// The texts in backquotes.
 fn quoted(message: &str) -> Vec<String> {
     message.split('`').skip(1).step_by(2).map(str::to_owned).collect()
