@@ -104,7 +104,7 @@ impl SegmentError {
             Self::GivenOverlap { .. } => "end the earlier hold before the later one begins",
             Self::TooShort { .. } => "check that the whole test was exported",
             Self::NoMotion { .. } => {
-                "check the displacement column and its unit; a record without motion has no relaxation to fit"
+                "check the displacement column and its unit; if the record is one hold, give it by hand ([[phases.hold]] with from and to in the test description)"
             }
             Self::Ruptured(_) => {
                 "what stands after a rupture does not relax; if nothing broke, give the hold by hand ([[phases.hold]] in the test description)"
