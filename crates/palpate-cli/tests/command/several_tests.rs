@@ -42,7 +42,10 @@ fn inspect_lists_them_and_shows_one() {
         assert!(told.contains("phases        /") && told.contains("over 9.0000 s"), "{told}");
     }
     let error = refused(folder, &["inspect", file, "--part", "middle"]);
-    assert!(error.contains("expected one of 2 parts, 1 (\"left / 1\"), 2 (\"right\"), found \"middle\""), "{error}");
+    assert!(
+        error.contains("expected one of 2 parts, 1 (\"left / 1\"), 2 (\"right\"), found \"middle\""),
+        "{error}"
+    );
 }
 
 #[test]

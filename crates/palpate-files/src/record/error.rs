@@ -4,12 +4,13 @@ use std::{fmt, path::PathBuf};
 
 use palpate::{record::RecordError, units::Dimension};
 
-use super::{named::NamedColumn, snippet};
+use super::{lever, named::NamedColumn, snippet};
 use crate::{
     cell::DecimalMark,
+    description::machines_of,
     error::{FileError, few},
     naming::{Quantity, UNCALIBRATED, unit_factor},
-    table::{ColumnInfo, ColumnRef},
+    table::{ColumnInfo, ColumnRef, Part},
 };
 
 /// Why it is not clear which column holds what.
@@ -116,7 +117,7 @@ impl ColumnError {
     #[must_use]
     pub fn hint(&self) -> String {
         match self {
-            Self::Missing(_, columns) => snippet::of_columns(columns),
+            Self::Missing(_, columns) => lever::hint_of(columns).unwrap_or_else(|| snippet::of_columns(columns)),
             Self::TimeAsText(..) => {
                 "write seconds, or 2024-03-12 10:11:12.5, 12.03.2024 10:11:12.5 or 10:11:12.5 in every row".to_owned()
             }
@@ -143,7 +144,19 @@ impl ColumnError {
                 }
             }
             Self::Unit { column, key, problem } => problem.hint(column, key),
-            Self::NoSuchColumn { .. } => "columns count from 1 at the left; a name may go without its unit".to_owned(),
+            Self::NoSuchColumn { columns, .. } => {
+                let usual = "columns count from 1 at the left; a name may go without its unit";
+                let part = Part {
+                    columns: columns.clone(),
+                    ..Part::default()
+                };
+                let presets: Vec<String> =
+                    machines_of(&part).iter().map(|machine| format!("machine.preset = \"{}\"", machine.name)).collect();
+                match presets.is_empty() {
+                    true => usual.to_owned(),
+                    false => format!("{usual}; columns of these names go with {}", presets.join(" or ")),
+                }
+            }
             Self::Twice(_, one, other) => format!("correct columns.{one} or columns.{other}"),
             Self::ClocksDiffer(..) => "name two columns of one topic".to_owned(),
             Self::NoEpoch(..) => "give the unit that the time has, such as \"s\"".to_owned(),
@@ -162,13 +175,20 @@ impl UnitProblem {
     fn hint(&self, column: &NamedColumn, key: &str) -> String {
         match self {
             Self::Unknown(quantity, unit) if unit_factor(unit, Dimension::Voltage).is_none() => {
+                if let Some(hint) = lever::hint_of_unit(unit, column, *quantity) {
+                    return hint;
+                }
                 let meant = quantity.unit_meant(unit);
                 let lines = snippet::of_unit_and_column(key, meant, column);
                 let said = snippet::quantity_of(key).map_or_else(String::new, |quantity| {
                     let entry = snippet::entry(quantity, column, Some(meant), true);
                     format!(": {}, or", snippet::option([entry]))
                 });
-                format!("if another unit is meant, say it{said} in a test description:\n{lines}")
+                let doubt = match meant == quantity.usual_unit() {
+                    true => "another unit is meant".to_owned(),
+                    false => format!("\"{unit}\" stands for {meant}"),
+                };
+                format!("if {doubt}, say it{said} in a test description:\n{lines}")
             }
             Self::Unknown(_, unit) if key == "columns.force.unit" && column.name.as_deref() == Some(UNCALIBRATED) => {
                 snippet::of_bending(column, unit)

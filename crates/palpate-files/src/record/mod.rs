@@ -7,13 +7,14 @@
 //! | `choose.rs`, `choose_units.rs` | chooses the columns and their units, from a description or by the header |
 //! | `column_use.rs`, `named.rs` | a column that was chosen, and one as messages name it |
 //! | `describe.rs` | a first description of a test ([`describe`]) |
-//! | `error.rs`, `snippet.rs` | what is not clear, and the lines of a description that would clear it up |
+//! | `error.rs`, `snippet.rs`, `lever.rs` | what is not clear, and the lines of a description that would clear it up |
 
 mod choose;
 mod choose_units;
 mod column_use;
 mod describe;
 mod error;
+mod lever;
 mod named;
 mod parts;
 mod read;

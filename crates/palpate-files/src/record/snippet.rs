@@ -56,10 +56,19 @@ pub(super) fn of_columns(columns: &[ColumnInfo]) -> String {
     let in_topic = |column: &ColumnInfo| column.name.as_deref().and_then(topic_and_field).is_some();
     let is_log = columns.iter().any(in_topic);
     let wanted = [Quantity::Time, Quantity::Displacement, Quantity::Force];
-    let wanted = if is_log { &wanted[1..] } else { &wanted[..] };
-    let proposed = proposed(columns, wanted, &|column| !is_log || in_topic(column));
+    let mut wanted = if is_log { wanted[1..].to_vec() } else { wanted.to_vec() };
+    // A stress or a modulus over time serves where there is no force.
+    let measures = |quantity: Quantity| {
+        let unit = move |unit: &str| unit_factor(unit, quantity.dimension()).is_some();
+        columns.iter().any(|column| column.unit.as_deref().is_some_and(unit))
+    };
+    if measures(Quantity::Stress) && !measures(Quantity::Force) {
+        wanted.retain(|quantity| *quantity != Quantity::Force);
+        wanted.push(Quantity::Stress);
+    }
+    let proposed = proposed(columns, &wanted, &|column| !is_log || in_topic(column));
     let mut lines = vec!["[columns]".to_owned()];
-    for quantity in wanted {
+    for quantity in &wanted {
         match proposed.iter().find(|proposed| proposed.quantity == *quantity) {
             Some(proposed) => lines.push(line_of(proposed)),
             None if *quantity == Quantity::Displacement => {}
@@ -68,7 +77,7 @@ pub(super) fn of_columns(columns: &[ColumnInfo]) -> String {
     }
     let lines = lines.join("\n");
     let has = |quantity| proposed.iter().any(|proposed| proposed.quantity == quantity);
-    let is_whole = has(Quantity::Force) && (is_log || has(Quantity::Time));
+    let is_whole = (has(Quantity::Force) || has(Quantity::Stress)) && (is_log || has(Quantity::Time));
     // What a volt stands for is said in a description alone.
     if !is_whole || proposed.iter().any(|proposed| is_volts(proposed.unit)) {
         return format!("say which column holds what in a test description:\n{lines}");
