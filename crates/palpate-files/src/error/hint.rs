@@ -23,7 +23,12 @@ impl FileError {
             FileProblem::Empty => "export the record again",
             FileProblem::Foreign(looks_like) => foreign(*looks_like),
             FileProblem::Archive(members) if members.is_empty() => "pack the record again",
-            FileProblem::Archive(_) => "unpack it and name the files one by one, or their folder",
+            FileProblem::Archive(_) => {
+                let stem = self.path.file_stem().unwrap_or(self.path.as_os_str()).to_string_lossy();
+                return Some(format!(
+                    "unpack it into a folder: `palpate batch {stem} --out holds.csv` reads all files in one, any other command reads one of them"
+                ));
+            }
             FileProblem::Unlike { hint, .. } => hint,
             FileProblem::Encrypted => "open it where it was made and save it without a password",
             FileProblem::TooLarge { .. } => "split the file, or export less of it",
