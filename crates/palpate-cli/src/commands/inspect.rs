@@ -20,9 +20,7 @@ pub(crate) fn run(asked: &InspectArguments) -> Result<Verdict, JobError> {
     write_test.as_deref().map_or(Ok(()), check_new)?;
     let described = Described::read(test.as_deref(), asked.part.as_deref())?.with_columns(asked.columns.as_ref());
     let opened = OpenedFile::open(record, &described)?;
-    let job = Inspect {
-        only: figure.is_some() || write_test.is_some(),
-    };
+    let job = Inspect { only: figure.is_some() };
     let outcome = job.run(&opened, &mut Bars::default())?;
     notes(&outcome.notes);
     let found = outcome.result;
