@@ -39,7 +39,11 @@ pub fn find_phases(record: &Record, options: &SegmentOptions) -> Result<Segmenta
             Ok(segmentation)
         }
         Err(error) => match whole(record, &error) {
-            Some(hold) => with_given(record, options, &[hold]),
+            Some(mode) => {
+                let (from, to) = (record.time()[0], record.time()[record.len() - 1]);
+                let mode = Some(mode);
+                with_given(record, options, &[GivenHold { from, to, mode }])
+            }
             None => Err(error),
         },
     }

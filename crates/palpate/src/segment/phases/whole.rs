@@ -1,6 +1,5 @@
 //! A record that is one hold from its first sample to its last.
 
-use super::given::GivenHold;
 use crate::record::Record;
 use crate::segment::{HoldMode, RelaxationType, SegmentError, classify_relaxation};
 use crate::statistics::{mean, median, noise, range};
@@ -14,21 +13,16 @@ const FIRST_HALF_ALONE: f64 = 0.7;
 /// Share of the largest force that is left at the end of a relaxation, at least.
 const LEFT: f64 = 0.1;
 
-/// The record as one hold, where a search that ended in `error` missed it since nothing comes before: the jaw stands while the force
+/// What is held in a record that is one hold, where a search that ended in `error` missed it since nothing comes before: the jaw stands while the force
 /// relaxes, the force stays while the jaw creeps, or a force without a displacement falls ever more slowly.
-pub(super) fn whole(record: &Record, error: &SegmentError) -> Option<GivenHold> {
-    let (time, force) = (record.time(), record.force());
-    let mode = match (record.displacement(), error) {
-        (Some(_), SegmentError::NoMotion { .. }) if slows(force, FIRST_HALF) => HoldMode::DisplacementHeld,
-        (Some(displacement), _) if is_steady(force) && slows(displacement, FIRST_HALF) => HoldMode::ForceHeld,
-        (None, SegmentError::NoHold { .. }) if falls_to_a_rest(force) => HoldMode::DisplacementHeld,
-        _ => return None,
-    };
-    Some(GivenHold {
-        from: time[0],
-        to: time[time.len() - 1],
-        mode: Some(mode),
-    })
+pub(super) fn whole(record: &Record, error: &SegmentError) -> Option<HoldMode> {
+    let force = record.force();
+    match (record.displacement(), error) {
+        (Some(_), SegmentError::NoMotion { .. }) if slows(force, FIRST_HALF) => Some(HoldMode::DisplacementHeld),
+        (Some(displacement), _) if is_steady(force) && slows(displacement, FIRST_HALF) => Some(HoldMode::ForceHeld),
+        (None, SegmentError::NoHold { .. }) if falls_to_a_rest(force) => Some(HoldMode::DisplacementHeld),
+        _ => None,
+    }
 }
 
 /// Whether a force is pressed throughout, and stays.
