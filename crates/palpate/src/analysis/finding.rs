@@ -247,6 +247,8 @@ pub enum Finding {
     ClocksOpen {
         /// What the edges say with its standard error, s; `None` where too few show in both columns.
         skew: Option<(f64, f64)>,
+        /// One clock stamps both columns, and they seem to differ by more than any delay in front of it.
+        one_clock: bool,
     },
     /// The jaw swings about the places that it holds.
     JawHunts(Ripple),
