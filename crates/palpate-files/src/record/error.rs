@@ -278,6 +278,8 @@ pub enum ReadError {
         line: Option<Counted>,
         /// What is wrong.
         source: RecordError,
+        /// A column of strain, which a length would make a displacement where the record has none.
+        strain: Option<NamedColumn>,
     },
     /// The file holds several tests and none was chosen.
     #[error("{}: expected one test, found {}: {}", path.display(), parts.len(), first(parts))]
@@ -306,6 +308,15 @@ impl ReadError {
         match self {
             Self::File(error) => error.hint(),
             Self::Column { source, .. } => Some(source.hint()),
+            Self::Record {
+                source: RecordError::ConstantForce { .. },
+                strain: Some(strain),
+                ..
+            } => Some(format!(
+                "the body creeps: compare laws of creep (--creep) with the strain as a displacement; for a body of 10 mm say in a test description:\n\
+                 [columns.displacement]\ncolumn = {}\ntravel_per_unit = \"10 mm\"",
+                strain.number
+            )),
             Self::Record { source, .. } => Some(source.hint().to_owned()),
             Self::SeveralParts { parts, .. } => {
                 let first = parts.first().map_or("1", String::as_str);

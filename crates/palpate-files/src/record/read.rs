@@ -11,6 +11,7 @@ use super::{
     choose,
     column_use::{ColumnUse, Role},
     error::{Counted, ReadError},
+    named::NamedColumn,
     parts,
 };
 use crate::{
@@ -18,7 +19,7 @@ use crate::{
     input::Packing,
     naming::Quantity,
     open::{Contents, Format},
-    table::{IgnoredLines, Part, epoch},
+    table::{IgnoredLines, Part, epoch, recognise},
 };
 
 /// A record and where it came from.
@@ -128,7 +129,7 @@ pub fn read_part(
         (column.role, values)
     });
     let (raw, bent) = assemble(series.collect());
-    let signals = raw.report();
+    let (signals, has_displacement) = (raw.report(), raw.displacement.is_some());
     let averaged = (read.averaged > 1).then(|| Correction::RowsAveraged {
         rows: read.rows(),
         averaged: read.averaged,
@@ -145,6 +146,7 @@ pub fn read_part(
     let record = raw.into_record().map(|record| record.corrected_before(done)).map_err(|source| ReadError::Record {
         path: path.to_owned(),
         part: about.name.clone(),
+        strain: recognise::strain(&about.columns).filter(|_| !has_displacement).map(NamedColumn::from),
         line: source.row().and_then(|row| read.line_of(row)).map(|line| counted(contents.format, line)),
         source,
     })?;

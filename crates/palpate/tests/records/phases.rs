@@ -158,6 +158,16 @@ fn a_record_that_is_one_hold_is_that_hold() {
     }
 }
 
+/// A creep that was logged at even steps of ln t, noisy where it is small.
+#[test]
+fn a_creep_logged_ever_more_seldom_is_one_hold_too() {
+    let mut noise = Noise::new(5);
+    let time: Vec<f64> = (0..300).map(|i| 1e-3 * (0.04 * f64::from(i)).exp()).collect();
+    let creeping: Vec<f64> = time.iter().map(|t| 1e-3 * t.powf(0.3) + 2e-6 * noise.normal()).collect();
+    let found = phases(&Record::new(time, Some(creeping), vec![10.0; 300]).unwrap()).unwrap();
+    assert_eq!((found.segments.len(), found.segments[0].mode), (1, Some(HoldMode::ForceHeld)), "{found:?}");
+}
+
 /// What is let go, squeezed on, or moved through the air goes on without a hold.
 #[test]
 fn a_ramp_alone_is_no_hold() {

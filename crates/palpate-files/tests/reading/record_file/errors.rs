@@ -118,6 +118,14 @@ fn units_of_other_machines_are_led_to_what_a_record_needs() {
     assert_eq!(read(modulus, &pasted(&error)).unwrap().record.force(), [1000.0, 2000.0]);
 }
 
+/// A creep logged as strain under one stress was told to check its load cell.
+#[test]
+fn a_strain_under_constant_stress_is_led_to_creep() {
+    let table = "t\tstrain\tstress\ns\t-\tPa\n0\t0.01\t10\n1\t0.02\t10\n2\t0.025\t10\n";
+    let error = says(table, "", &["the force is 10 N in all 3 rows"], &["--creep", "travel_per_unit = \"10 mm\""]);
+    assert_eq!(read(table, &pasted(&error)).unwrap().record.displacement(), Some([1e-4, 2e-4, 2.5e-4].as_slice()));
+}
+
 #[test]
 fn two_of_a_kind() {
     let table = "Time (s),Force 1 (N),Force 2 (N)\n0,1,2\n1,2,3\n";

@@ -16,11 +16,13 @@ const LEFT: f64 = 0.1;
 /// What is held in a record that is one hold, where a search that ended in `error` missed it since nothing comes before: the jaw stands while the force
 /// relaxes, the force stays while the jaw creeps, or a force without a displacement falls ever more slowly.
 pub(super) fn whole(record: &Record, error: &SegmentError) -> Option<HoldMode> {
-    let force = record.force();
+    let (time, force) = (record.time(), record.force());
     match (record.displacement(), error) {
-        (Some(_), SegmentError::NoMotion { .. }) if slows(force, FIRST_HALF) => Some(HoldMode::DisplacementHeld),
-        (Some(displacement), _) if is_steady(force) && slows(displacement, FIRST_HALF) => Some(HoldMode::ForceHeld),
-        (None, SegmentError::NoHold { .. }) if falls_to_a_rest(force) => Some(HoldMode::DisplacementHeld),
+        (Some(_), SegmentError::NoMotion { .. }) if slows(time, force, FIRST_HALF) => Some(HoldMode::DisplacementHeld),
+        (Some(displacement), _) if is_steady(force) && slows(time, displacement, FIRST_HALF) => {
+            Some(HoldMode::ForceHeld)
+        }
+        (None, SegmentError::NoHold { .. }) if falls_to_a_rest(time, force) => Some(HoldMode::DisplacementHeld),
         _ => None,
     }
 }
@@ -32,10 +34,12 @@ fn is_steady(force: &[f64]) -> bool {
 }
 
 /// Whether values go one way, ever more slowly, by more than their noise.
-fn slows(values: &[f64], first_half: f64) -> bool {
+fn slows(time: &[f64], values: &[f64], first_half: f64) -> bool {
     let found = classify_relaxation(values);
     let part = (values.len() / 20).max(3);
-    let middle = &values[values.len() / 2 - part / 2..][..part];
+    // Many log their creep at even steps of ln t.
+    let middle = time.partition_point(|t| *t < 0.5 * (time[0] + time[time.len() - 1]));
+    let middle = &values[middle.min(values.len() - part)..][..part];
     // A relaxation is fastest at first: more than a few samples would hide much of it.
     let (first, last) = (mean(&values[..3]), mean(&values[values.len() - part..]));
     let (whole, half) = (last - first, mean(middle) - first);
@@ -44,10 +48,10 @@ fn slows(values: &[f64], first_half: f64) -> bool {
 }
 
 /// Whether a force falls from its first samples on, ever more slowly, and not to nothing.
-fn falls_to_a_rest(force: &[f64]) -> bool {
+fn falls_to_a_rest(time: &[f64], force: &[f64]) -> bool {
     let largest = force.iter().fold(0.0, |most: f64, force| most.max(*force));
     let peak = force.iter().position(|force| *force >= largest).unwrap_or(0);
     let last = mean(&force[force.len() - force.len() / 20 - 1..]);
     let falls = classify_relaxation(force).kind == RelaxationType::TypeI;
-    falls && peak <= force.len() / 20 && last > LEFT * largest && slows(force, FIRST_HALF_ALONE)
+    falls && peak <= force.len() / 20 && last > LEFT * largest && slows(time, force, FIRST_HALF_ALONE)
 }
