@@ -26,7 +26,7 @@ impl FileError {
             FileProblem::Archive(_) => {
                 let stem = self.path.file_stem().unwrap_or(self.path.as_os_str()).to_string_lossy();
                 return Some(format!(
-                    "unpack it into a folder: `palpate batch {stem} --out holds.csv` reads all files in one, any other command reads one of them"
+                    "unpack it into a folder: `palpate batch {stem} --out holds.csv` reads all its files, any other command takes one of them"
                 ));
             }
             FileProblem::Unlike { hint, .. } => hint,

@@ -278,8 +278,16 @@ pub enum ReadError {
         line: Option<Counted>,
         /// What is wrong.
         source: RecordError,
-        /// A column of strain, which a length would make a displacement where the record has none.
-        strain: Option<NamedColumn>,
+    },
+    /// The force never changes and there is no displacement, but a strain that would be one with the length of the body.
+    #[error("{}: {source}", path.display())]
+    Strain {
+        /// The file.
+        path: PathBuf,
+        /// Number of the column of the strain, from 1.
+        column: usize,
+        /// What is wrong.
+        source: RecordError,
     },
     /// The file holds several tests and none was chosen.
     #[error("{}: expected one test, found {}: {}", path.display(), parts.len(), first(parts))]
@@ -308,14 +316,9 @@ impl ReadError {
         match self {
             Self::File(error) => error.hint(),
             Self::Column { source, .. } => Some(source.hint()),
-            Self::Record {
-                source: RecordError::ConstantForce { .. },
-                strain: Some(strain),
-                ..
-            } => Some(format!(
+            Self::Strain { column, .. } => Some(format!(
                 "the body creeps: compare laws of creep (--creep) with the strain as a displacement; for a body of 10 mm say in a test description:\n\
-                 [columns.displacement]\ncolumn = {}\ntravel_per_unit = \"10 mm\"",
-                strain.number
+                 [columns.displacement]\ncolumn = {column}\ntravel_per_unit = \"10 mm\""
             )),
             Self::Record { source, .. } => Some(source.hint().to_owned()),
             Self::SeveralParts { parts, .. } => {

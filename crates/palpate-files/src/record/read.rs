@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use palpate::{
-    record::{Correction, RawColumns, Record, SignalReport},
+    record::{Correction, RawColumns, Record, RecordError, SignalReport},
     units,
 };
 
@@ -11,7 +11,6 @@ use super::{
     choose,
     column_use::{ColumnUse, Role},
     error::{Counted, ReadError},
-    named::NamedColumn,
     parts,
 };
 use crate::{
@@ -19,7 +18,7 @@ use crate::{
     input::Packing,
     naming::Quantity,
     open::{Contents, Format},
-    table::{IgnoredLines, Part, epoch, recognise},
+    table::{Columns, IgnoredLines, Part, epoch, recognise},
 };
 
 /// A record and where it came from.
@@ -143,13 +142,8 @@ pub fn read_part(
     let of_stress = plan.per_unit_area.then_some(Correction::StressAsForce);
     let bent = bent.map(|largest| Correction::DeflectionRemoved { largest });
     let done = left_out.into_iter().chain(of_stress).chain(averaged).chain(bent);
-    let record = raw.into_record().map(|record| record.corrected_before(done)).map_err(|source| ReadError::Record {
-        path: path.to_owned(),
-        part: about.name.clone(),
-        strain: recognise::strain(&about.columns).filter(|_| !has_displacement).map(NamedColumn::from),
-        line: source.row().and_then(|row| read.line_of(row)).map(|line| counted(contents.format, line)),
-        source,
-    })?;
+    let record = raw.into_record().map(|record| record.corrected_before(done));
+    let record = record.map_err(|source| refused(contents, about, &read, (has_displacement, source)))?;
     Ok(RecordFile {
         path: path.to_owned(),
         record,
@@ -165,6 +159,28 @@ pub fn read_part(
         per_unit_area: plan.per_unit_area,
         bytes: read.bytes,
     })
+}
+
+/// Why numbers make no record, with the line, or with the strain that would be a displacement.
+fn refused(
+    contents: &Contents,
+    about: &Part,
+    read: &Columns,
+    (has_displacement, source): (bool, RecordError),
+) -> ReadError {
+    let path = contents.input.name.clone();
+    match recognise::strain(&about.columns) {
+        Some(strain) if !has_displacement && matches!(source, RecordError::ConstantForce { .. }) => {
+            let column = strain.number;
+            ReadError::Strain { path, column, source }
+        }
+        _ => ReadError::Record {
+            path,
+            part: about.name.clone(),
+            line: source.row().and_then(|row| read.line_of(row)).map(|line| counted(contents.format, line)),
+            source,
+        },
+    }
 }
 
 /// What a format tells a row by.
