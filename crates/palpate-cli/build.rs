@@ -1,26 +1,31 @@
-//! What `palpate --version` says besides the version: commit, target and features.
+//! What a report of a bug needs to know of a build: commit and target.
 
-use std::env;
+use std::path::Path;
 use std::process::Command;
 
 fn main() {
-    // A commit moves the log of HEAD; without a repository, as in a source package, there is none to watch.
-    println!("cargo:rerun-if-changed=build.rs");
-    let log = "../../.git/logs/HEAD";
-    if std::path::Path::new(log).exists() {
-        println!("cargo:rerun-if-changed={log}");
-    }
-    let described = Command::new("git").args(["rev-parse", "--short=12", "HEAD"]).output();
-    let commit = described.ok().filter(|output| output.status.success());
-    let commit =
-        commit.map_or_else(|| "unknown".to_owned(), |output| String::from_utf8_lossy(&output.stdout).trim().to_owned());
-    let mut features: Vec<String> = env::vars()
-        .filter_map(|(name, _)| Some(name.strip_prefix("CARGO_FEATURE_")?.to_lowercase().replace('_', "-")))
-        .filter(|name| name != "default")
-        .collect();
-    features.sort();
-    let features = if features.is_empty() { "none".to_owned() } else { features.join(", ") };
-    println!("cargo:rustc-env=PALPATE_COMMIT={commit}");
-    println!("cargo:rustc-env=PALPATE_TARGET={}", env::var("TARGET").unwrap_or_default());
-    println!("cargo:rustc-env=PALPATE_FEATURES={features}");
+    let commit = commit().unwrap_or_else(|| "unknown".to_owned());
+    let target = std::env::var("TARGET").unwrap_or_else(|_| "unknown".to_owned());
+    println!("cargo::rustc-env=PALPATE_COMMIT={commit}");
+    println!("cargo::rustc-env=PALPATE_TARGET={target}");
+    println!("cargo::rerun-if-changed=build.rs");
+    // What changes with a commit or a checkout; a path that is not there would run this in every build.
+    let paths = ["HEAD", "logs/HEAD"].iter().filter_map(|name| git(&["rev-parse", "--git-path", name]));
+    paths
+        .filter(|path| Path::new(path).exists())
+        .for_each(|path| println!("cargo::rerun-if-changed={path}"));
+}
+
+/// The commit of our own repository; none where the sources were unpacked, perhaps inside the repository of another project.
+fn commit() -> Option<String> {
+    let top = git(&["rev-parse", "--show-toplevel"])?;
+    let is_ours = Path::new(&top).canonicalize().ok()? == Path::new("../..").canonicalize().ok()?;
+    is_ours.then(|| git(&["rev-parse", "--short=12", "HEAD"]))?
+}
+
+/// What `git` answers in the folder of this crate.
+fn git(arguments: &[&str]) -> Option<String> {
+    let output = Command::new("git").args(arguments).output().ok().filter(|output| output.status.success())?;
+    let answer = String::from_utf8(output.stdout).ok()?.trim().to_owned();
+    (!answer.is_empty()).then_some(answer)
 }

@@ -5,32 +5,34 @@ use std::path::PathBuf;
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use palpate::calibrate::RateLaw;
 use palpate::laws::Law;
-use palpate_files::description::{schema_material, schema_protocol, schema_test};
+use palpate_files::description::{NamedColumns, schema_material, schema_protocol, schema_test};
 use palpate_jobs as jobs;
-use palpate_jobs::typed::{Choice, coverage, exponent, force, law, length, number, one_of, seconds, time};
+use palpate_jobs::typed::{Choice, columns, coverage, exponent, force, law, length, number, one_of, seconds, time};
 use palpate_report::document::{
     AnalysisDocument, CalibrationDocument, ComparisonDocument, GripDocument, ReproductionDocument, WatchDocument,
 };
 use schemars::{JsonSchema, schema_for};
 use serde_json::Value;
 
-/// What `palpate --version` prints: what a report of a fault needs.
-const LONG_VERSION: &str = concat!(
-    env!("CARGO_PKG_VERSION"),
-    "\ncommit ",
-    env!("PALPATE_COMMIT"),
-    "\ntarget ",
-    env!("PALPATE_TARGET"),
-    "\nfeatures ",
-    env!("PALPATE_FEATURES"),
-);
-
 /// Viscoelastic contact: laws from squeeze-and-hold tests, and forces from laws.
 #[derive(Debug, Parser)]
-#[command(name = "palpate", version, long_version = LONG_VERSION, about, max_term_width = 100, after_help = AFTER_HELP)]
+#[command(name = "palpate", version, long_version = build(), about, max_term_width = 100, after_help = AFTER_HELP)]
 pub(crate) struct Arguments {
     #[command(subcommand)]
     pub(crate) command: Command,
+}
+
+/// What a report of a bug needs to know of this build.
+fn build() -> String {
+    let features = [
+        ("arrow", cfg!(feature = "arrow")),
+        ("png", cfg!(feature = "png")),
+        ("robot-log", cfg!(feature = "robot-log")),
+    ];
+    let enabled: Vec<&str> = features.iter().filter(|(_, enabled)| *enabled).map(|(name, _)| *name).collect();
+    let features = if enabled.is_empty() { "none".to_owned() } else { enabled.join(", ") };
+    let (version, commit, target) = (env!("CARGO_PKG_VERSION"), env!("PALPATE_COMMIT"), env!("PALPATE_TARGET"));
+    format!("{version}\ncommit: {commit}\ntarget: {target}\nfeatures: {features}")
 }
 
 const AFTER_HELP: &str = "\
@@ -106,6 +108,9 @@ pub(crate) struct SimulateArguments {
     /// Test description (TOML) of the replayed record
     #[arg(long, value_name = "TEST.toml", requires = "drive")]
     pub(crate) test: Option<PathBuf>,
+    /// Columns of the record by name or number, with their units; they take precedence over the description
+    #[arg(long, value_name = "QUANTITY=COLUMN:UNIT,…", value_parser = columns, requires = "drive")]
+    pub(crate) columns: Option<NamedColumns>,
     /// File for the series (CSV); standard output if not given
     #[arg(long, value_name = "FILE.csv")]
     pub(crate) out: Option<PathBuf>,
@@ -195,11 +200,14 @@ pub(crate) struct InspectArguments {
     #[arg(value_name = "RECORD", required_unless_present = "machines")]
     pub(crate) record: Option<PathBuf>,
     /// List the machines and grippers that a test description can name, and exit
-    #[arg(long, conflicts_with_all = ["record", "test", "part", "figure", "write_test"])]
+    #[arg(long, conflicts_with_all = ["record", "test", "columns", "part", "figure", "write_test"])]
     pub(crate) machines: bool,
     /// Test description (TOML): columns, units, geometry
     #[arg(long, value_name = "TEST.toml")]
     pub(crate) test: Option<PathBuf>,
+    /// Columns of the record by name or number, with their units; they take precedence over the description
+    #[arg(long, value_name = "QUANTITY=COLUMN:UNIT,…", value_parser = columns)]
+    pub(crate) columns: Option<NamedColumns>,
     /// Test of a file with several tests: its name (a sheet, a curve, a `test_id`), or its number from 1
     #[arg(long, value_name = "NAME")]
     pub(crate) part: Option<String>,
@@ -231,6 +239,9 @@ pub(crate) struct ConvertArguments {
     /// Test description (TOML): columns, units
     #[arg(long, value_name = "TEST.toml")]
     pub(crate) test: Option<PathBuf>,
+    /// Columns of the record by name or number, with their units; they take precedence over the description
+    #[arg(long, value_name = "QUANTITY=COLUMN:UNIT,…", value_parser = columns)]
+    pub(crate) columns: Option<NamedColumns>,
     /// Test of a file with several tests: its name, or its number from 1
     #[arg(long, value_name = "NAME")]
     pub(crate) part: Option<String>,
@@ -252,6 +263,9 @@ pub(crate) struct AnalyzeArguments {
     /// Test description (TOML): columns, units, geometry, options
     #[arg(long, value_name = "TEST.toml")]
     pub(crate) test: Option<PathBuf>,
+    /// Columns of the record by name or number, with their units; they take precedence over the description
+    #[arg(long, value_name = "QUANTITY=COLUMN:UNIT,…", value_parser = columns)]
+    pub(crate) columns: Option<NamedColumns>,
     /// Test of a file with several tests: its name (a sheet, a curve, a `test_id`), or its number from 1
     #[arg(long, value_name = "NAME")]
     pub(crate) part: Option<String>,
@@ -296,6 +310,9 @@ pub(crate) struct BatchArguments {
     /// Test description (TOML): columns, units, geometry, options; for all records
     #[arg(long, value_name = "TEST.toml")]
     pub(crate) test: Option<PathBuf>,
+    /// Columns of the record by name or number, with their units; they take precedence over the description
+    #[arg(long, value_name = "QUANTITY=COLUMN:UNIT,…", value_parser = columns)]
+    pub(crate) columns: Option<NamedColumns>,
     #[command(flatten)]
     pub(crate) job: jobs::Batch,
 }
@@ -320,6 +337,9 @@ pub(crate) struct CompareArguments {
     /// Test description (TOML): columns, units, geometry, options; for all records
     #[arg(long, value_name = "TEST.toml")]
     pub(crate) test: Option<PathBuf>,
+    /// Columns of the record by name or number, with their units; they take precedence over the description
+    #[arg(long, value_name = "QUANTITY=COLUMN:UNIT,…", value_parser = columns)]
+    pub(crate) columns: Option<NamedColumns>,
     /// Test of a file with several tests: its name (a sheet, a curve, a `test_id`), or its number from 1
     #[arg(long, value_name = "NAME")]
     pub(crate) part: Option<String>,
@@ -356,6 +376,9 @@ pub(crate) struct CalibrateArguments {
     /// Test description (TOML): columns, units, the body
     #[arg(long, value_name = "TEST.toml")]
     pub(crate) test: Option<PathBuf>,
+    /// Columns of the record by name or number, with their units; they take precedence over the description
+    #[arg(long, value_name = "QUANTITY=COLUMN:UNIT,…", value_parser = columns)]
+    pub(crate) columns: Option<NamedColumns>,
     /// Test of a file with several tests: its name (a sheet, a curve, a `test_id`), or its number from 1
     #[arg(long, value_name = "NAME")]
     pub(crate) part: Option<String>,
@@ -481,6 +504,7 @@ per interval --every. A table of the holds follows at the end.
 Examples:
   palpate watch gripper.csv --test gripper.toml --slip-force \"2 N\" --warn-before \"1 s\"
   palpate watch gripper.csv --speed 1
+  palpate watch - < gripper.csv
   palpate watch gripper.csv --format jsonl --every \"0.1 s\" | jq .time_to_slip_s")]
 pub(crate) struct WatchArguments {
     /// Log with time, force and, preferably, displacement; - or nothing is standard input
@@ -489,6 +513,9 @@ pub(crate) struct WatchArguments {
     /// Test description (TOML): columns and units
     #[arg(long, value_name = "TEST.toml")]
     pub(crate) test: Option<PathBuf>,
+    /// Columns of the record by name or number, with their units; they take precedence over the description
+    #[arg(long, value_name = "QUANTITY=COLUMN:UNIT,…", value_parser = columns)]
+    pub(crate) columns: Option<NamedColumns>,
     /// Test of a file with several tests: its name (a sheet, a curve, a `test_id`), or its number from 1
     #[arg(long, value_name = "NAME")]
     pub(crate) part: Option<String>,

@@ -4,6 +4,7 @@ use std::fs;
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
+use palpate::number::counted;
 use palpate_files::parquet_table::TableError;
 use palpate_report::figure::Figure;
 use palpate_report::study::Bundle;
@@ -49,14 +50,61 @@ pub(crate) fn unwritten(path: &Path, error: &io::Error) -> JobError {
     let hint = match error.kind() {
         io::ErrorKind::PermissionDenied | io::ErrorKind::ReadOnlyFilesystem => "choose a folder with write permission",
         io::ErrorKind::StorageFull | io::ErrorKind::QuotaExceeded => "free some space; nothing was written",
-        io::ErrorKind::NotADirectory | io::ErrorKind::AlreadyExists => {
-            "a file has the name of the folder; choose another name with ⟨out⟩"
-        }
         _ => "",
     };
+    // The system says that something is there, not what.
+    if let Some(file) = path.ancestors().find(|path| path.is_file())
+        && (file != path || error.kind() == io::ErrorKind::AlreadyExists)
+    {
+        let message = format!("cannot write: expected a folder, found {}", standing(file));
+        let hint = "choose another name with ⟨out⟩, or move the file away";
+        return JobError::new(ErrorKind::File(error.kind()), message, hint.to_owned()).of(file.display());
+    }
+    if path.is_dir() && matches!(error.kind(), io::ErrorKind::IsADirectory | io::ErrorKind::DirectoryNotEmpty) {
+        let message = format!("cannot write: expected a file or nothing, found {}", standing(path));
+        let hint = "choose another name with ⟨out⟩, or move the directory away";
+        return JobError::new(ErrorKind::File(error.kind()), message, hint.to_owned()).of(path.display());
+    }
     // The name of a temporary file would say nothing to the reader.
     let what = io::Error::from(error.kind());
     JobError::new(ErrorKind::File(error.kind()), format!("cannot write: {what}"), hint.to_owned()).of(path.display())
+}
+
+/// What stands at a path where something else should go.
+fn standing(path: &Path) -> String {
+    const NAMED: usize = 3;
+    if let Ok(entries) = fs::read_dir(path) {
+        let names = entries.flatten().map(|entry| entry.file_name().to_string_lossy().into_owned());
+        let mut names: Vec<String> = names.filter(|name| !name.starts_with('.')).collect();
+        names.sort();
+        let (count, more) = (names.len(), if names.len() > NAMED { ", …" } else { "" });
+        names.truncate(NAMED);
+        return match count {
+            0 => "a directory that is empty".to_owned(),
+            _ => format!("a directory that holds {}{more}", names.join(", ")),
+        };
+    }
+    let size = fs::metadata(path).map_or(0, |about| about.len());
+    format!("a file of {}", counted(usize::try_from(size).unwrap_or(usize::MAX), "byte"))
+}
+
+/// Refuses a file in the place of the folder for a report, before any work is done.
+///
+/// # Errors
+/// [`JobError`] where the path, or what should be a folder above it, leads to a file.
+pub fn check_folder(out: &Path) -> Result<(), JobError> {
+    match out.ancestors().find(|path| path.is_file()) {
+        Some(_) => Err(unwritten(out, &io::ErrorKind::AlreadyExists.into())),
+        None => Ok(()),
+    }
+}
+
+/// Refuses a place for a file where a directory stands, or a file above it.
+fn check_place(path: &Path) -> Result<(), JobError> {
+    match path.is_dir() {
+        true => Err(unwritten(path, &io::ErrorKind::IsADirectory.into())),
+        false => check_folder(folder_of(path)),
+    }
 }
 
 /// Writes one file: under a temporary name first, then renamed.
@@ -114,8 +162,9 @@ pub(crate) fn unwritten_table(path: &Path, error: &TableError) -> JobError {
 /// Refuses a table in the place of a folder.
 pub(crate) fn check_no_folder(out: &Path) -> Result<(), JobError> {
     if out.is_dir() {
-        let message = "expected a file for the table, found a directory";
-        return Err(JobError::option(message, "choose another name with ⟨out⟩").of(out.display()));
+        let message = format!("expected a file for the table, found {}", standing(out));
+        let name = out.join("table.parquet").display().to_string();
+        return Err(JobError::option(message, &format!("name a file in it: ⟨out={name}⟩")).of(out.display()));
     }
     Ok(())
 }
@@ -137,6 +186,9 @@ pub fn write_bundle(folder: &Path, bundle: &Bundle) -> Result<(), JobError> {
         }
         Ok(staged)
     };
+    for (name, _) in &bundle.files {
+        check_place(&folder.join(name))?;
+    }
     let existed = folder.exists();
     let staged = stage(bundle).map_err(|error| {
         if !existed {
@@ -208,6 +260,11 @@ const NOT_IN_THIS_BUILD: &[(&str, &str)] = &[
 pub(crate) fn check_ending(path: &Path, endings: &[&str], expected: &str, hint: &str) -> Result<(), JobError> {
     let ending = path.extension().and_then(|ending| ending.to_str()).unwrap_or_default();
     if !endings.contains(&ending) {
+        if path.is_dir() {
+            let message = format!("expected {expected}, found {}", standing(path));
+            let name = path.join("FILE").with_extension(endings[0]);
+            return Err(JobError::option(message, &format!("name a file in it: {}", name.display())).of(path.display()));
+        }
         return Err(JobError::option(format!("expected {expected}"), hint).of(path.display()));
     }
     if let Some((_, feature)) = NOT_IN_THIS_BUILD.iter().find(|(absent, _)| *absent == ending) {

@@ -6,6 +6,7 @@ use palpate::forecast::RampChoice;
 use palpate::grip::{Control, Objective};
 use palpate::laws::Law;
 use palpate::units::{Dimension, parse, split_number};
+use palpate_files::description::NamedColumns;
 
 /// A value of an option: its name, what it is, and what it says.
 pub type Choice<T> = (&'static str, &'static str, T);
@@ -171,7 +172,19 @@ pub fn number(text: &str, is_one: impl Fn(f64) -> bool, expected: &str) -> Resul
 /// # Errors
 /// What was expected.
 pub fn exponent(text: &str) -> Result<f64, String> {
-    number(text, |n| n.is_finite() && n > 0.0, "exponents above 0, such as 1,3,5")
+    let list = one_by_one(text).unwrap_or_else(|| "1,3,5".to_owned());
+    number(
+        text,
+        |n| n.is_finite() && n > 0.0,
+        &format!("numbers above 0 with commas between them, such as {list}"),
+    )
+}
+
+/// A list whose values something else than commas parts, as it should be written.
+fn one_by_one(text: &str) -> Option<String> {
+    let pieces = text.split([';', '|', '/', ' ']).filter(|piece| !piece.is_empty());
+    let pieces: Vec<&str> = pieces.collect();
+    (pieces.len() > 1).then(|| pieces.join(","))
 }
 
 /// A law by its name.
@@ -179,7 +192,10 @@ pub fn exponent(text: &str) -> Result<f64, String> {
 /// # Errors
 /// What was expected.
 pub fn law(text: &str) -> Result<Law, String> {
-    text.trim().parse::<Law>().map_err(|error| error.to_string())
+    text.trim().parse::<Law>().map_err(|error| match one_by_one(text) {
+        Some(list) => format!("expected laws with commas between them, such as {list}"),
+        None => error.to_string(),
+    })
 }
 
 /// A share of a hold.
@@ -187,7 +203,20 @@ pub fn law(text: &str) -> Result<Law, String> {
 /// # Errors
 /// What was expected.
 pub fn share(text: &str) -> Result<f64, String> {
-    number(text, |share| share > 0.0 && share < 1.0, "shares of the hold between 0 and 1, such as 0.25,0.5")
+    let list = one_by_one(text).unwrap_or_else(|| "0.25,0.5".to_owned());
+    let expected = format!("shares of the hold between 0 and 1 with commas between them, such as {list}");
+    number(text, |share| share > 0.0 && share < 1.0, &expected)
+}
+
+/// Columns of a record by their names.
+///
+/// # Errors
+/// What was expected.
+pub fn columns(text: &str) -> Result<NamedColumns, String> {
+    NamedColumns::parse(text).map_err(|error| match &error.source {
+        Some(unit) => unit.to_string(),
+        None => error.to_string(),
+    })
 }
 
 /// A coverage of intervals.

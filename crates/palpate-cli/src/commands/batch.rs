@@ -8,7 +8,7 @@ use crate::progress::Bars;
 use crate::terminal::notes;
 
 pub(crate) fn run(arguments: &BatchArguments) -> Result<Verdict, JobError> {
-    let described = Described::read(arguments.test.as_deref(), None)?;
+    let described = Described::read(arguments.test.as_deref(), None)?.with_columns(arguments.columns.as_ref());
     let records = NamedRecords::find(&arguments.records, described)?;
     let outcome = arguments.job.run(records, &arguments.out, &mut Bars::default())?;
     notes(&outcome.notes);

@@ -12,7 +12,7 @@ pub(crate) fn run(asked: &CalibrateArguments) -> Result<Verdict, JobError> {
     let (out, figure) = (&asked.out, &asked.figure);
     keep_apart([&asked.record].into_iter().chain(&asked.test), out.iter().chain(figure))?;
     figure.as_deref().map_or(Ok(()), check_figure)?;
-    let described = Described::read(asked.test.as_deref(), asked.part.as_deref())?;
+    let described = Described::read(asked.test.as_deref(), asked.part.as_deref())?.with_columns(asked.columns.as_ref());
     let opened = OpenedFile::open(&asked.record, &described)?;
     notes(&opened.notes());
     let measured = opened.measurement(opened.only()?, &mut Bars::default())?;

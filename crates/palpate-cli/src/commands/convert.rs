@@ -12,7 +12,7 @@ pub(crate) fn run(asked: &ConvertArguments) -> Result<Verdict, JobError> {
     let (record, out) = (&asked.record, &asked.out);
     keep_apart([record].into_iter().chain(&asked.test), [out])?;
     Converted::check_name(out)?;
-    let described = Described::read(asked.test.as_deref(), asked.part.as_deref())?;
+    let described = Described::read(asked.test.as_deref(), asked.part.as_deref())?.with_columns(asked.columns.as_ref());
     let opened = OpenedFile::open(record, &described)?;
     notes(&opened.notes());
     let outcome = Convert {}.run(&opened, &mut Bars::default())?;

@@ -1,6 +1,6 @@
 //! `palpate grip`: will it hold, and how to squeeze.
 
-use palpate_jobs::output::{check_figure, keep_apart, picture, write_bundle, write_file};
+use palpate_jobs::output::{check_figure, check_folder, keep_apart, picture, write_bundle, write_file};
 use palpate_jobs::{JobError, MaterialSource, Results, Verdict};
 use palpate_report::study::{Pictures, grip_bundle, grip_figure};
 
@@ -10,6 +10,7 @@ use crate::terminal::{note_report, notes, print};
 
 pub(crate) fn run(asked: &GripArguments) -> Result<Verdict, JobError> {
     let (out, figure) = (&asked.out, &asked.figure);
+    out.as_deref().map_or(Ok(()), check_folder)?;
     keep_apart([&asked.material], figure)?;
     figure.as_deref().map_or(Ok(()), check_figure)?;
     let material = MaterialSource::read(&asked.material)?;

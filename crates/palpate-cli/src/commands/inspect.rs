@@ -18,11 +18,9 @@ pub(crate) fn run(asked: &InspectArguments) -> Result<Verdict, JobError> {
     keep_apart([record].into_iter().chain(test), figure.iter().chain(write_test))?;
     figure.as_deref().map_or(Ok(()), check_figure)?;
     write_test.as_deref().map_or(Ok(()), check_new)?;
-    let described = Described::read(test.as_deref(), asked.part.as_deref())?;
+    let described = Described::read(test.as_deref(), asked.part.as_deref())?.with_columns(asked.columns.as_ref());
     let opened = OpenedFile::open(record, &described)?;
-    let job = Inspect {
-        only: figure.is_some() || write_test.is_some(),
-    };
+    let job = Inspect { only: figure.is_some() };
     let outcome = job.run(&opened, &mut Bars::default())?;
     notes(&outcome.notes);
     let found = outcome.result;

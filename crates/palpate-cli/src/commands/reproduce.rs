@@ -1,6 +1,6 @@
 //! `palpate reproduce`: the paper's study.
 
-use palpate_jobs::output::write_bundle;
+use palpate_jobs::output::{check_folder, write_bundle};
 use palpate_jobs::{JobError, Reproduce, Results, Verdict};
 use palpate_report::study::{Pictures, reproduction_bundle};
 
@@ -9,6 +9,7 @@ use crate::progress::Bars;
 use crate::terminal::print;
 
 pub(crate) fn run(arguments: &ReproduceArguments) -> Result<Verdict, JobError> {
+    check_folder(&arguments.out)?;
     let outcome = Reproduce {}.run(&mut Bars::default())?;
     let bundle = reproduction_bundle(&outcome.result, Pictures { png: arguments.png })?;
     write_bundle(&arguments.out, &bundle)?;

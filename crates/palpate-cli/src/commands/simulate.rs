@@ -16,7 +16,8 @@ pub(crate) fn run(asked: &SimulateArguments) -> Result<Verdict, JobError> {
     keep_apart(reads, series.clone().chain(figures))?;
     series.into_iter().try_for_each(|path| check_series(path))?;
     let bars = &mut Bars::default();
-    let described = Described::read(asked.test.as_deref().filter(|_| asked.drive.is_some()), None)?;
+    let described = Described::read(asked.test.as_deref().filter(|_| asked.drive.is_some()), None)?
+        .with_columns(asked.columns.as_ref());
     let opened = asked.drive.as_ref().map(|path| OpenedFile::open(path, &described)).transpose()?;
     let measured = opened.map(|opened| opened.measurement(opened.only()?, bars)).transpose()?;
     let driver = measured.as_ref().map(|measured| (&measured.record, measured.input.path.as_str()));

@@ -26,16 +26,62 @@ fn files_that_are_no_records() {
     refuses("force_n\n1\n2\n3\n", &["column"]);
 }
 
+/// A header in another language, or without units, was exit code 2 and a file to write.
+#[test]
+fn a_header_that_is_not_understood_is_one_option_away() {
+    let folder = tempdir().unwrap();
+    let rows = ramp_and_hold(5.0, 20.0).replacen("time_s,displacement_mm,force_n", "Zt,Eindrückung,Krft", 1);
+    let record = file(folder.path(), "record.csv", &rows);
+    let option = "force=Krft:N,displacement=Eindrückung:mm,time=Zt:s";
+    let (analyze, batch) = (["analyze", &record], ["batch", &record, "--out", "b.csv"]);
+    let error = refused(folder.path(), &analyze);
+    assert!(error.contains(&format!("--columns \"{option}\"")), "{error}");
+    let convert = ["convert", &record, "--out", "c.csv"];
+    let others = ["inspect", "compare", "watch"].map(|command| [command, &record]);
+    let asked = others.iter().map(|asked| &asked[..]).chain([&analyze[..], &batch, &convert]);
+    for asked in asked {
+        done(folder.path(), &[asked, &["--columns", option]].concat());
+    }
+    // What was typed stands in what is kept.
+    let kept = std::fs::read_to_string(folder.path().join("c.csv")).unwrap();
+    assert!(kept.lines().next().unwrap().contains("--columns") && kept.contains("time_s,displacement_m,force_n"));
+    let error = refused(folder.path(), &[&analyze[..], &["--columns", "Krft"]].concat());
+    assert!(error.contains("force=Kraft:N,displacement=Weg:mm,time=Zeit:s"), "{error}");
+    let bare = file(folder.path(), "bare.csv", rows.replacen("Zt,Eindrückung,Krft", "Zeit,Weg,Kraft", 1));
+    let error = refused(folder.path(), &["analyze", &bare]);
+    assert!(error.contains("--columns \"time=Zeit:s,displacement=Weg:mm,force=Kraft:N\""), "{error}");
+}
+
 #[test]
 fn cells_that_are_no_numbers() {
     let good = ramp_and_hold(5.0, 20.0);
     let text = good.replacen("\n2.0000,1.00000,1.668740", "\n2.0000,1.00000,slack", 1);
     refuses(text, &["line 42", "force", "slack", "number", "hint:"]);
-    let nan = good.replacen("\n2.0000,1.00000,1.668740", "\n2.0000,1.00000,NaN", 1);
-    assert!(nan.contains("NaN"));
-    refuses(nan, &["line 42", "NaN"]);
     let infinite = good.replacen("\n2.0000,1.00000,1.668740", "\n2.0000,1.00000,inf", 1);
     refuses(infinite, &["line 42", "inf"]);
+}
+
+/// One `n/a` among thousands of rows refused the file.
+#[test]
+fn a_cell_without_a_number_costs_its_row_alone() {
+    let folder = tempdir().unwrap();
+    let good = ramp_and_hold(5.0, 20.0);
+    for (number, word) in ["n/a", "", "NaN", "-"].into_iter().enumerate() {
+        let one = good.replacen("\n2.0000,1.00000,1.668740", &format!("\n2.0000,1.00000,{word}"), 1);
+        let both = one.replacen("\n3.0000,", &format!("\n{word},"), 1);
+        assert_ne!(one, both);
+        let record = file(folder.path(), &format!("{number}.csv"), &both);
+        let told = done(folder.path(), &["inspect", &record]);
+        assert!(told.contains("2 of 121 rows left out, in which a cell holds no number (lines 42, 62)"), "{told}");
+        let told = done(folder.path(), &["analyze", &record, "--no-compare"]);
+        assert!(told.contains("2 of 121 rows left out"), "{told}");
+    }
+    // More than a few in a hundred are no slip.
+    let bad = good.lines().enumerate().map(|(line, row)| match line % 20 {
+        5 => format!("{},n/a\n", row.rsplit_once(',').unwrap().0),
+        _ => format!("{row}\n"),
+    });
+    refuses(bad.collect::<String>(), &["line 6", "n/a"]);
 }
 
 #[test]
@@ -68,6 +114,47 @@ fn records_with_nothing_to_fit() {
     let name = file(folder.path(), "record.csv", &short);
     let error = refused(folder.path(), &["analyze", &name, "--minimum-hold", "0.01 s"]);
     assert!(error.contains("3 samples"), "{error}");
+}
+
+/// "entity already exists" said nothing of what stands in the way.
+#[test]
+fn what_stands_where_a_report_should_go_is_told() {
+    let folder = tempdir().unwrap();
+    let record = file(folder.path(), "record.csv", ramp_and_hold(5.0, 20.0));
+    std::fs::create_dir(folder.path().join("other")).unwrap();
+    file(&folder.path().join("other"), "tables", "notes");
+    let error = refused(folder.path(), &["analyze", &record, "--no-compare", "--out", "other"]);
+    assert!(error.contains("other/tables: cannot write: expected a folder, found a file of 5 bytes"), "{error}");
+    assert_eq!(std::fs::read_dir(folder.path().join("other")).unwrap().count(), 1, "something was written");
+    let error = refused(folder.path(), &["batch", &record, "--out", "other"]);
+    assert!(
+        error.contains("a directory that holds tables") && error.contains("--out other/table.parquet"),
+        "{error}"
+    );
+    let error = refused(folder.path(), &["convert", &record, "--out", "other"]);
+    assert!(error.contains("a directory that holds tables") && error.contains("other/FILE.csv"), "{error}");
+}
+
+/// "invalid float literal" for `3;5`, and a list of laws in which the one meant had to be found.
+#[test]
+fn lists_and_names_that_are_mistyped_are_shown_as_they_should_be() {
+    let folder = tempdir().unwrap();
+    let record = file(folder.path(), "record.csv", ramp_and_hold(5.0, 20.0));
+    for (asked, expected) in [
+        (&["analyze", "--exponents", "3;5"][..], "numbers above 0 with commas between them, such as 3,5"),
+        (&["analyze", "--exponents", "x"], "such as 1,3,5"),
+        (&["compare", "--cuts", "0.1 0.2"], "such as 0.1,0.2"),
+        (&["compare", "--laws", "latency;prony:2"], "such as latency,prony:2"),
+        (
+            &["compare", "--laws", "latncy"],
+            "no law is called \"latncy\"; did you mean latency? Other laws are latency:N, ",
+        ),
+        (&["compare", "--laws", "Pronny:3"], "did you mean prony:K?"),
+        (&["analyze", "--part", "2"], "expected the one test that the file holds, found \"2\""),
+    ] {
+        let error = refused(folder.path(), &[asked, &[&record]].concat());
+        assert!(error.contains(expected), "{asked:?}: {error}");
+    }
 }
 
 #[test]
@@ -119,6 +206,7 @@ fn output_that_cannot_be_written_leaves_nothing_behind() {
     assert!(error.contains("taken") && error.contains("cannot write"), "{error}");
     let error = refused(folder.path(), &["analyze", &record, "--out", "taken/below"]);
     assert!(error.contains("cannot write"), "{error}");
+    assert!(error.contains("found a file of 20 bytes") && error.contains("choose another name"), "{error}");
     let mut names: Vec<_> = std::fs::read_dir(folder.path()).unwrap().map(|e| e.unwrap().file_name()).collect();
     names.sort();
     assert_eq!(names, ["record.csv", "taken"]);

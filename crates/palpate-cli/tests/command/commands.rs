@@ -7,6 +7,18 @@ use crate::common::{data, done, file, palpate, ramp_and_hold, root};
 use serde_json::Value;
 use tempfile::tempdir;
 
+/// "palpate 0.1.0" in a report of a bug said nothing of the build.
+#[test]
+fn the_version_says_which_build_it_is() {
+    let told = done(&root(), &["--version"]);
+    let lines: Vec<&str> = told.lines().collect();
+    assert!(lines[0].starts_with("palpate 0.") && lines[1].starts_with("commit: "), "{told}");
+    let commit = lines[1].trim_start_matches("commit: ");
+    assert!(commit == "unknown" || commit.len() >= 12 && commit.chars().all(|c| c.is_ascii_hexdigit()), "{told}");
+    assert!(lines[2].contains("-") && lines[3] == "features: arrow, png, robot-log", "{told}");
+    assert_eq!(done(&root(), &["-V"]), format!("{}\n", lines[0]));
+}
+
 /// Intervals by another way are other intervals of the same numbers, and the document says which.
 #[test]
 fn intervals_rest_on_what_is_asked_for() {

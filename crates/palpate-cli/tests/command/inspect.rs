@@ -85,6 +85,40 @@ fn a_first_description_gives_the_same_record() {
     }
 }
 
+/// A file with the diameter and height of a cylinder was offered a ball of 35 mm.
+#[test]
+fn the_body_of_a_first_description_has_the_sizes_in_the_file() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    let rows = ramp_and_hold(7.0, 20.0);
+    for (number, (sizes, lines)) in [
+        (
+            "Sample diameter,20,mm\nSample height,1,cm\nProbe diameter,5,mm\n",
+            &["shape = \"cylinder\"", "diameter = \"20 mm\"", "length = \"10 mm\""][..],
+        ),
+        (
+            "Width,10,mm\nThickness,2,mm\nGauge length,50,mm\n",
+            &["shape = \"strip\"", "width = \"10 mm\"", "thickness = \"2 mm\"", "length = \"50 mm\""],
+        ),
+        ("Durchmesser,60,mm\n", &["shape = \"ball\"", "radius = \"30 mm\""]),
+        ("Probe diameter,5,mm\n", &["shape = \"ball\"", "radius = \"35 mm\""]),
+    ]
+    .into_iter()
+    .enumerate()
+    {
+        let (record, test) =
+            (file(folder, &format!("{number}.csv"), format!("{sizes}{rows}")), format!("{number}.toml"));
+        done(folder, &["inspect", &record, "--write-test", &test]);
+        let written = fs::read_to_string(folder.join(&test)).unwrap();
+        assert!(lines.iter().all(|line| written.contains(&format!("\n# {line}"))), "{written}");
+        // Uncommented, the table is one.
+        let from = written.find("# [specimen]").unwrap();
+        let body: Vec<&str> = written[from..].lines().take_while(|line| !line.is_empty()).collect();
+        file(folder, "body.toml", body.join("\n").replace("\n# ", "\n").replacen("# ", "", 1));
+        done(folder, &["inspect", &record, "--test", "body.toml"]);
+    }
+}
+
 #[test]
 fn what_the_file_does_not_say_is_asked_for_and_not_guessed() {
     let folder = tempfile::tempdir().unwrap();

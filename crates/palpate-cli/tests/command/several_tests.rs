@@ -42,7 +42,10 @@ fn inspect_lists_them_and_shows_one() {
         assert!(told.contains("phases        /") && told.contains("over 9.0000 s"), "{told}");
     }
     let error = refused(folder, &["inspect", file, "--part", "middle"]);
-    assert!(error.contains("expected one of \"left / 1\", \"right\", found \"middle\""), "{error}");
+    assert!(
+        error.contains("expected one of 2 parts, 1 (\"left / 1\"), 2 (\"right\"), found \"middle\""),
+        "{error}"
+    );
 }
 
 #[test]
@@ -72,6 +75,21 @@ fn a_batch_has_rows_of_each() {
     assert!(error.starts_with("12 rows of 2 tests in 1 file"), "{error}");
     let table = fs::read_to_string(folder.join("holds.csv")).unwrap();
     assert_eq!(table.lines().filter(|line| line.contains(",left / 1,")).count(), 6, "{table}");
+}
+
+/// A first description of a file of several tests was refused.
+#[test]
+fn one_first_description_serves_all_of_them() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    let file = table(folder);
+    done(folder, &["inspect", file, "--write-test", "all.toml"]);
+    let written = fs::read_to_string(folder.join("all.toml")).unwrap();
+    assert!(written.contains("for all its 2 tests") && !written.contains("part ="), "{written}");
+    let before = done(folder, &["inspect", file]);
+    assert_eq!(done(folder, &["inspect", file, "--test", "all.toml"]), before);
+    let output = palpate(folder, &["batch", file, "--test", "all.toml", "--out", "holds.csv"]);
+    assert!(String::from_utf8(output.stderr).unwrap().starts_with("12 rows of 2 tests in 1 file"));
 }
 
 #[test]

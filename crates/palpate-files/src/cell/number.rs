@@ -88,6 +88,17 @@ pub(crate) fn is_not_finite(cell: &[u8]) -> bool {
         || bare.starts_with(b"1,#")
 }
 
+/// Whether a cell is empty, or says that there is no number; infinity is said of one that there was.
+pub(crate) fn is_absent(cell: &[u8]) -> bool {
+    let cell = cell.trim_ascii();
+    let is_infinite = || {
+        let word = String::from_utf8_lossy(cell).to_lowercase();
+        word.contains("inf") || word.parse::<f64>().is_ok_and(f64::is_infinite)
+    };
+    let is_none = matches!(cell, b"-" | b"--" | b"---" | b"?") || cell.eq_ignore_ascii_case(b"none");
+    cell.is_empty() || is_none || is_not_finite(cell) && !is_infinite()
+}
+
 /// Whether a text is made of what numbers are written with, whatever marks and gaps it has: `1,234.5`, `−0.5`, `1 234,5`.
 pub(crate) fn looks_numeric(text: &str) -> bool {
     let of_numbers =

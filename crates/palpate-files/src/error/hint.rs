@@ -15,7 +15,7 @@ impl FileError {
         let help = match &self.problem {
             FileProblem::NotFound(_) => "check the spelling of the path",
             FileProblem::Directory => "name one file inside it",
-            FileProblem::NoFile => "write the output of the pipe to a file first",
+            FileProblem::NoFile => "name standard input `-`, or write the output of the pipe to a file first",
             FileProblem::Unreadable(source) if source.kind() == io::ErrorKind::PermissionDenied => {
                 "check the owner of the file and its read permission"
             }
@@ -23,7 +23,12 @@ impl FileError {
             FileProblem::Empty => "export the record again",
             FileProblem::Foreign(looks_like) => foreign(*looks_like),
             FileProblem::Archive(members) if members.is_empty() => "pack the record again",
-            FileProblem::Archive(_) => "unpack it and name the files or their folder",
+            FileProblem::Archive(_) => {
+                let stem = self.path.file_stem().unwrap_or(self.path.as_os_str()).to_string_lossy();
+                return Some(format!(
+                    "unpack it into a folder: `palpate batch {stem} --out holds.csv` reads all its files, any other command takes one of them"
+                ));
+            }
             FileProblem::Unlike { hint, .. } => hint,
             FileProblem::Encrypted => "open it in its program and save it without a password",
             FileProblem::TooLarge { .. } => "split the file, or export a part of it",

@@ -9,10 +9,12 @@ use palpate::{
 
 use super::{
     column_use::{ColumnUse, Role},
+    describe_body::write_body,
     read::RecordFile,
 };
 use crate::{
     description::{machines_of, quoted},
+    error::few,
     naming::{Quantity, unit_factor},
     open::Contents,
     table::{ColumnInfo, ColumnKind, EPOCH, Part, epoch, recognise},
@@ -52,6 +54,45 @@ pub fn describe(
     if let Some((file, segmentation)) = found {
         write_phases(&mut out, file, segmentation);
     }
+    out
+}
+
+/// A test description (TOML) that serves several parts of a file alike, by what the first of them says of itself; `file` is its record as
+/// it was read.
+#[must_use]
+pub fn describe_all(contents: &Contents, parts: &[usize], file: Option<&RecordFile>) -> String {
+    let Some(first) = parts.first() else {
+        return String::new();
+    };
+    let about = &contents.parts[*first];
+    let names = |part: &Part| {
+        let columns = part.columns.iter().map(|column| (column.name.clone(), column.unit.clone()));
+        columns.collect::<Vec<_>>()
+    };
+    let others: Vec<&str> = parts.iter().map(|part| &contents.parts[*part]).map(Part::title).collect();
+    let differ = parts.iter().map(|part| &contents.parts[*part]).filter(|part| names(part) != names(about));
+    let differ: Vec<String> = differ.map(|part| format!("\"{}\"", part.title())).collect();
+    let mut out = String::new();
+    let name = contents.input.name.file_name().unwrap_or_default().to_string_lossy().into_owned();
+    let _ =
+        writeln!(out, "# A first test description of {name}, for all its {} tests, from what the first", others.len());
+    let _ = writeln!(out, "# of them says of itself ({}).", few(others.into_iter().map(str::to_owned), 4, ", "));
+    if !differ.is_empty() {
+        let list = few(differ.into_iter(), 4, ", ");
+        let _ = writeln!(
+            out,
+            "# Other columns than the first have {list}: if it does not serve them, describe them by --part."
+        );
+    }
+    let _ = writeln!(out, "# Check the lines marked \"guessed\" and answer those with \"{ASK}\".\n");
+    let title = contents.input.name.file_stem().unwrap_or_default().to_string_lossy().into_owned();
+    let _ = writeln!(out, "[about]\ntitle = {}\n", quoted(&title));
+    write_machines(&mut out, about);
+    match file {
+        Some(file) => write_columns(&mut out, about, &file.columns),
+        None => write_questions(&mut out, about),
+    }
+    write_body(&mut out, about);
     out
 }
 
@@ -199,15 +240,6 @@ fn asked_unit(quantity: Quantity, possible: &[&ColumnInfo]) -> String {
         }
         _ => format!("\"{ASK}\"    # the file gives no unit; one of {accepted}"),
     }
-}
-
-fn write_body(out: &mut String, part: &Part) {
-    let _ = writeln!(out, "# Strains, and v in 1/s, need the body; without it palpate fits forces.");
-    for entry in part.metadata.iter().filter(|entry| entry.unit.is_some()) {
-        let unit = entry.unit.as_deref().unwrap_or_default();
-        let _ = writeln!(out, "#   from the file: {} = {} {unit}", entry.name.trim(), entry.value.trim());
-    }
-    let _ = writeln!(out, "# [specimen]\n# shape = \"ball\"\n# radius = \"35 mm\"\n# modulus = \"28 kPa\"\n");
 }
 
 fn write_phases(out: &mut String, file: &RecordFile, segmentation: &Segmentation) {

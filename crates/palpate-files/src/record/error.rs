@@ -4,12 +4,13 @@ use std::{fmt, path::PathBuf};
 
 use palpate::{record::RecordError, units::Dimension};
 
-use super::{named::NamedColumn, snippet};
+use super::{lever, named::NamedColumn, snippet};
 use crate::{
     cell::DecimalMark,
+    description::machines_of,
     error::{FileError, few},
     naming::{Quantity, UNCALIBRATED, unit_factor},
-    table::{ColumnInfo, ColumnRef},
+    table::{ColumnInfo, ColumnRef, Part},
 };
 
 /// Why it is not clear which column holds what.
@@ -54,7 +55,7 @@ pub enum ColumnError {
         problem: Box<UnitProblem>,
     },
     /// The description names a column that the file does not have, or has more than once.
-    #[error("{key}: expected {}, found {found} in the description", snippet::choices(columns))]
+    #[error("{key}: expected {}, found {found}", snippet::choices(columns))]
     NoSuchColumn {
         /// Key of the description.
         key: String,
@@ -116,25 +117,46 @@ impl ColumnError {
     #[must_use]
     pub fn hint(&self) -> String {
         match self {
-            Self::Missing(_, columns) => {
-                format!("assign the columns in a test description:\n{}", snippet::of_columns(columns))
-            }
+            Self::Missing(_, columns) => lever::hint_of(columns).unwrap_or_else(|| snippet::of_columns(columns)),
             Self::TimeAsText(..) => {
                 "write seconds, or 2024-03-12 10:11:12.5, 12.03.2024 10:11:12.5 or 10:11:12.5 in every row".to_owned()
             }
             Self::NotNumbers(_, found) => crate::error::hint_of_text(found, DecimalMark::Point).to_owned(),
             Self::Ambiguous(quantity, candidates) => {
-                let first = candidates.first().map_or(1, |column| column.number);
-                format!("choose one in a test description:\n[columns.{quantity}]\ncolumn = {first}")
+                let number = candidates.first().map_or(1, |column| column.number);
+                let said = candidates.first().map(|first| {
+                    let same = candidates.iter().filter(|other| other.name == first.name).count();
+                    snippet::entry(*quantity, first, None, same == 1)
+                });
+                let said = snippet::option(said);
+                format!("choose one: {said}, or in a test description:\n[columns.{quantity}]\ncolumn = {number}")
             }
             Self::Unclear { candidates, columns } => snippet::of_unclear(candidates, columns),
             Self::NoUnit(columns) => {
                 let lines = columns.iter().map(|(key, unit, column)| snippet::of_unit(key, unit, column));
-                let lines: Vec<String> = lines.collect();
-                format!("state it in a test description:\n{}", lines.join("\n"))
+                let lines = lines.collect::<Vec<_>>().join("\n");
+                let said = columns.iter().map(|(key, unit, column)| {
+                    Some(snippet::entry(snippet::quantity_of(key)?, column, Some(unit), true))
+                });
+                match said.collect::<Option<Vec<_>>>() {
+                    Some(said) => format!("state it: {}, or in a test description:\n{lines}", snippet::option(said)),
+                    None => format!("state it in a test description:\n{lines}"),
+                }
             }
             Self::Unit { column, key, problem } => problem.hint(column, key),
-            Self::NoSuchColumn { .. } => "columns count from 1 at the left; the unit of a name is optional".to_owned(),
+            Self::NoSuchColumn { columns, .. } => {
+                let usual = "columns count from 1 at the left; the unit of a name is optional";
+                let part = Part {
+                    columns: columns.clone(),
+                    ..Part::default()
+                };
+                let presets: Vec<String> =
+                    machines_of(&part).iter().map(|machine| format!("machine.preset = \"{}\"", machine.name)).collect();
+                match presets.is_empty() {
+                    true => usual.to_owned(),
+                    false => format!("{usual}; columns of these names go with {}", presets.join(" or ")),
+                }
+            }
             Self::Twice(_, one, other) => format!("correct columns.{one} or columns.{other}"),
             Self::ClocksDiffer(..) => "name two columns of one topic".to_owned(),
             Self::NoEpoch(..) => "give the unit of the time, such as \"s\"".to_owned(),
@@ -153,8 +175,20 @@ impl UnitProblem {
     fn hint(&self, column: &NamedColumn, key: &str) -> String {
         match self {
             Self::Unknown(quantity, unit) if unit_factor(unit, Dimension::Voltage).is_none() => {
-                let lines = snippet::of_unit_and_column(key, quantity.unit_meant(unit), column);
-                format!("if another unit is meant, give it in a test description:\n{lines}")
+                if let Some(hint) = lever::hint_of_unit(unit, column, *quantity) {
+                    return hint;
+                }
+                let meant = quantity.unit_meant(unit);
+                let lines = snippet::of_unit_and_column(key, meant, column);
+                let said = snippet::quantity_of(key).map_or_else(String::new, |quantity| {
+                    let entry = snippet::entry(quantity, column, Some(meant), true);
+                    format!(": {}, or", snippet::option([entry]))
+                });
+                let doubt = match meant == quantity.usual_unit() {
+                    true => "another unit is meant".to_owned(),
+                    false => format!("\"{unit}\" stands for {meant}"),
+                };
+                format!("if {doubt}, state it{said} in a test description:\n{lines}")
             }
             Self::Unknown(_, unit) if key == "columns.force.unit" && column.name.as_deref() == Some(UNCALIBRATED) => {
                 snippet::of_bending(column, unit)
@@ -245,6 +279,16 @@ pub enum ReadError {
         /// What is wrong.
         source: RecordError,
     },
+    /// The force never changes and there is no displacement, but a strain that would be one with the length of the body.
+    #[error("{}: {source}", path.display())]
+    Strain {
+        /// The file.
+        path: PathBuf,
+        /// Number of the column of the strain, from 1.
+        column: usize,
+        /// What is wrong.
+        source: RecordError,
+    },
     /// The file holds several tests and none was chosen.
     #[error("{}: expected one test, found {}: {}", path.display(), parts.len(), first(parts))]
     SeveralParts {
@@ -254,7 +298,7 @@ pub enum ReadError {
         parts: Vec<String>,
     },
     /// The file holds no test of the name that was given.
-    #[error("{}: expected one of {}, found \"{found}\"", path.display(), first(parts))]
+    #[error("{}: expected {}, found \"{found}\"", path.display(), one_of_parts(parts))]
     NoSuchPart {
         /// The file.
         path: PathBuf,
@@ -272,6 +316,10 @@ impl ReadError {
         match self {
             Self::File(error) => error.hint(),
             Self::Column { source, .. } => Some(source.hint()),
+            Self::Strain { column, .. } => Some(format!(
+                "the body creeps: compare laws of creep (--creep) with the strain as a displacement; for a body of 10 mm say in a test description:\n\
+                 [columns.displacement]\ncolumn = {column}\ntravel_per_unit = \"10 mm\""
+            )),
             Self::Record { source, .. } => Some(source.hint().to_owned()),
             Self::SeveralParts { parts, .. } => {
                 let first = parts.first().map_or("1", String::as_str);
@@ -279,13 +327,27 @@ impl ReadError {
                     "choose one by its name or number: --part \"{first}\", or in a test description:\n[file]\npart = \"{first}\""
                 ))
             }
-            Self::NoSuchPart { .. } => Some("give the name of a part as in the file, or its number from 1".to_owned()),
+            Self::NoSuchPart { parts, .. } if parts.len() == 1 => {
+                Some("omit the part: the file holds one test".to_owned())
+            }
+            Self::NoSuchPart { parts, .. } => {
+                Some(format!("give the name of a part as in the file, or its number from 1 to {}", parts.len()))
+            }
         }
     }
 }
 
 fn behind_comma(what: Option<&impl fmt::Display>) -> String {
     what.map_or_else(String::new, |what| format!(", {what}"))
+}
+
+/// What could be said of a file with these parts.
+fn one_of_parts(parts: &[String]) -> String {
+    let numbered = parts.iter().enumerate().map(|(index, part)| format!("{} (\"{part}\")", index + 1));
+    match parts.len() {
+        1 => "the one test that the file holds".to_owned(),
+        _ => format!("one of {} parts, {}", parts.len(), few(numbered, 12, ", ")),
+    }
 }
 
 /// The first few names of parts.

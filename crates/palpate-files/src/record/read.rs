@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use palpate::{
-    record::{Correction, RawColumns, Record, SignalReport},
+    record::{Correction, RawColumns, Record, RecordError, SignalReport},
     units,
 };
 
@@ -18,7 +18,7 @@ use crate::{
     input::Packing,
     naming::Quantity,
     open::{Contents, Format},
-    table::{IgnoredLines, Part, epoch},
+    table::{Columns, IgnoredLines, Part, epoch, recognise},
 };
 
 /// A record and where it came from.
@@ -128,20 +128,22 @@ pub fn read_part(
         (column.role, values)
     });
     let (raw, bent) = assemble(series.collect());
-    let signals = raw.report();
+    let (signals, has_displacement) = (raw.report(), raw.displacement.is_some());
     let averaged = (read.averaged > 1).then(|| Correction::RowsAveraged {
         rows: read.rows(),
         averaged: read.averaged,
     });
+    let lacking = std::mem::take(&mut read.ignored.lacking);
+    let left_out = (lacking.rows > 0).then(|| Correction::RowsLeftOut {
+        rows: read.rows() + lacking.rows,
+        left_out: lacking.rows,
+        lines: lacking.lines,
+    });
     let of_stress = plan.per_unit_area.then_some(Correction::StressAsForce);
     let bent = bent.map(|largest| Correction::DeflectionRemoved { largest });
-    let done = of_stress.into_iter().chain(averaged).chain(bent);
-    let record = raw.into_record().map(|record| record.corrected_before(done)).map_err(|source| ReadError::Record {
-        path: path.to_owned(),
-        part: about.name.clone(),
-        line: source.row().and_then(|row| read.line_of(row)).map(|line| counted(contents.format, line)),
-        source,
-    })?;
+    let done = left_out.into_iter().chain(of_stress).chain(averaged).chain(bent);
+    let record = raw.into_record().map(|record| record.corrected_before(done));
+    let record = record.map_err(|source| refused(contents, about, &read, (has_displacement, source)))?;
     Ok(RecordFile {
         path: path.to_owned(),
         record,
@@ -157,6 +159,28 @@ pub fn read_part(
         per_unit_area: plan.per_unit_area,
         bytes: read.bytes,
     })
+}
+
+/// Why numbers make no record, with the line, or with the strain that would be a displacement.
+fn refused(
+    contents: &Contents,
+    about: &Part,
+    read: &Columns,
+    (has_displacement, source): (bool, RecordError),
+) -> ReadError {
+    let path = contents.input.name.clone();
+    match recognise::strain(&about.columns) {
+        Some(strain) if !has_displacement && matches!(source, RecordError::ConstantForce { .. }) => {
+            let column = strain.number;
+            ReadError::Strain { path, column, source }
+        }
+        _ => ReadError::Record {
+            path,
+            part: about.name.clone(),
+            line: source.row().and_then(|row| read.line_of(row)).map(|line| counted(contents.format, line)),
+            source,
+        },
+    }
 }
 
 /// What a format tells a row by.

@@ -43,24 +43,69 @@ pub(super) fn choices(columns: &[ColumnInfo]) -> String {
     format!("a number from 1 to {count} or a name that one column has ({})", names.join(", "))
 }
 
-/// The table `[columns]` for a file; where the header does not tell, columns of numbers in their order.
+/// A column for a quantity as a message proposes it.
+struct Proposed<'c> {
+    quantity: Quantity,
+    column: &'c ColumnInfo,
+    unit: &'c str,
+}
+
+/// The option and the table `[columns]` for a file; where the header does not tell, columns of numbers in their order.
 pub(super) fn of_columns(columns: &[ColumnInfo]) -> String {
-    let wanted = [Quantity::Time, Quantity::Displacement, Quantity::Force];
     // The topics of a log have clocks of their own.
     let in_topic = |column: &ColumnInfo| column.name.as_deref().and_then(topic_and_field).is_some();
     let is_log = columns.iter().any(in_topic);
-    let known = wanted.map(|quantity| match recognise::candidates(columns, quantity)[..] {
+    let wanted = [Quantity::Time, Quantity::Displacement, Quantity::Force];
+    let mut wanted = if is_log { wanted[1..].to_vec() } else { wanted.to_vec() };
+    // A stress or a modulus over time serves where there is no force.
+    let measures = |quantity: Quantity| {
+        let unit = move |unit: &str| unit_factor(unit, quantity.dimension()).is_some();
+        columns.iter().any(|column| column.unit.as_deref().is_some_and(unit))
+    };
+    if measures(Quantity::Stress) && !measures(Quantity::Force) {
+        wanted.retain(|quantity| *quantity != Quantity::Force);
+        wanted.push(Quantity::Stress);
+    }
+    let proposed = proposed(columns, &wanted, &|column| !is_log || in_topic(column));
+    let mut lines = vec!["[columns]".to_owned()];
+    for quantity in &wanted {
+        match proposed.iter().find(|proposed| proposed.quantity == *quantity) {
+            Some(proposed) => lines.push(line_of(proposed)),
+            None if *quantity == Quantity::Displacement => {}
+            None => lines.push(format!("# {quantity}: no candidate column remains")),
+        }
+    }
+    let lines = lines.join("\n");
+    let has = |quantity| proposed.iter().any(|proposed| proposed.quantity == quantity);
+    let is_whole = (has(Quantity::Force) || has(Quantity::Stress)) && (is_log || has(Quantity::Time));
+    // What a volt stands for is said in a description alone.
+    if !is_whole || proposed.iter().any(|proposed| is_volts(proposed.unit)) {
+        return format!("assign the columns in a test description:\n{lines}");
+    }
+    let entries = proposed.iter().rev().map(|Proposed { quantity, column, unit }| {
+        let same = columns.iter().filter(|other| other.name == column.name).count();
+        entry(*quantity, &NamedColumn::from(*column), Some(unit), same == 1)
+    });
+    format!("assign the columns: {}, or in a test description:\n{lines}", option(entries))
+}
+
+fn proposed<'c>(
+    columns: &'c [ColumnInfo],
+    wanted: &[Quantity],
+    may_be_free: &dyn Fn(&ColumnInfo) -> bool,
+) -> Vec<Proposed<'c>> {
+    let known = wanted.iter().map(|quantity| match recognise::candidates(columns, *quantity)[..] {
         [only] => Some(only),
         _ => None,
     });
+    let known: Vec<Option<&ColumnInfo>> = known.collect();
     let free = |column: &&ColumnInfo| {
         let taken = known.iter().flatten().any(|known| known.number == column.number);
-        column.kind == ColumnKind::Number && !taken && (!is_log || in_topic(column))
+        column.kind == ColumnKind::Number && !taken && may_be_free(column)
     };
     let mut rest: Vec<&ColumnInfo> = columns.iter().filter(free).collect();
-    let mut lines = vec!["[columns]".to_owned()];
-    let needed = wanted.into_iter().zip(known).filter(|(quantity, _)| !is_log || *quantity != Quantity::Time);
-    for (quantity, known) in needed {
+    let mut proposed = Vec::new();
+    for (quantity, known) in wanted.iter().copied().zip(&known) {
         let fitting = |unit: &str| unit_factor(unit, quantity.dimension()).is_some();
         // A unit tells, and one of another quantity tells against.
         let place = rest
@@ -68,23 +113,54 @@ pub(super) fn of_columns(columns: &[ColumnInfo]) -> String {
             .position(|column| column.unit.as_deref().is_some_and(fitting))
             .or_else(|| rest.iter().position(|column| may_be(column, quantity)));
         let Some(column) = known.or_else(|| place.map(|place| rest.remove(place))) else {
-            if quantity != Quantity::Displacement {
-                lines.push(format!("# {quantity}: no candidate column remains"));
-            }
             continue;
         };
-        let volts = |unit: &&str| unit_factor(unit, Dimension::Voltage).is_some();
         let unit = match column.unit.as_deref() {
-            Some(unit) if fitting(unit) => format!("unit = \"{unit}\""),
-            Some(unit) if volts(&unit) => format!("unit = \"{unit}\", scale = \"1 {}/V\"", quantity.usual_unit()),
-            _ => format!("unit = \"{}\"", quantity.usual_unit()),
+            Some(unit) if fitting(unit) || is_volts(unit) => unit,
+            Some(unit) => quantity.unit_meant(unit),
+            None => quantity.usual_unit(),
         };
-        let line = format!("{quantity} = {{ column = {}, {unit} }}", column.number);
-        let name = column.name.as_deref().map_or_else(String::new, |name| format!("{name}, which "));
-        let optional = if quantity == Quantity::Displacement { "; omit if there is none" } else { "" };
-        lines.push(format!("{line}  # check: {name}starts with {}{optional}", column.sample));
+        proposed.push(Proposed { quantity, column, unit });
     }
-    lines.join("\n")
+    proposed
+}
+
+fn is_volts(unit: &str) -> bool {
+    unit_factor(unit, Dimension::Voltage).is_some()
+}
+
+fn line_of(Proposed { quantity, column, unit }: &Proposed<'_>) -> String {
+    let scale = if is_volts(unit) { format!(", scale = \"1 {}/V\"", quantity.usual_unit()) } else { String::new() };
+    let name = column.name.as_deref().map_or_else(String::new, |name| format!("{name}, which "));
+    let optional = if *quantity == Quantity::Displacement { "; omit if there is none" } else { "" };
+    let number = column.number;
+    format!(
+        "{quantity} = {{ column = {number}, unit = \"{unit}\"{scale} }}  # check: {name}starts with {}{optional}",
+        column.sample
+    )
+}
+
+/// Columns as the option takes them, such as `--columns "force=Kraft:N"`.
+pub(super) fn option(entries: impl IntoIterator<Item = String>) -> String {
+    format!("--columns \"{}\"", entries.into_iter().collect::<Vec<_>>().join(","))
+}
+
+/// One column as the option takes it: by its name, or by its number where the name has a twin, or is not safe in a list or a shell.
+pub(super) fn entry(quantity: Quantity, column: &NamedColumn, unit: Option<&str>, has_no_twin: bool) -> String {
+    let plain = |name: &&String| {
+        let parts = |letter: char| "\"$`\\!:,=".contains(letter) || letter.is_control();
+        has_no_twin && !name.contains(parts) && name.trim() == *name && name.parse::<f64>().is_err()
+    };
+    let name = column.name.as_ref().filter(plain).map_or_else(|| column.number.to_string(), String::clone);
+    let unit = unit.map_or_else(String::new, |unit| format!(":{unit}"));
+    format!("{quantity}={name}{unit}")
+}
+
+/// The quantity whose own table is meant by a key such as `columns.force.unit`.
+pub(super) fn quantity_of(key: &str) -> Option<Quantity> {
+    let table = key.strip_prefix("columns.")?.strip_suffix(".unit")?;
+    let all = [Quantity::Time, Quantity::Displacement, Quantity::Force, Quantity::Stress];
+    all.into_iter().find(|quantity| quantity.to_string() == table)
 }
 
 /// Whether a column could hold a quantity for all that its unit and name say.
@@ -111,8 +187,11 @@ pub(super) fn of_unclear(candidates: &[NamedColumn], columns: &[ColumnInfo]) -> 
         name if name.contains("per ") => "\ndoubled = true  # of two fingers",
         _ => "",
     };
+    let said = candidates.first().filter(|_| sign.is_empty()).map_or_else(String::new, |column| {
+        format!(": {}, or", option([entry(Quantity::Displacement, column, Some(unit), true)]))
+    });
     format!(
-        "if it is, state this in a test description:\n[columns.displacement]\ncolumn = {number}\nunit = \"{unit}\"{sign}{without}"
+        "if it is, state this{said} in a test description:\n[columns.displacement]\ncolumn = {number}\nunit = \"{unit}\"{sign}{without}"
     )
 }
 

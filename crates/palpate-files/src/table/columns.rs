@@ -35,6 +35,8 @@ pub struct IgnoredLines {
     pub blank: usize,
     /// Lines at the very end that are no data.
     pub footer: Option<Footer>,
+    /// Rows of data in which a cell holds no number.
+    pub lacking: LackingRows,
 }
 
 /// Lines at the very end of a file that are no data.
@@ -46,6 +48,15 @@ pub struct Footer {
     pub lines: usize,
     /// The first of them, shortened.
     pub sample: String,
+}
+
+/// Rows that were left out because a cell of theirs is empty or says that there is no number.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub struct LackingRows {
+    /// How many.
+    pub rows: usize,
+    /// The first of their lines, from 1.
+    pub lines: Vec<usize>,
 }
 
 /// Rows on successive lines.

@@ -8,7 +8,7 @@
 //! | `part.rs` | one test in a file: columns, named values, labels |
 //! | `column_ref.rs` | a column as people name it |
 //! | `columns.rs` | columns of numbers as they were read, in bounded memory |
-//! | `footer.rs` | lines behind the data |
+//! | `footer.rs`, `lacking.rs` | lines behind the data; rows that lack a number |
 //! | `layout.rs` | how a text is written |
 //! | `reader.rs` | what every format can do, and what a caller may fix in advance |
 //! | `block.rs`, `decimal.rs` | the rows of numbers among other lines, and their decimal mark |
@@ -22,6 +22,7 @@ pub(crate) mod decimal;
 pub(crate) mod epoch;
 mod footer;
 pub(crate) mod header;
+mod lacking;
 mod layout;
 pub(crate) mod metadata;
 mod part;
@@ -30,11 +31,12 @@ pub(crate) mod recognise;
 
 pub(crate) use block::Block;
 pub use column_ref::ColumnRef;
-pub use columns::{Columns, Footer, IgnoredLines, MOST_ROWS};
+pub use columns::{Columns, Footer, IgnoredLines, LackingRows, MOST_ROWS};
 pub(crate) use decimal::Doubt;
 pub(crate) use epoch::EPOCH;
 pub(crate) use footer::Suspect;
 pub(crate) use header::Header;
+pub(crate) use lacking::Lacking;
 pub use layout::Layout;
 pub use part::{Clock, ColumnInfo, ColumnKind, Label, Metadata, Part, SkippedPart};
 pub use reader::ReadOptions;

@@ -89,6 +89,13 @@ pub(crate) fn possible_displacements(columns: &[ColumnInfo]) -> impl Iterator<It
     columns.iter().filter(possible)
 }
 
+/// A column of numbers that is named as a strain.
+pub(crate) fn strain(columns: &[ColumnInfo]) -> Option<&ColumnInfo> {
+    let named = |name: &str| words(measured(name)).iter().any(|word| is_listed(word, STRAINS));
+    let is_strain = |column: &&ColumnInfo| column.name.as_deref().is_some_and(named);
+    columns.iter().filter(|column| column.kind == ColumnKind::Number).find(is_strain)
+}
+
 /// Whether a column is the bending of a cantilever.
 pub(crate) fn is_bending(column: &ColumnInfo) -> bool {
     column.name.as_deref().is_some_and(|name| BENDING.contains(&name.trim()))

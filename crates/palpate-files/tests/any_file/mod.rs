@@ -95,7 +95,7 @@ pub(crate) fn read_all(name: &str, bytes: &[u8]) -> Result<usize, Complaint> {
 /// Reads every test as a record. `true`: the numbers are to blame; `false`: it is not clear which column holds what.
 fn records(name: &str, contents: &Contents) -> Result<(), (Complaint, bool)> {
     let complaint = |error: &ReadError| {
-        let numbers = matches!(error, ReadError::File(_) | ReadError::Record { .. });
+        let numbers = matches!(error, ReadError::File(_) | ReadError::Record { .. } | ReadError::Strain { .. });
         (Complaint::of(name, error.to_string(), error.hint()), numbers)
     };
     let tests = tests(contents, &TestDescription::default()).map_err(|error| complaint(&error))?;

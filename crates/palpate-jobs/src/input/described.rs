@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use palpate::analysis::AnalysisOptions;
-use palpate_files::description::{TestDescription, parse_test, read_test};
+use palpate_files::description::{NamedColumns, TestDescription, parse_test, read_test};
 
 use crate::JobError;
 
@@ -53,6 +53,17 @@ impl Described {
     fn with_part(mut self, part: Option<&str>) -> Self {
         if let Some(part) = part {
             self.test.get_or_insert_default().reading.part = Some(part.to_owned());
+        }
+        self
+    }
+
+    /// The same with the columns that were named beside it, which go before its own.
+    #[must_use]
+    pub fn with_columns(mut self, named: Option<&NamedColumns>) -> Self {
+        if let Some(NamedColumns { text, columns }) = named {
+            self.test.get_or_insert_default().columns.lay_over(columns);
+            // Results that keep the description tell what was read by this.
+            self.text = Some(format!("{}# --columns \"{text}\"\n", self.text.unwrap_or_default()));
         }
         self
     }

@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 
 use palpate::watch::Watch;
 
+use super::source::is_standard_input;
 use super::{Described, Measurement, OpenedFile};
 use crate::output::{file_name, folder_in};
 use crate::written_by_batch::is_written_by_batch;
@@ -46,7 +47,7 @@ impl NamedRecords {
     pub fn find(named: &[PathBuf], described: Described) -> Result<Self, JobError> {
         let mut paths = Vec::new();
         if let [path, ..] = named
-            && !named.iter().any(|path| path.exists() || is_pattern(path))
+            && !named.iter().any(|path| path.exists() || is_pattern(path) || is_standard_input(path))
         {
             return Err(unmatched(path, "no such file", "check the spelling of the path"));
         }

@@ -2,7 +2,7 @@
 
 use std::cell::LazyCell;
 use std::fs::File;
-use std::io::{self, Read};
+use std::io::{self, IsTerminal, Read};
 use std::path::Path;
 use std::thread;
 
@@ -10,8 +10,8 @@ use palpate_files::input::Input;
 use palpate_files::record::ReadError;
 use sha2::{Digest, Sha256};
 
-use crate::JobError;
 use crate::output::{hexadecimal, sha256};
+use crate::{ErrorKind, JobError};
 
 /// Up to this many bytes a file is read into memory as a whole, and hashed there (64 MiB). A longer one is hashed on a thread of its own
 /// while it is read.
@@ -29,15 +29,8 @@ pub(crate) struct Source {
 impl Source {
     /// The file at `path`; `-` is standard input, read to its end.
     pub(crate) fn open(path: &Path) -> Result<Self, JobError> {
-        if path == Path::new("-") {
-            let mut bytes = Vec::new();
-            let read = io::stdin().lock().read_to_end(&mut bytes);
-            read.map_err(|error| JobError::unread(Path::new("standard input"), &error))?;
-            let digest = sha256(&bytes);
-            return Ok(Self {
-                input: Input::from_bytes(Path::new("standard input"), bytes).map_err(ReadError::File)?,
-                digest: LazyCell::new(Box::new(|| Ok(digest))),
-            });
+        if is_standard_input(path) {
+            return Self::piped();
         }
         let short = std::fs::metadata(path).is_ok_and(|about| about.is_file() && about.len() <= IN_MEMORY);
         let (input, digest): (_, Box<dyn FnOnce() -> Result<String, JobError>>) =
@@ -62,6 +55,27 @@ impl Source {
             digest: LazyCell::new(digest),
         })
     }
+
+    fn piped() -> Result<Self, JobError> {
+        let (name, mut piped, mut bytes) = (Path::new("standard input"), io::stdin(), Vec::new());
+        if piped.is_terminal() {
+            let message = "expected a record on standard input, found a terminal";
+            let hint = "name a file, or send one through a pipe: `palpate watch - < log.csv`".to_owned();
+            return Err(JobError::new(ErrorKind::Record, message, hint));
+        }
+        piped.read_to_end(&mut bytes).map_err(|error| JobError::unread(name, &error))?;
+        let digest = sha256(&bytes);
+        let digest: Box<dyn FnOnce() -> Result<String, JobError>> = Box::new(|| Ok(digest));
+        Ok(Self {
+            input: Input::from_bytes(name, bytes).map_err(ReadError::File)?,
+            digest: LazyCell::new(digest),
+        })
+    }
+}
+
+/// Whether a name means standard input.
+pub(crate) fn is_standard_input(path: &Path) -> bool {
+    path == Path::new("-")
 }
 
 fn hashed(path: &Path) -> io::Result<String> {

@@ -14,7 +14,7 @@ use palpate::watch::Watch;
 use palpate_files::description::machines;
 use palpate_files::input::Packing;
 use palpate_files::open::Contents;
-use palpate_files::record::describe;
+use palpate_files::record::{describe, describe_all};
 use palpate_report::figure::Figure;
 use palpate_report::table::{Cell, Table};
 use schemars::JsonSchema;
@@ -29,7 +29,7 @@ use facts::{columns_table, part_facts, signal_facts};
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct Inspect {
-    /// The file has to hold one test: its figure or its description is wanted.
+    /// The file has to hold one test: its figure is wanted.
     pub only: bool,
 }
 
@@ -40,7 +40,7 @@ pub struct Inspected {
     pub text: String,
     /// Why the one test of the file gives no record, or no phases.
     pub refused: Option<JobError>,
-    /// A first description of the one test, with every guess commented.
+    /// A first description of the one test, or of all tests alike, with every guess commented.
     pub description: Option<String>,
     cut: Option<Cut>,
 }
@@ -61,7 +61,16 @@ impl Inspect {
         let told = match &opened.tests.parts[..] {
             [only] => found.one_test(opened, *only, &mut notes, watch),
             _ if self.only => opened.only().map(drop),
-            several => many_tests(opened, several, &mut notes, watch).map(|tests| found.text.push_str(&tests)),
+            several => {
+                // What is said for all, by the first that can be read.
+                let file = several.iter().find_map(|part| Some((*part, opened.read(*part, watch).ok()?)));
+                let mut parts = several.to_vec();
+                if let Some((first, _)) = &file {
+                    parts.sort_by_key(|part| part != first);
+                }
+                found.description = Some(describe_all(&opened.contents, &parts, file.as_ref().map(|(_, file)| file)));
+                many_tests(opened, several, &mut notes, watch).map(|tests| found.text.push_str(&tests))
+            }
         };
         for part in &opened.tests.skipped {
             let _ = writeln!(found.text, "skipped {}: {}", part.name, part.reason);

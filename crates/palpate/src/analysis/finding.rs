@@ -247,6 +247,8 @@ pub enum Finding {
     ClocksOpen {
         /// Skew from the edges of ramps with its standard error, s; `None` where too few appear in both columns.
         skew: Option<(f64, f64)>,
+        /// One clock stamps both columns, and they seem to differ by more than any delay in front of it.
+        one_clock: bool,
     },
     /// The jaw oscillates about the positions it holds.
     JawHunts(Ripple),

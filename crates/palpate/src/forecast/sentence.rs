@@ -6,6 +6,10 @@ use crate::laws::{ExponentChoice, Law};
 /// Beyond this many times a cost is no longer told exactly.
 const MOST_TIMES: f64 = 1000.0;
 
+/// Said before a choice that rests on no prediction.
+const NOTHING_HELD_OUT: &str = "The hold is too short, or changes too little, for a part of it to be held out, so that nothing tells what a law \
+    predicts: laws are ranked by how closely they fit for their parameters (BIC). ";
+
 impl Comparison {
     /// The law to use, its certainty, and the cost of others, in one sentence; `None` without a verdict.
     ///
@@ -25,17 +29,16 @@ impl Comparison {
     pub fn sentence(&self) -> Option<String> {
         let verdict = self.verdict.as_ref()?;
         let row = self.rows.iter().find(|row| row.law == verdict.law)?;
-        let mut text = format!("Use {} ({} parameters); ", name_in_words(row.law), rounded(row.effective_parameters));
+        // What the choice rests on goes before it where that is little.
+        let mut text = if self.ranking == Ranking::Information { NOTHING_HELD_OUT.to_owned() } else { String::new() };
+        text.push_str(&format!("Use {} ({} parameters); ", name_in_words(row.law), rounded(row.effective_parameters)));
         text.push_str(match verdict.certainty {
             Certainty::Clear => "that is clear",
             Certainty::Likely => "that is likely",
             Certainty::Open => "that is open, since most laws are not distinguishable from it",
         });
-        match self.ranking {
-            Ranking::Forward => text.push_str(&self.predicted(verdict)),
-            Ranking::Information => text.push_str(
-                ". The hold is too short, or changes too little, for held-out errors: laws are ranked by the BIC",
-            ),
+        if self.ranking == Ranking::Forward {
+            text.push_str(&self.predicted(verdict));
         }
         let rest: Vec<String> =
             verdict.alike.iter().filter(|law| **law != verdict.law).map(|law| name_in_words(*law)).collect();
@@ -197,7 +200,10 @@ mod tests {
     #[test]
     fn a_short_hold_is_ranked_by_information_and_says_so() {
         let text = sentence(20, &["latency:5", "sls", "diffusion"]);
-        assert!(text.contains("too short") && text.contains("BIC") && !text.contains("predicts the rest"), "{text}");
+        assert!(text.contains("BIC") && !text.contains("predicts the rest"), "{text}");
+        // It was said behind the choice, as if that rested on a prediction all the same.
+        let (reason, choice) = (text.find("too short, or").unwrap(), text.find("Use ").unwrap());
+        assert!(reason < choice, "{text}");
     }
 
     #[test]

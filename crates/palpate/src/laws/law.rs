@@ -67,17 +67,19 @@ pub const MOST_TERMS: usize = 5;
 
 /// A text that names no law.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
-#[error("no law is called {found:?}; laws, the most similar name first, are {}", nearest(found).join(", "))]
+#[error("no law is called {found:?}; {}", nearest(found))]
 pub struct UnknownLaw {
     /// What was given.
     pub found: String,
 }
 
-/// The names of laws, those most similar to `found` first.
-fn nearest(found: &str) -> Vec<&'static str> {
+/// The names of laws in a sentence, the most similar one first.
+fn nearest(found: &str) -> String {
+    // A number behind a colon belongs to any name.
+    let plain = |name: &str| name.split(':').next().unwrap_or_default().to_lowercase();
     let mut names = Law::NAMES.to_vec();
-    names.sort_by(|a, b| strsim::jaro_winkler(b, found).total_cmp(&strsim::jaro_winkler(a, found)));
-    names
+    names.sort_by_key(|name| strsim::levenshtein(&plain(found), &plain(name)));
+    format!("did you mean {}? Other laws are {}", names[0], names[1..].join(", "))
 }
 
 impl Law {

@@ -83,6 +83,15 @@ pub enum Correction {
         /// Those among them that repeated a row in all their values.
         identical: usize,
     },
+    /// Rows of the file in which a cell holds no number were left out.
+    RowsLeftOut {
+        /// Rows of the file.
+        rows: usize,
+        /// Rows that were left out.
+        left_out: usize,
+        /// The first of their lines in the file, from 1.
+        lines: Vec<usize>,
+    },
     /// The file exceeds the row limit: successive rows were averaged while reading.
     RowsAveraged {
         /// Rows of the file.
@@ -176,6 +185,13 @@ impl fmt::Display for Correction {
                 f,
                 "{clock}: {merged} of {rows} rows merged with the row of the same stamp ({identical} identical)"
             ),
+            Self::RowsLeftOut { rows, left_out, lines } => {
+                let named: Vec<String> = lines.iter().map(ToString::to_string).collect();
+                let line = if *left_out == 1 { "line" } else { "lines" };
+                let more = if *left_out > lines.len() { ", …" } else { "" };
+                let named = named.join(", ");
+                write!(f, "{left_out} of {rows} rows left out, in which a cell holds no number ({line} {named}{more})")
+            }
             Self::RowsAveraged { rows, averaged } => {
                 write!(f, "{rows} rows of the file averaged while reading, {averaged} per sample")
             }

@@ -104,7 +104,7 @@ impl SegmentError {
             Self::GivenOverlap { .. } => "end the earlier hold before the later one starts",
             Self::TooShort { .. } => "check that the whole test was exported",
             Self::NoMotion { .. } => {
-                "check the displacement column and its unit; a record without motion has no relaxation"
+                "check the displacement column and its unit; if the record is one hold, give it by hand ([[phases.hold]] with from and to in the test description)"
             }
             Self::Ruptured(_) => {
                 "data after the rupture are not fitted; if nothing broke, give the limits of the hold ([[phases.hold]] in the \

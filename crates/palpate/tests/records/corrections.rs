@@ -104,6 +104,27 @@ fn a_skew_is_reported_and_removed_when_asked() {
     );
 }
 
+/// What only looked like a skew moved the force of a record with one clock by seconds.
+#[test]
+fn one_clock_is_not_moved_by_more_than_a_filter_delays() {
+    let record = stairs(50.0, 0.002, 0.6, 3);
+    let with = |skew: SkewChoice| AnalysisOptions {
+        corrections: CorrectionOptions {
+            skew,
+            ..CorrectionOptions::default()
+        },
+        ..AnalysisOptions::default()
+    };
+    let analysis = analyze(&record, &with(SkewChoice::Auto)).unwrap();
+    assert!(analysis.record.corrections().is_empty(), "{:?}", analysis.record.corrections());
+    let said = |finding: &Finding| matches!(finding, Finding::ClocksOpen { one_clock: true, .. });
+    assert!(analysis.findings.iter().any(said), "{:?}", analysis.findings);
+    // Who knows it says so.
+    let analysis = analyze(&record, &with(SkewChoice::Given(0.6))).unwrap();
+    assert!(matches!(analysis.record.corrections(), [Correction::SkewRemoved { .. }]));
+    assert!(!analysis.findings.iter().any(said), "{:?}", analysis.findings);
+}
+
 #[test]
 fn a_skew_longer_than_a_ramp_is_found_too() {
     for skew in [-0.4, 0.6, 1.5] {
@@ -137,7 +158,7 @@ fn a_skew_that_was_to_be_found_and_cannot_be_told_is_said() {
             ..AnalysisOptions::default()
         };
         let findings = analyze(&record, &options).unwrap().findings;
-        findings.iter().any(|finding| matches!(finding, Finding::ClocksOpen { skew: None }))
+        findings.iter().any(|finding| matches!(finding, Finding::ClocksOpen { skew: None, .. }))
     };
     assert!(found(SkewChoice::Auto) && !found(SkewChoice::Report) && !found(SkewChoice::Given(0.1)));
 }

@@ -134,6 +134,56 @@ fn the_force_may_peak_before_the_jaw_rests() {
     assert_eq!(found.holds().next().unwrap().fit_start, 100, "{found:?}");
 }
 
+/// A record that begins with its hold was "nothing moves", a creep under a force that never varies "no hold".
+#[test]
+fn a_record_that_is_one_hold_is_that_hold() {
+    let time: Vec<f64> = (0..1000).map(|i| 0.05 * f64::from(i)).collect();
+    let mut noise = Rng::new(3);
+    let relaxing = |t: &f64| 1.0 + (1.0 + 4.0 * t).powf(-0.25);
+    let force: Vec<f64> = time.iter().map(|t| relaxing(t) + 0.002 * noise.normal()).collect();
+    let standing: Vec<f64> = time.iter().map(|_| 5e-3 + 5e-7 * noise.normal()).collect();
+    let creeping: Vec<f64> = time.iter().map(|t| 5e-3 - 2e-3 * (-t / 10.0).exp()).collect();
+    let pressed: Vec<f64> = time.iter().map(|_| 2.0).collect();
+    let hunted: Vec<f64> = time.iter().map(|_| 2.0 + 0.005 * noise.normal()).collect();
+    for (displacement, force, mode) in [
+        (Some(standing), &force, HoldMode::DisplacementHeld),
+        (None, &force, HoldMode::DisplacementHeld),
+        (Some(creeping.clone()), &pressed, HoldMode::ForceHeld),
+        (Some(creeping), &hunted, HoldMode::ForceHeld),
+    ] {
+        let found = phases(&Record::new(time.clone(), displacement, force.clone()).unwrap()).unwrap();
+        let hold = found.segments[0];
+        assert_eq!((found.segments.len(), hold.phase, hold.start, hold.end), (1, Phase::Hold, 0, 1000), "{found:?}");
+        assert_eq!((hold.mode, hold.fit_start < 10), (Some(mode), true), "{found:?}");
+    }
+}
+
+/// A creep that was logged at even steps of ln t, noisy where it is small.
+#[test]
+fn a_creep_logged_ever_more_seldom_is_one_hold_too() {
+    let mut noise = Rng::new(5);
+    let time: Vec<f64> = (0..300).map(|i| 1e-3 * (0.04 * f64::from(i)).exp()).collect();
+    let creeping: Vec<f64> = time.iter().map(|t| 1e-3 * t.powf(0.3) + 2e-6 * noise.normal()).collect();
+    let found = phases(&Record::new(time, Some(creeping), vec![10.0; 300]).unwrap()).unwrap();
+    assert_eq!((found.segments.len(), found.segments[0].mode), (1, Some(HoldMode::ForceHeld)), "{found:?}");
+}
+
+/// What is let go, squeezed on, or moved through the air goes on without a hold.
+#[test]
+fn a_ramp_alone_is_no_hold() {
+    let time: Vec<f64> = (0..1000).map(|i| 0.05 * f64::from(i)).collect();
+    let jaw: Vec<f64> = time.iter().map(|t| 1e-4 * t).collect();
+    let let_go: Vec<f64> = time.iter().map(|t| (50.0 - t).powf(1.5)).collect();
+    let squeezed: Vec<f64> = time.iter().map(|t| 1.0 + t.sqrt()).collect();
+    let offset: Vec<f64> = time.iter().map(|_| 0.3).collect();
+    for (displacement, force) in
+        [(None, let_go.clone()), (None, squeezed), (Some(jaw.clone()), offset), (Some(jaw), let_go)]
+    {
+        let found = phases(&Record::new(time.clone(), displacement, force).unwrap());
+        assert!(found.is_err(), "{found:?}");
+    }
+}
+
 #[test]
 fn a_few_odd_rows_are_no_motion() {
     let odd = |t: f64| if [100.0, 400.0, 700.0].contains(&(100.0 * t).round()) { 5.0 } else { 0.0 };

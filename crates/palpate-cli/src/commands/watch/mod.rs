@@ -34,10 +34,13 @@ trait Shown {
 }
 
 pub(crate) fn run(arguments: &WatchArguments) -> Result<Verdict, JobError> {
-    let described = Described::read(arguments.test.as_deref(), arguments.part.as_deref())?;
+    let described =
+        Described::read(arguments.test.as_deref(), arguments.part.as_deref())?.with_columns(arguments.columns.as_ref());
     let material = arguments.material.as_deref().map(read_material).transpose()?;
-    let (job, place) = (arguments.job(), arguments.log.display().to_string());
+    let job = arguments.job();
     let opened = OpenedFile::open(&arguments.log, &described)?;
+    let log = opened.contents.input.name.clone();
+    let place = log.display().to_string();
     notes(&opened.notes());
     let measured = opened.measurement(opened.only()?, &mut Bars::default())?;
     notes(&measured.notes);
@@ -53,9 +56,7 @@ pub(crate) fn run(arguments: &WatchArguments) -> Result<Verdict, JobError> {
     let speed = arguments.speed.or(on_terminal.then_some(10.0)).filter(|times| times.is_finite());
     let mut shown: Box<dyn Shown> = match arguments.format {
         WatchFormat::Jsonl => Box::new(jsonl::Jsonl),
-        WatchFormat::Text if on_terminal => {
-            Box::new(view::View::new(&arguments.log, record.time(), speed, arguments.slip_force))
-        }
+        WatchFormat::Text if on_terminal => Box::new(view::View::new(&log, record.time(), speed, arguments.slip_force)),
         WatchFormat::Text => Box::new(lines::Lines {
             slip_force: arguments.slip_force,
         }),

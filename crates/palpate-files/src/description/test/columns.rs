@@ -30,6 +30,23 @@ pub struct ColumnChoice {
     pub clock: Option<ClockChoice>,
 }
 
+impl Default for ColumnChoice {
+    fn default() -> Self {
+        Self {
+            column: None,
+            unit: None,
+            unit_by: None,
+            scale: None,
+            offset: 0.0,
+            sign: 1.0,
+            also: None,
+            doubled: false,
+            travel_per_unit: None,
+            clock: None,
+        }
+    }
+}
+
 /// The time stamps of one quantity alone.
 #[derive(Debug, Clone, PartialEq, Eq, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]

@@ -7,7 +7,7 @@
 //! | `convert.rs` | the one to the other |
 //! | `columns.rs` | which column of a file holds what ([`ColumnChoices`]) |
 //! | `corrections.rs`, `settings.rs` | corrections of the record; settings of phases and fit |
-//! | `choices.rs` | choices that a command line offers too |
+//! | `choices.rs`, `named_columns.rs` | choices that a command line offers too |
 //! | `preset.rs`, `machines/`, `machines.rs` | grippers and machines whose conventions are known, and telling them by a file |
 
 mod choices;
@@ -17,6 +17,7 @@ mod convert;
 mod corrections;
 mod description;
 mod machines;
+mod named_columns;
 mod preset;
 mod settings;
 pub(super) mod tables;
@@ -27,4 +28,5 @@ pub use convert::{parse_test, read_test};
 pub use description::{About, TestDescription};
 pub(crate) use machines::contradicts;
 pub use machines::machines_of;
+pub use named_columns::NamedColumns;
 pub use preset::{Machine, machines};

@@ -8,7 +8,7 @@ use crate::{
     cell::{DecimalMark, Delimiter},
     error::{DecimalDoubt, FileError, FileProblem},
     input::{Input, LineReader},
-    table::{Columns, Layout, Suspect, decimal},
+    table::{Columns, Lacking, Layout, Suspect, decimal},
 };
 
 /// How many blocks may hold something else than rows of plain numbers before blocks are no longer tried.
@@ -21,7 +21,8 @@ const TRIES: usize = 3;
 /// once for every quarter of a mebibyte or so for each processor and once at the end.
 ///
 /// Blank lines are passed over and counted. Lines at the very end that do not start like data are
-/// passed over as a footer, up to 50 of them. Every other line must be a full row.
+/// passed over as a footer, up to 50 of them. Rows in which a cell is empty or says that there is no number (`n/a`, `NaN`, `-`)
+/// are left out and counted where they are at most 3 % of all. Every other line must be a full row.
 ///
 /// # Errors
 ///
@@ -42,6 +43,7 @@ pub fn read_columns(
     let mut read = Columns::of(distinct.len());
     let mut row = vec![0.0; distinct.len()];
     let mut suspect: Option<Suspect> = None;
+    let mut lacking = Lacking::default();
     let (mut told, mut reserved) = (0, false);
     let mut blocks = RowsAhead::new(distinct.len());
     let mut tries = if plan.may_be_plain() && !distinct.is_empty() { TRIES } else { 0 };
@@ -80,6 +82,9 @@ pub fn read_columns(
                 read.push(&row, number);
             }
             Err(_) if is_blank(line, layout.delimiter) => read.ignored.blank += 1,
+            Err(fault) if suspect.is_none() && plan.lacks_numbers(line) => {
+                lacking.leave_out(number, || plan.error(fault, line, number));
+            }
             Err(fault) if plan.is_data(line) => return Err(plan.error(fault, line, number)),
             Err(fault) => {
                 let fault = || (plan.text(line), plan.error(fault, line, number));
@@ -91,12 +96,13 @@ pub fn read_columns(
     progress(done, total);
     read.bytes = total;
     let lines = reader.line();
-    let mut read = read.ended(suspect, || {
+    let read = read.ended(suspect, || {
         input.wrong(FileProblem::NoDataRows {
             lines,
             header_line: None,
         })
-    })?;
+    });
+    let mut read = lacking.noted(read?)?;
     if layout.undecided && layout.decimal == DecimalMark::Point && read.averaged == 1 {
         refuse_thousands(input, &read)?;
     }

@@ -160,6 +160,29 @@ impl<'a> RowPlan<'a> {
             .is_some_and(|cell| number::classify(cell).is_numeric())
     }
 
+    /// Whether a faulty line is a full row but for cells that are empty or say that there is no number.
+    pub(crate) fn lacks_numbers(&self, line: &[u8]) -> bool {
+        let (mut count, mut held) = (0, 0);
+        for cell in Fields::of(line, self.layout.delimiter) {
+            let holds = match self.tasks.get(count) {
+                Some(Task::Read(_)) => number::parse(cell, self.layout.decimal).is_some(),
+                Some(Task::ReadDate(_)) => date::parse(cell).is_some(),
+                Some(Task::Check) => number::classify(cell).is_numeric(),
+                Some(Task::Pass) => {
+                    count += 1;
+                    continue;
+                }
+                None => return false,
+            };
+            if !holds && !number::is_absent(cell) {
+                return false;
+            }
+            held += usize::from(holds);
+            count += 1;
+        }
+        held > 0 && count >= self.fewest
+    }
+
     /// The error for a fault of `line`, which is line `number` of the file.
     #[cold]
     pub(crate) fn error(&self, fault: Fault, line: &[u8], number: usize) -> FileError {

@@ -86,8 +86,44 @@ fn units_are_asked_for() {
         "Time (s),Force (lbs)\n0,1\n1,2\n",
         "",
         &["column 2 (Force): \"lbs\" is not a unit of force (accepted: N, kN"],
-        &["if another unit is meant", "[columns.force]\nunit = \"lbf\""],
+        &["if \"lbs\" stands for lbf", "[columns.force]\nunit = \"lbf\""],
     );
+}
+
+/// Grams were refused without a line to write, and a torque over an angle was offered N and mm.
+#[test]
+fn units_of_other_machines_are_led_to_what_a_record_needs() {
+    let grams = "Time (s),Distance (mm),Force (g)\n0,1,2\n1,2,3\n";
+    let error =
+        says(grams, "", &["\"g\" is not a unit of force"], &["if \"g\" stands for gf, state it", "force=Force:gf"]);
+    assert_eq!(read(grams, &pasted(&error)).unwrap().record.force()[0], 2.0 * 9.806_65e-3);
+    for text in [
+        "Time (s),Angle (deg),Torque (Nm)\n0,1,2\n1,2,3\n",
+        "Zeit (s),Winkel (°),Drehmoment (N·mm)\n0,1,2\n1,2,3\n",
+        "Time (s),Travel (mm),Load (N m)\n0,1,2\n1,2,3\n",
+    ] {
+        says(
+            text,
+            "",
+            &[],
+            &["a force and a length are needed: with a lever arm", "1 N m is 20 N and 1° is 0.8727 mm"],
+        );
+    }
+    let gripper = "Time (s),Position (rad),Force (N)\n0,1,2\n1,2,3\n";
+    let error = says(gripper, "", &["\"rad\" is not a unit of displacement"], &["travel_per_unit = \"50 mm\""]);
+    let file = read(gripper, &pasted(&error)).unwrap();
+    assert_eq!(file.record.displacement(), Some([0.05, 0.1].as_slice()));
+    let modulus = "Time (s),E (kPa)\n0,1\n1,2\n";
+    let error = says(modulus, "", &["expected a column of force"], &["--columns \"stress=E:kPa,time=Time:s\""]);
+    assert_eq!(read(modulus, &pasted(&error)).unwrap().record.force(), [1000.0, 2000.0]);
+}
+
+/// A creep logged as strain under one stress was told to check its load cell.
+#[test]
+fn a_strain_under_constant_stress_is_led_to_creep() {
+    let table = "t\tstrain\tstress\ns\t-\tPa\n0\t0.01\t10\n1\t0.02\t10\n2\t0.025\t10\n";
+    let error = says(table, "", &["the force is 10 N in all 3 rows"], &["--creep", "travel_per_unit = \"10 mm\""]);
+    assert_eq!(read(table, &pasted(&error)).unwrap().record.displacement(), Some([1e-4, 2e-4, 2.5e-4].as_slice()));
 }
 
 #[test]
@@ -115,7 +151,7 @@ fn columns_that_are_not_there() {
         table,
         "columns.force.column = 9",
         &[
-            "columns.force.column: expected a number from 1 to 3 or a name that one column has (\"Time\", \"Force\", \"Force\"), found 9 in the description",
+            "columns.force.column: expected a number from 1 to 3 or a name that one column has (\"Time\", \"Force\", \"Force\"), found 9",
         ],
         &["count from 1"],
     );

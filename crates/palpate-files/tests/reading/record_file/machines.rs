@@ -172,6 +172,19 @@ fn a_file_is_told_by_the_names_of_its_columns() {
     assert_eq!(fitting(newton), ["ta-xtplus"]);
 }
 
+/// Exports whose time is called `Time` were refused, and a file in another language without the preset that it goes with.
+#[test]
+fn an_export_of_testxpert_is_read_whatever_its_time_is_called() {
+    let english = "Time;Standard travel;Standard force\ns;mm;N\n0;0;0\n0.5;1;2\n1;1;1.5\n";
+    let german = "Zeit;Standardweg;Standardkraft\ns;mm;N\n0;0;0\n0,5;1;2\n1;1;1,5\n";
+    for (text, preset) in [(english, "zwick-testxpert"), (german, "zwick-testxpert-german")] {
+        let file = read(text, &format!("machine.preset = \"{preset}\"")).unwrap();
+        assert_eq!(file.record.force(), [0.0, 2.0, 1.5]);
+    }
+    let error = read(german, "machine.preset = \"zwick-testxpert\"").unwrap_err();
+    assert!(error.hint().unwrap().contains("machine.preset = \"zwick-testxpert-german\""), "{:?}", error.hint());
+}
+
 #[test]
 fn a_unit_in_the_header_is_not_overruled_by_a_machine() {
     let newton = "Force (N),Distance (mm),Time (sec)\n0,0,0\n2,1,1\n";

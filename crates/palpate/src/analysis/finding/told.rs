@@ -324,7 +324,19 @@ impl Finding {
                 "two clocks or a filter delay one column; fits of holds are unaffected, but forces in ramps have the wrong displacement",
                 "set skew = \"auto\" in [clock] of the test description to correct it",
             ),
-            Self::ClocksOpen { skew } => caution(
+            Self::ClocksOpen {
+                skew: Some((skew, error)),
+                one_clock: true,
+            } => caution(
+                "clocks_open",
+                format!(
+                    "one clock stamps force and displacement, though the starts and ends of ramps seem {} ms apart",
+                    with_error(1e3 * skew, 1e3 * error)
+                ),
+                "one clock needs no skew taken away: nothing was moved",
+                "nothing, unless the force did come late by that much: then give the skew in [clock] of the test description as a time",
+            ),
+            Self::ClocksOpen { skew, .. } => caution(
                 "clocks_open",
                 match skew {
                     Some((skew, error)) => format!(

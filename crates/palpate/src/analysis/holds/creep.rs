@@ -9,7 +9,7 @@ use crate::record::{Record, RecordError};
 use crate::segment::{
     After, GivenHold, HoldMode, Segment, SegmentError, SegmentOptions, Segmentation, find_phases, held_in, phases_with,
 };
-use crate::statistics::{median, range};
+use crate::statistics::{median, noise, range};
 use crate::watch::{Cancelled, Watch};
 
 /// One hold of constant force, with the laws of creep compared on it.
@@ -114,8 +114,24 @@ fn force_held(
         tolerance: Some(RINGING * range(record.force())),
         ..*segment
     };
-    let found = find_phases(exchanged, &segment).map_err(of_force)?;
+    let found = match find_phases(exchanged, &segment) {
+        // Who asks for creep, and has a force that stays throughout, means the whole record.
+        Err(SegmentError::NoMotion { .. }) if is_pressed_throughout(record) => {
+            let (from, to) = (record.time()[0], record.time()[record.len() - 1]);
+            let mode = Some(HoldMode::ForceHeld);
+            phases_with(record, &segment, &[GivenHold { from, to, mode }])
+        }
+        found => found,
+    };
+    let found = found.map_err(of_force)?;
     creeping(&found, |hold| held_in(record, hold.start, hold.end) != HoldMode::DisplacementHeld)
+}
+
+/// Whether a force stays from the first sample to the last, and is one, while the displacement moves.
+fn is_pressed_throughout(record: &Record) -> bool {
+    let level = median(&mut record.force().to_vec()).abs();
+    let moves = record.displacement().is_some_and(|displacement| range(displacement) > 10.0 * noise(displacement));
+    moves && level > 0.0 && range(record.force()) <= RINGING * level
 }
 
 /// The holds in which the displacement `creeps`.
@@ -199,6 +215,18 @@ mod tests {
         let found =
             creep_holds(&record, (&SegmentOptions::default(), &[]), &CompareOptions::default(), None, &mut Unwatched);
         assert_eq!(found, Err(CreepError::NoDisplacement));
+    }
+
+    /// It was "nothing moves", said of the force.
+    #[test]
+    fn a_flow_under_a_force_that_never_varies_is_creep() {
+        let time: Vec<f64> = (0..300).map(f64::from).collect();
+        let jaw = time.iter().map(|t| 1e-5 * t + 2e-4 * (1.0 - (-t / 20.0).exp())).collect();
+        let record = Record::new(time, Some(jaw), vec![10.0; 300]).unwrap();
+        let found =
+            creep_holds(&record, (&SegmentOptions::default(), &[]), &CompareOptions::default(), None, &mut Unwatched);
+        let holds = found.unwrap();
+        assert_eq!((holds.len(), holds[0].start, holds[0].end, holds[0].force), (1, 0.0, 299.0, 10.0));
     }
 
     #[test]

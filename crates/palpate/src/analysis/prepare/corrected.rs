@@ -42,6 +42,12 @@ impl Corrected {
         let skew = self.skew.map(|skew| (skew, skew.interval.max(self.record.sample_interval())));
         let removed = |done: &Correction| matches!(done, Correction::SkewRemoved { .. });
         match skew {
+            Some((skew, interval)) if skew.is_resolved(interval) && is_beyond_one_clock(&self.record, &skew) => {
+                Some(Finding::ClocksOpen {
+                    skew: Some((skew.skew, skew.standard_error)),
+                    one_clock: true,
+                })
+            }
             Some((skew, interval)) if skew.is_resolved(interval) && !self.record.corrections().iter().any(removed) => {
                 Some(Finding::ClocksSkewed {
                     skew: skew.skew,
@@ -51,6 +57,7 @@ impl Corrected {
             Some((skew, interval)) if skew.is_seen() || 3.0 * skew.standard_error < 2.0 * interval => None,
             _ => self.skew_asked.then(|| Finding::ClocksOpen {
                 skew: self.skew.map(|skew| (skew.skew, skew.standard_error)),
+                one_clock: false,
             }),
         }
     }
@@ -74,6 +81,7 @@ pub fn corrected(record: &Record, options: &AnalysisOptions) -> Result<Corrected
     let before = next.corrections().len();
     match (asked.skew, skew.filter(ClockSkew::is_seen)) {
         (SkewChoice::Given(given), _) => next = next.without_skew(given, None)?,
+        (SkewChoice::Auto, Some(seen)) if is_beyond_one_clock(&next, &seen) => {}
         (SkewChoice::Auto, Some(seen)) => next = next.without_skew(seen.skew, Some(seen.standard_error))?,
         (SkewChoice::Auto, None) | (SkewChoice::Report, _) => {}
     }
@@ -101,6 +109,15 @@ pub fn corrected(record: &Record, options: &AnalysisOptions) -> Result<Corrected
         skew,
         skew_asked: asked.skew == SkewChoice::Auto,
     })
+}
+
+/// The longest delay, s, that a filter or a driver makes between columns that one clock stamps.
+const ONE_CLOCK: f64 = 0.25;
+
+/// Whether one clock stamps both columns, and they seem to differ by more than any delay in front of it.
+fn is_beyond_one_clock(record: &Record, skew: &ClockSkew) -> bool {
+    let own = |done: &Correction| matches!(done, Correction::ClocksJoined { .. } | Correction::SkewRemoved { .. });
+    !record.corrections().iter().any(own) && skew.is_seen() && skew.skew.abs() > ONE_CLOCK
 }
 
 /// Refuses a first touch that the jaw does not reach.

@@ -4,6 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use super::fit_start::place_fits;
 use super::ramps::fill_gaps;
+use super::whole::whole;
 use super::{from_both, from_force};
 use crate::record::Record;
 use crate::segment::{
@@ -17,7 +18,7 @@ const NEEDED: usize = 8;
 /// Finds the phases of a record: from its displacement and its force, or from its force alone where the displacement is missing.
 ///
 /// Every hold says what is held in it ([`HoldMode`](crate::segment::HoldMode)). Where the machine holds the force, the hold lasts as long as the force
-/// stays, however far the jaw creeps.
+/// stays, however far the jaw creeps. A record in which only the force relaxes, or only the jaw creeps, is one hold from its first sample on.
 ///
 /// # Errors
 /// [`SegmentError`] when nothing moves, or when no standstill after a ramp is long enough to be a hold.
@@ -28,12 +29,24 @@ pub fn find_phases(record: &Record, options: &SegmentOptions) -> Result<Segmenta
             found: record.len(),
         });
     }
-    let mut segmentation = match record.displacement() {
-        Some(displacement) => from_both::phases(record, displacement, options)?,
-        None => from_force::phases(record.time(), record.force(), options)?,
+    let found = match record.displacement() {
+        Some(displacement) => from_both::phases(record, displacement, options),
+        None => from_force::phases(record.time(), record.force(), options),
     };
-    place_fits(record, options, &mut segmentation.segments);
-    Ok(segmentation)
+    match found {
+        Ok(mut segmentation) => {
+            place_fits(record, options, &mut segmentation.segments);
+            Ok(segmentation)
+        }
+        Err(error) => match whole(record, &error) {
+            Some(mode) => {
+                let (from, to) = (record.time()[0], record.time()[record.len() - 1]);
+                let mode = Some(mode);
+                with_given(record, options, &[GivenHold { from, to, mode }])
+            }
+            None => Err(error),
+        },
+    }
 }
 
 /// A hold with limits that are given and not sought.
@@ -75,9 +88,10 @@ pub fn phases_with(
     options: &SegmentOptions,
     given: &[GivenHold],
 ) -> Result<Segmentation, SegmentError> {
-    if given.is_empty() {
-        return find_phases(record, options);
-    }
+    if given.is_empty() { find_phases(record, options) } else { with_given(record, options, given) }
+}
+
+fn with_given(record: &Record, options: &SegmentOptions, given: &[GivenHold]) -> Result<Segmentation, SegmentError> {
     let held = record.displacement().unwrap_or_else(|| record.force());
     let mut places = Vec::with_capacity(given.len());
     for (index, hold) in given.iter().enumerate() {

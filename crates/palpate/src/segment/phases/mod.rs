@@ -12,6 +12,7 @@
 //! | `rupture.rs` | where the body broke |
 //! | `ripple.rs` | the ripple of a controller that hunts |
 //! | `turning.rs` | turning points |
+//! | `whole.rs` | a record that is one hold throughout |
 //! | `fit_start.rs` | from where in a hold the laws are fitted |
 
 mod after_peaks;
@@ -23,5 +24,6 @@ mod ramps;
 mod ripple;
 mod rupture;
 mod turning;
+mod whole;
 
 pub use given::{GivenHold, find_phases, phases_with};
