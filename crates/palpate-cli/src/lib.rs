@@ -4,7 +4,7 @@
 //!
 //! | file | what |
 //! |---|---|
-//! | `arguments.rs` | what may be typed, and which job that is |
+//! | `arguments/` | what may be typed, and which job that is |
 //! | `commands/` | one file a command |
 //! | `failure.rs` | an error with its hint |
 //! | `progress.rs` | progress on anything over a second |

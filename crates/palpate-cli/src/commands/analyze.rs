@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use palpate::record::Record;
-use palpate_jobs::input::{Described, Measurement, NamedRecords, OpenedFile};
+use palpate_jobs::input::{Measurement, NamedRecords, OpenedFile};
 use palpate_jobs::output::{check_folder, write_bundle};
 use palpate_jobs::{Analyze, ErrorKind, JobError, Results, Verdict};
 use palpate_report::study::Pictures;
@@ -15,8 +15,7 @@ use crate::terminal::{note_report, notes, print};
 
 pub(crate) fn run(arguments: &AnalyzeArguments) -> Result<Verdict, JobError> {
     arguments.out.as_deref().map_or(Ok(()), check_folder)?;
-    let described =
-        Described::read(arguments.test.as_deref(), arguments.part.as_deref())?.with_columns(arguments.columns.as_ref());
+    let described = arguments.described.read()?;
     let records = NamedRecords::find(&arguments.records, described)?;
     let air = arguments.air_run.as_ref().map(|air| OpenedFile::open(air, &records.described)).transpose()?;
     let air = air.map(|air| air.read(air.only()?, &mut Bars::default())).transpose()?.map(|air| air.record);

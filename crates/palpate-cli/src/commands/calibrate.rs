@@ -1,6 +1,6 @@
 //! `palpate calibrate`: a whole record to one set of numbers.
 
-use palpate_jobs::input::{Described, OpenedFile};
+use palpate_jobs::input::OpenedFile;
 use palpate_jobs::output::{check_figure, keep_apart, picture, write_file};
 use palpate_jobs::{JobError, Results, Verdict};
 
@@ -10,9 +10,9 @@ use crate::terminal::{notes, print};
 
 pub(crate) fn run(asked: &CalibrateArguments) -> Result<Verdict, JobError> {
     let (out, figure) = (&asked.out, &asked.figure);
-    keep_apart([&asked.record].into_iter().chain(&asked.test), out.iter().chain(figure))?;
+    keep_apart([&asked.record].into_iter().chain(&asked.described.test), out.iter().chain(figure))?;
     figure.as_deref().map_or(Ok(()), check_figure)?;
-    let described = Described::read(asked.test.as_deref(), asked.part.as_deref())?.with_columns(asked.columns.as_ref());
+    let described = asked.described.read()?;
     let opened = OpenedFile::open(&asked.record, &described)?;
     notes(&opened.notes());
     let measured = opened.measurement(opened.only()?, &mut Bars::default())?;

@@ -1,6 +1,6 @@
 //! `palpate compare`: which law to use.
 
-use palpate_jobs::input::{Described, NamedRecords};
+use palpate_jobs::input::NamedRecords;
 use palpate_jobs::output::{check_folder, write_bundle};
 use palpate_jobs::{JobError, Results, Verdict};
 use palpate_report::study::Pictures;
@@ -11,8 +11,7 @@ use crate::terminal::{note_report, notes, print};
 
 pub(crate) fn run(arguments: &CompareArguments) -> Result<Verdict, JobError> {
     arguments.out.as_deref().map_or(Ok(()), check_folder)?;
-    let described =
-        Described::read(arguments.test.as_deref(), arguments.part.as_deref())?.with_columns(arguments.columns.as_ref());
+    let described = arguments.described.read()?;
     let records = NamedRecords::find(&arguments.records, described)?;
     let alone = arguments.records == records.paths;
     let outcome = arguments.job.run(&records, alone, &mut Bars::default(), notes)?;

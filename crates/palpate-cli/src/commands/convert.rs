@@ -1,6 +1,6 @@
 //! `palpate convert`: a record of any format as a plain table in SI.
 
-use palpate_jobs::input::{Described, OpenedFile};
+use palpate_jobs::input::OpenedFile;
 use palpate_jobs::output::keep_apart;
 use palpate_jobs::{Convert, Converted, JobError, Verdict};
 
@@ -10,9 +10,9 @@ use crate::terminal::{note, notes};
 
 pub(crate) fn run(asked: &ConvertArguments) -> Result<Verdict, JobError> {
     let (record, out) = (&asked.record, &asked.out);
-    keep_apart([record].into_iter().chain(&asked.test), [out])?;
+    keep_apart([record].into_iter().chain(&asked.described.test), [out])?;
     Converted::check_name(out)?;
-    let described = Described::read(asked.test.as_deref(), asked.part.as_deref())?.with_columns(asked.columns.as_ref());
+    let described = asked.described.read()?;
     let opened = OpenedFile::open(record, &described)?;
     notes(&opened.notes());
     let outcome = Convert {}.run(&opened, &mut Bars::default())?;

@@ -1,6 +1,6 @@
 //! `palpate inspect`: what is in a record, and which machines are known.
 
-use palpate_jobs::input::{Described, OpenedFile};
+use palpate_jobs::input::OpenedFile;
 use palpate_jobs::output::{check_figure, check_new, keep_apart, picture, write_file};
 use palpate_jobs::{Inspect, JobError, Verdict, machines_text};
 
@@ -9,7 +9,7 @@ use crate::progress::Bars;
 use crate::terminal::{note, notes, print};
 
 pub(crate) fn run(asked: &InspectArguments) -> Result<Verdict, JobError> {
-    let (test, figure, write_test) = (&asked.test, &asked.figure, &asked.write_test);
+    let (test, figure, write_test) = (&asked.described.test, &asked.figure, &asked.write_test);
     // Without a list of machines there is a record: the command line asks for one.
     let Some(record) = asked.record.as_ref().filter(|_| !asked.machines) else {
         print(&machines_text())?;
@@ -18,7 +18,7 @@ pub(crate) fn run(asked: &InspectArguments) -> Result<Verdict, JobError> {
     keep_apart([record].into_iter().chain(test), figure.iter().chain(write_test))?;
     figure.as_deref().map_or(Ok(()), check_figure)?;
     write_test.as_deref().map_or(Ok(()), check_new)?;
-    let described = Described::read(test.as_deref(), asked.part.as_deref())?.with_columns(asked.columns.as_ref());
+    let described = asked.described.read()?;
     let opened = OpenedFile::open(record, &described)?;
     let job = Inspect { only: figure.is_some() };
     let outcome = job.run(&opened, &mut Bars::default())?;

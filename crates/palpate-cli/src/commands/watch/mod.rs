@@ -18,7 +18,7 @@ use std::time::{Duration, Instant};
 use palpate::record::Correction;
 use palpate::watch::Unwatched;
 use palpate_files::description::read_material;
-use palpate_jobs::input::{Described, OpenedFile};
+use palpate_jobs::input::OpenedFile;
 use palpate_jobs::{HoldSeen, JobError, Seen, Verdict};
 
 use crate::arguments::{WatchArguments, WatchFormat};
@@ -34,8 +34,7 @@ trait Shown {
 }
 
 pub(crate) fn run(arguments: &WatchArguments) -> Result<Verdict, JobError> {
-    let described =
-        Described::read(arguments.test.as_deref(), arguments.part.as_deref())?.with_columns(arguments.columns.as_ref());
+    let described = arguments.described.read()?;
     let material = arguments.material.as_deref().map(read_material).transpose()?;
     let job = arguments.job();
     let opened = OpenedFile::open(&arguments.log, &described)?;

@@ -1,0 +1,168 @@
+//! What may be typed.
+//!
+//! | file | what |
+//! |---|---|
+//! | `records.rs` | arguments of the commands that read records |
+//! | `contacts.rs` | arguments of the commands that simulate, predict and plan |
+
+mod contacts;
+mod records;
+
+use clap::{Args, Parser, Subcommand, ValueEnum};
+use palpate_files::description::{schema_material, schema_protocol, schema_test};
+use palpate_jobs as jobs;
+use palpate_jobs::typed::{Choice, one_of};
+use palpate_report::document::{
+    AnalysisDocument, CalibrationDocument, ComparisonDocument, GripDocument, ReproductionDocument, WatchDocument,
+};
+use schemars::{JsonSchema, schema_for};
+use serde_json::Value;
+
+pub(crate) use contacts::{GripArguments, PredictArguments, ReproduceArguments, SimulateArguments, SweepArguments};
+pub(crate) use records::{
+    AnalyzeArguments, BatchArguments, CalibrateArguments, CompareArguments, ConvertArguments, InspectArguments,
+    TableFormat, WatchArguments, WatchFormat,
+};
+
+/// Viscoelastic contact: laws from squeeze-and-hold tests, and forces from laws.
+#[derive(Debug, Parser)]
+#[command(name = "palpate", version, long_version = build(), about, max_term_width = 100, after_help = AFTER_HELP)]
+pub(crate) struct Arguments {
+    #[command(subcommand)]
+    pub(crate) command: Command,
+}
+
+/// What a report of a bug needs to know of this build.
+fn build() -> String {
+    let features = [
+        ("arrow", cfg!(feature = "arrow")),
+        ("png", cfg!(feature = "png")),
+        ("robot-log", cfg!(feature = "robot-log")),
+    ];
+    let enabled: Vec<&str> = features.iter().filter(|(_, enabled)| *enabled).map(|(name, _)| *name).collect();
+    let features = if enabled.is_empty() { "none".to_owned() } else { enabled.join(", ") };
+    let (version, commit, target) = (env!("CARGO_PKG_VERSION"), env!("PALPATE_COMMIT"), env!("PALPATE_TARGET"));
+    format!("{version}\ncommit: {commit}\ntarget: {target}\nfeatures: {features}")
+}
+
+const AFTER_HELP: &str = "\
+Examples:
+  palpate reproduce                              the paper's study, into palpate-reproduction/
+  palpate inspect test.csv                       columns, units and phases of a record
+  palpate analyze test.csv --out study           phases, laws, tables, figures, report.html
+  palpate analyze test.csv --test ball.toml      with geometry: also strains, and v in 1/s
+  palpate batch curves --out holds.parquet       thousands of records, one table
+  palpate compare test.csv                       which law of relaxation to use, with its certainty
+  palpate calibrate test.csv --test ball.toml --out material.toml   one parameter set for the record
+  palpate predict material.toml --protocol grip.toml --at \"60 s\"    force at 60 s, with its interval
+  palpate grip material.toml --mass 150g --friction 0.6   the least squeeze that holds, time to slip
+  palpate watch gripper.csv --slip-force \"2 N\"    holds and time to slip from a log, as if live
+  palpate simulate squeeze.toml --out force.csv  force of a squeeze protocol
+  palpate sweep sweep.toml --figure peak.svg     the same over many parameter values
+
+Exit codes: 0 done, 1 done with a negative verdict, 2 not run (error).";
+
+#[derive(Debug, Subcommand)]
+pub(crate) enum Command {
+    Reproduce(ReproduceArguments),
+    Simulate(SimulateArguments),
+    Sweep(SweepArguments),
+    Inspect(InspectArguments),
+    Analyze(AnalyzeArguments),
+    Batch(BatchArguments),
+    Compare(CompareArguments),
+    Calibrate(CalibrateArguments),
+    Predict(PredictArguments),
+    Grip(GripArguments),
+    Watch(WatchArguments),
+    Convert(ConvertArguments),
+    Schema(SchemaArguments),
+    Completions(CompletionsArguments),
+}
+
+/// Output of `analyze` on standard output.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(crate) enum Format {
+    /// Tables
+    Text,
+    /// One JSON object per record or query (`palpate schema` prints its schema)
+    Json,
+}
+
+/// Print the JSON Schema of a description or result.
+#[derive(Debug, Args)]
+pub(crate) struct SchemaArguments {
+    /// Name of the description or result
+    #[arg(value_parser = one_of(SCHEMAS))]
+    pub(crate) name: fn() -> Value,
+}
+
+/// Print completions for a shell.
+#[derive(Debug, Args)]
+#[command(after_help = "\
+Example:
+  palpate completions bash > ~/.local/share/bash-completion/completions/palpate")]
+pub(crate) struct CompletionsArguments {
+    /// Shell
+    #[arg(value_enum)]
+    pub(crate) shell: clap_complete::Shell,
+}
+
+/// What has a schema.
+const SCHEMAS: &[Choice<fn() -> Value>] = &[
+    ("protocol", "Protocol of `palpate simulate`", schema_protocol),
+    ("test", "Test description of `palpate analyze`", schema_test),
+    ("material", "Material file of `palpate calibrate`", schema_material),
+    ("analysis", "Result of `palpate analyze --format json`", schema::<AnalysisDocument>),
+    ("calibration", "Result of `palpate calibrate --format json`", schema::<CalibrationDocument>),
+    ("comparison", "Result of `palpate compare --format json`", schema::<ComparisonDocument>),
+    ("grip", "Result of `palpate grip --format json`", schema::<GripDocument>),
+    ("watch", "A line of `palpate watch --format jsonl`", schema::<WatchDocument>),
+    ("reproduction", "summary.json of `palpate reproduce`", schema::<ReproductionDocument>),
+    ("job-inspect", "Options of `palpate inspect` as a job", schema::<jobs::Inspect>),
+    ("job-analyze", "Options of `palpate analyze` as a job", schema::<jobs::Analyze>),
+    ("job-compare", "Options of `palpate compare` as a job", schema::<jobs::Compare>),
+    ("job-calibrate", "Options of `palpate calibrate` as a job", schema::<jobs::Calibrate>),
+    ("job-predict", "Options of `palpate predict` as a job", schema::<jobs::Predict>),
+    ("job-grip", "Options of `palpate grip` as a job", schema::<jobs::PlanGrip>),
+    ("job-watch", "Options of `palpate watch` as a job", schema::<jobs::WatchLog>),
+    ("job-simulate", "Options of `palpate simulate` as a job", schema::<jobs::Simulate>),
+    ("job-sweep", "Options of `palpate sweep` as a job", schema::<jobs::Sweep>),
+    ("job-batch", "Options of `palpate batch` as a job", schema::<jobs::Batch>),
+    ("job-convert", "Options of `palpate convert` as a job", schema::<jobs::Convert>),
+    ("job-reproduce", "Options of `palpate reproduce` as a job", schema::<jobs::Reproduce>),
+];
+
+fn schema<T: JsonSchema>() -> Value {
+    schema_for!(T).to_value()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn parsed(arguments: &[&str]) -> Command {
+        Arguments::try_parse_from([&["palpate"], arguments].concat()).unwrap().command
+    }
+
+    /// The defaults of the command line are those of the jobs.
+    #[test]
+    fn what_is_not_typed_is_as_the_jobs_have_it() {
+        assert!(matches!(parsed(&["analyze", "r"]), Command::Analyze(a) if a.job == jobs::Analyze::default()));
+        assert!(matches!(parsed(&["compare", "r"]), Command::Compare(a) if a.job == jobs::Compare::default()));
+        assert!(matches!(parsed(&["calibrate", "r"]), Command::Calibrate(a) if a.job() == jobs::Calibrate::default()));
+        let predict = ["predict", "m", "--protocol", "p"];
+        assert!(matches!(parsed(&predict), Command::Predict(a) if a.job == jobs::Predict::default()));
+        assert!(matches!(parsed(&["watch", "r"]), Command::Watch(a) if a.job() == jobs::WatchLog::default()));
+        assert!(matches!(parsed(&["simulate", "p"]), Command::Simulate(a) if a.job() == jobs::Simulate::default()));
+        assert!(matches!(parsed(&["sweep", "p"]), Command::Sweep(a) if a.job == jobs::Sweep::default()));
+        assert!(matches!(parsed(&["batch", "r", "--out", "t"]), Command::Batch(a) if a.job == jobs::Batch::default()));
+        let grip = jobs::PlanGrip {
+            mass_kg: 1.0,
+            friction: 0.5,
+            ..jobs::PlanGrip::default()
+        };
+        let arguments = ["grip", "m", "--mass", "1 kg", "--friction", "0.5"];
+        assert!(matches!(parsed(&arguments), Command::Grip(a) if a.job == grip));
+    }
+}
