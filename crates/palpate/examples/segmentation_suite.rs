@@ -37,10 +37,10 @@ fn one(labelled: &suite::Labelled) {
 }
 
 fn main() {
-    let parameter = |place: usize, usual: u64| -> u64 {
+    let argument = |place: usize, usual: u64| -> u64 {
         std::env::args().nth(place).and_then(|text| text.parse().ok()).unwrap_or(usual)
     };
-    let (count, first) = (parameter(1, 1000), parameter(2, 0));
+    let (count, first) = (argument(1, 1000), argument(2, 0));
     let each = std::env::args().nth(3).is_some();
     if count == 1 {
         return one(&suite::labelled(first));

@@ -11,7 +11,7 @@ use palpate_jobs::output::write_bundle;
 use palpate_jobs::{Analyze, Analyzed, Outcome, Results};
 use palpate_report::document::{AnalysisDocument, FitDocument};
 use palpate_report::result::{Input, word};
-use palpate_report::result::{ParameterDocument, ParameterRow};
+use palpate_report::result::{PARAMETER_COLUMNS, ParameterColumn, ParameterDocument, ParameterRow};
 use palpate_report::spelling::{spelled, with_flags};
 use palpate_report::study::Pictures;
 use pyo3::prelude::*;
@@ -137,14 +137,14 @@ fn run(py: Python<'_>, asked: &Arc<Asked>) -> PyResult<Outcome<Analyzed>> {
 }
 
 /// Parameters as a tidy table.
-pub(crate) fn parameter_table(rows: &[ParameterRow]) -> PyResult<Table> {
-    Table::of(columns!(rows, row =>
-        record, hold, law, parameter = row.name.clone(), unit = row.parameter.unit.clone(), value = row.parameter.value,
-        standard_error = row.parameter.standard_error, low = row.parameter.interval.and_then(|interval| interval[0]),
-        high = row.parameter.interval.and_then(|interval| interval[1]), termination,
-        white_standard_error = row.parameter.white_standard_error, role = row.parameter.role.clone(), domain,
-        recommended = row.is_recommended
-    ))
+fn parameter_table(rows: &[ParameterRow]) -> PyResult<Table> {
+    let column = |column: ParameterColumn| match column {
+        ParameterColumn::Text(of) => Column::column(rows.iter().map(of)),
+        ParameterColumn::Count(of) => Column::column(rows.iter().map(of)),
+        ParameterColumn::Number(of) => Column::column(rows.iter().map(of)),
+        ParameterColumn::Flag(of) => Column::column(rows.iter().map(of)),
+    };
+    Table::of(PARAMETER_COLUMNS.iter().map(|(name, of)| (*name, column(*of))).collect())
 }
 
 /// The parameters of fits, a column each with its uncertainty, by the names that any of the fits has.

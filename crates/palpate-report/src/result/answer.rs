@@ -65,7 +65,7 @@ impl Answer {
     #[must_use]
     pub fn new(record: &ComparedRecord) -> Self {
         let judged: Vec<_> = record.verdicts().collect();
-        let law = law_of_record(&judged);
+        let law = law_of_record(record);
         let agreeing = judged.iter().filter(|(_, found)| law.is_some_and(|law| alike(found).contains(&law))).count();
         Self {
             law: law.map(|law| law.to_string()),
@@ -131,7 +131,8 @@ fn alike(comparison: &Comparison) -> &[Law] {
 
 /// The law that is not distinguishable from the best on the most holds; of several the one with the fewest parameters, then the one
 /// whose forecasts miss least. The spectrum has no parameters to carry to another test and comes last.
-fn law_of_record(judged: &[(&ComparedHold, &Comparison)]) -> Option<Law> {
+pub(crate) fn law_of_record(record: &ComparedRecord) -> Option<Law> {
+    let judged: Vec<_> = record.verdicts().collect();
     let mut laws: Vec<Law> = Vec::new();
     for law in judged.iter().flat_map(|(_, found)| alike(found)) {
         if !laws.contains(law) {

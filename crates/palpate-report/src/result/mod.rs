@@ -26,6 +26,7 @@ mod words;
 
 pub use crate::page::Check;
 pub use crate::word::word;
+pub(crate) use answer::law_of_record;
 pub use answer::{Answer, HoldAnswer, formula};
 pub use calibrated::{CalibratedRecord, formula_of_material};
 pub use compared::{ComparedHold, ComparedRecord, LeftOut, Quantity};
@@ -33,7 +34,8 @@ pub(crate) use grip_sentences::lasted;
 pub use gripped::GrippedBody;
 pub use input::Input;
 pub use parameters::{
-    ParameterDocument, ParameterRow, Parameters, parameters_of, parameters_of_material, parameters_table, si_unit,
+    PARAMETER_COLUMNS, ParameterColumn, ParameterDocument, ParameterRow, Parameters, parameters_of,
+    parameters_of_material, parameters_table, si_unit,
 };
 pub use reproduced::{ReproducedTest, Reproduction};
 pub(crate) use words::{hold_start_word, percent};

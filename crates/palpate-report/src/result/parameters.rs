@@ -2,8 +2,9 @@
 
 use std::collections::BTreeMap;
 
-use palpate::calibrate::{Material, MaterialUnit};
+use palpate::calibrate::{Material, MaterialParameter, MaterialUnit};
 use palpate::fit::{Estimate, Fit, Parameter, ParameterRole, ParameterUnit};
+use palpate::units::suited;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -44,6 +45,17 @@ impl ParameterDocument {
         }
     }
 
+    /// Value with interval and unit as people read them, in the unit that suits the size; `(given)` where it was.
+    pub(crate) fn shown(&self) -> (String, String) {
+        let (unit, factor) = suited(&self.unit, self.value.unwrap_or(0.0));
+        let unit = if unit == "1" { "" } else { unit };
+        let text = match self.value.filter(|_| self.role == word(ParameterRole::Given)) {
+            Some(given) => format!("{} (given)", exact(given * factor)),
+            None => self.cell().shown(factor),
+        };
+        (text, unit.to_owned())
+    }
+
     /// The parameter as a cell of a table.
     #[must_use]
     pub fn cell(&self) -> Cell {
@@ -77,7 +89,7 @@ pub fn parameters_of(fit: &Fit, quantity: Quantity) -> Parameters {
 /// The parameters of a calibrated material, in their order.
 #[must_use]
 pub fn parameters_of_material(material: &Material, is_good: bool) -> Vec<(String, ParameterDocument)> {
-    let document = |parameter: &palpate::calibrate::MaterialParameter| {
+    let document = |parameter: &MaterialParameter| {
         let role = if Material::is_given(material.candidate, &parameter.name) {
             ParameterRole::Given
         } else {
@@ -141,25 +153,49 @@ pub struct ParameterRow {
     pub is_recommended: bool,
 }
 
+/// A column of the tidy table of parameters: what it holds, and where that stands in a row.
+#[derive(Debug, Clone, Copy)]
+pub enum ParameterColumn {
+    /// Words.
+    Text(fn(&ParameterRow) -> String),
+    /// A count.
+    Count(fn(&ParameterRow) -> Option<usize>),
+    /// A number.
+    Number(fn(&ParameterRow) -> Option<f64>),
+    /// Yes or no.
+    Flag(fn(&ParameterRow) -> bool),
+}
+
+/// The columns of the tidy table of parameters by their names, in order, wherever it is written.
+pub const PARAMETER_COLUMNS: [(&str, ParameterColumn); 14] = [
+    ("record", ParameterColumn::Text(|row| row.record.clone())),
+    ("hold", ParameterColumn::Count(|row| row.hold)),
+    ("law", ParameterColumn::Text(|row| row.law.clone())),
+    ("parameter", ParameterColumn::Text(|row| row.name.clone())),
+    ("unit", ParameterColumn::Text(|row| row.parameter.unit.clone())),
+    ("value", ParameterColumn::Number(|row| row.parameter.value)),
+    ("standard_error", ParameterColumn::Number(|row| row.parameter.standard_error)),
+    ("low", ParameterColumn::Number(|row| row.parameter.interval?[0])),
+    ("high", ParameterColumn::Number(|row| row.parameter.interval?[1])),
+    ("termination", ParameterColumn::Text(|row| row.termination.clone())),
+    ("white_standard_error", ParameterColumn::Number(|row| row.parameter.white_standard_error)),
+    ("role", ParameterColumn::Text(|row| row.parameter.role.clone())),
+    ("domain", ParameterColumn::Text(|row| row.domain.clone())),
+    ("recommended", ParameterColumn::Flag(|row| row.is_recommended)),
+];
+
 /// The tidy table of all parameters of all laws, one row a parameter.
 #[must_use]
 pub fn parameters_table(rows: &[ParameterRow]) -> Table {
-    let number = |value: Option<f64>| Cell::number_or(value, 6, "");
-    let end = |row: &ParameterRow, which: usize| number(row.parameter.interval.and_then(|interval| interval[which]));
-    Table::of("parameters", "Every parameter of every law.", rows)
-        .column("Record", "record", "", |row| Cell::text(&row.record))
-        .column("Hold", "hold", "", |row| row.hold.map_or(Cell::missing(""), |hold| Cell::Integer(hold as i64)))
-        .column("Law", "law", "", |row| Cell::text(&row.law))
-        .column("Parameter", "parameter", "", |row| Cell::text(&row.name))
-        .column("Unit", "unit", "", |row| Cell::text(&row.parameter.unit))
-        .column("Value", "value", "", |row| number(row.parameter.value))
-        .column("Standard error", "standard_error", "", |row| number(row.parameter.standard_error))
-        .column("Low", "low", "", |row| end(row, 0))
-        .column("High", "high", "", |row| end(row, 1))
-        .column("Ended", "termination", "", |row| Cell::text(&row.termination))
-        .column("White standard error", "white_standard_error", "", |row| number(row.parameter.white_standard_error))
-        .column("Role", "role", "", |row| Cell::text(&row.parameter.role))
-        .column("Domain", "domain", "", |row| Cell::text(&row.domain))
-        .column("Recommended", "recommended", "", |row| Cell::text(row.is_recommended.to_string()))
-        .table()
+    let cell = |column: ParameterColumn, row: &ParameterRow| match column {
+        ParameterColumn::Text(of) => Cell::text(of(row)),
+        ParameterColumn::Count(of) => of(row).map_or(Cell::missing(""), |count| Cell::Integer(count as i64)),
+        ParameterColumn::Number(of) => Cell::number_or(of(row), 6, ""),
+        ParameterColumn::Flag(of) => Cell::text(of(row).to_string()),
+    };
+    let mut table = Table::of("parameters", "Every parameter of every law.", rows);
+    for (name, column) in PARAMETER_COLUMNS {
+        table = table.column(name, name, "", |row| cell(column, row));
+    }
+    table.table()
 }

@@ -6,7 +6,9 @@ use palpate::laws::Law;
 use super::findings::Gathered;
 use crate::number::significant;
 use crate::page::Block;
-use crate::result::{Answer, ComparedHold, ComparedRecord, HoldAnswer, Parameters, parameters_of};
+use crate::result::{
+    Answer, ComparedHold, ComparedRecord, HoldAnswer, ParameterDocument, Parameters, parameters_of, percent, word,
+};
 use crate::table::{Cell, Table};
 use crate::wrap::{indented, width, wrapped};
 
@@ -31,7 +33,7 @@ pub(super) fn answer_text(record: &ComparedRecord, findings: &[Gathered]) -> Str
         }
     }
     if !few {
-        text.extend(law_of_record(record, &answer).map(|table| format!("\n{}", table.to_plain_text())));
+        text.extend(parameters_of_holds(record, &answer).map(|table| format!("\n{}", table.to_plain_text())));
     }
     for finding in most_severe(findings) {
         text.push_str(&format!("\n{}", wrapped(&finding)));
@@ -40,11 +42,10 @@ pub(super) fn answer_text(record: &ComparedRecord, findings: &[Gathered]) -> Str
 }
 
 /// The answer as blocks of a page.
-pub(super) fn answer_blocks(record: &ComparedRecord, findings: &[Gathered]) -> Vec<Block> {
-    let answer = Answer::new(record);
+pub(super) fn answer_blocks(record: &ComparedRecord, answer: &Answer, findings: &[Gathered]) -> Vec<Block> {
     let mut blocks = vec![Block::paragraph(answer.sentence.clone())];
-    blocks.extend(verdicts(&answer).map(Block::Table));
-    blocks.extend(law_of_record(record, &answer).map(Block::Table));
+    blocks.extend(verdicts(answer).map(Block::Table));
+    blocks.extend(parameters_of_holds(record, answer).map(Block::Table));
     let lines: Vec<String> = answer
         .holds
         .iter()
@@ -66,11 +67,9 @@ fn formula_line(hold: &HoldAnswer) -> Option<String> {
 /// Parameters, a line each.
 fn listed(parameters: &Parameters) -> String {
     let longest = parameters.keys().map(String::len).max().unwrap_or(0);
-    let line = |(name, parameter): (&String, &crate::result::ParameterDocument)| {
-        let (unit, factor) = palpate::units::suited(&parameter.unit, parameter.value.unwrap_or(0.0));
-        let unit = if unit == "1" { String::new() } else { format!(" {unit}") };
-        let given = if parameter.role == "given" { " (given)" } else { "" };
-        format!("    {name:<longest$}  {}{unit}{given}\n", parameter.cell().shown(factor))
+    let line = |(name, parameter): (&String, &ParameterDocument)| {
+        let (value, unit) = parameter.shown();
+        format!("    {}\n", format!("{name:<longest$}  {value} {unit}").trim_end())
     };
     parameters.iter().map(line).collect()
 }
@@ -96,44 +95,32 @@ pub(super) fn verdicts(answer: &Answer) -> Option<Table> {
 }
 
 /// The parameters of the law of the record on every hold.
-pub(super) fn law_of_record(record: &ComparedRecord, answer: &Answer) -> Option<Table> {
+pub(super) fn parameters_of_holds(record: &ComparedRecord, answer: &Answer) -> Option<Table> {
     let law: Law = answer.law.as_ref()?.parse().ok()?;
-    let fits: Vec<(&ComparedHold, &Fit)> = record
-        .holds
-        .iter()
-        .filter_map(|hold| {
-            let rows = &hold.comparison.as_ref()?.rows;
-            Some((hold, rows.iter().find(|row| row.law == law)?.fit.as_ref().ok()?))
-        })
-        .collect();
+    let fits = record.holds.iter().filter_map(|hold| {
+        let rows = &hold.comparison.as_ref()?.rows;
+        let fit = rows.iter().find(|row| row.law == law)?.fit.as_ref().ok()?;
+        Some((hold, fit, parameters_of(fit, hold.quantity)))
+    });
+    let fits: Vec<(&ComparedHold, &Fit, Parameters)> = fits.collect();
+    let (_, first, units) = fits.first()?;
+    let confidence = fits.iter().find_map(|(_, fit, _)| Some(fit.uncertainty.as_ref()?.confidence)).unwrap_or(0.95);
+    let caption = format!("Parameters of {law} on every hold, with {} intervals.", percent(confidence));
+    let mut table = Table::of("law_of_record", caption, &fits)
+        .column("Hold", "hold", "", |(hold, ..)| Cell::Integer(hold.number as i64));
     let of_interest = |parameter: &&Parameter| {
         parameter.role == ParameterRole::Estimated || parameter.name.kind == ParameterKind::RateCoefficient
     };
-    let (_, first) = fits.first()?;
-    let names: Vec<String> = first.parameters.iter().filter(of_interest).map(|found| found.name.to_string()).collect();
-    let mut table = Table::of(
-        "law_of_record",
-        format!("Parameters of {law} on every hold, with 95 % intervals."),
-        &fits,
-    )
-    .column("Hold", "hold", "", |(hold, _)| Cell::Integer(hold.number as i64));
-    for name in &names {
-        let documents = |hold: &ComparedHold, fit: &Fit| parameters_of(fit, hold.quantity);
-        let unit = fits.first().and_then(|(hold, fit)| Some(documents(hold, fit).get(name)?.unit.clone()))?;
-        let unit = if unit == "1" { String::new() } else { unit };
-        table = table.estimates(heading(name), name.clone(), &unit, |(hold, fit)| {
-            documents(hold, fit)
-                .get(name)
-                .map_or(Cell::missing("not determined"), crate::result::ParameterDocument::cell)
-        });
+    for parameter in first.parameters.iter().filter(of_interest) {
+        let name = parameter.name.to_string();
+        let unit = units.get(&name).map_or("", |parameter| parameter.unit.as_str());
+        table =
+            table.estimates(heading(&name), name.clone(), if unit == "1" { "" } else { unit }, |(.., parameters)| {
+                parameters.get(&name).map_or(Cell::missing("not determined"), ParameterDocument::cell)
+            });
     }
-    Some(
-        table
-            .column("Ended", "termination", "", |(_, fit)| {
-                Cell::text(crate::result::word(fit.termination).replace('_', " "))
-            })
-            .table(),
-    )
+    let ended = |fit: &Fit| Cell::text(word(fit.termination).replace('_', " "));
+    Some(table.column("Ended", "termination", "", |(_, fit, _)| ended(fit)).table())
 }
 
 /// A parameter as a heading names it: without its unit, which stands behind it.

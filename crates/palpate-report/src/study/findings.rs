@@ -33,7 +33,7 @@ impl Gathered {
     pub(super) fn briefly(&self) -> String {
         let (place, seen) = self.lines.first().map_or(("", ""), |(place, seen)| (place.as_str(), seen.as_str()));
         let severity = word(self.severity);
-        let place = if place.is_empty() { String::new() } else { format!(", {place}") };
+        let place = if place.is_empty() { String::new() } else { format!(", {}", place.to_lowercase()) };
         format!("{}{}{place}: {seen}.", severity[..1].to_uppercase(), &severity[1..])
     }
 

@@ -94,8 +94,12 @@ fn units_are_asked_for() {
 #[test]
 fn units_of_other_machines_are_led_to_what_a_record_needs() {
     let grams = "Time (s),Distance (mm),Force (g)\n0,1,2\n1,2,3\n";
-    let error =
-        says(grams, "", &["\"g\" is not a unit of force"], &["if \"g\" stands for gf, state it", "force=Force:gf"]);
+    let error = says(
+        grams,
+        "",
+        &["\"g\" is not a unit of force"],
+        &["if \"g\" stands for gf, state it", "force=Force:gf"],
+    );
     assert_eq!(read(grams, &pasted(&error)).unwrap().record.force()[0], 2.0 * 9.806_65e-3);
     for text in [
         "Time (s),Angle (deg),Torque (Nm)\n0,1,2\n1,2,3\n",

@@ -27,8 +27,8 @@ fn laws(record: &CalibratedRecord) -> Table {
         .column("of peak", "rmse_percent", "%", of_made(|made| Cell::Number(100.0 * made.relative, 3)))
         .column("ΔBIC", "delta_bic", "", of_made(|made| Cell::Number(made.criteria.bic - least, 3)));
     if fitted < all {
-        let holdout = |parameter: fn(&HoldoutError) -> f64| {
-            of_made(move |made| made.holdout.as_ref().map_or(Cell::text(""), |found| Cell::Number(parameter(found), 3)))
+        let holdout = |figure: fn(&HoldoutError) -> f64| {
+            of_made(move |made| made.holdout.as_ref().map_or(Cell::text(""), |found| Cell::Number(figure(found), 3)))
         };
         let relative = holdout(|found| 100.0 * found.relative);
         table = table.column("Held-out error", "holdout_rmse_n", "N", holdout(|found| found.rmse));
@@ -46,36 +46,27 @@ fn of_made(cell: impl Fn(&Calibration) -> Cell) -> impl Fn(&(Candidate, Result<C
 /// The parameters of a material with their intervals.
 #[must_use]
 pub fn material_table(material: &Material) -> Table {
-    parameters_text_table(material, &[])
+    law_table(material, &[])
 }
 
 /// The same with profile intervals, where there are any.
-fn parameters_text_table(material: &Material, profiles: &[ParameterProfile]) -> Table {
+fn law_table(material: &Material, profiles: &[ParameterProfile]) -> Table {
     const LEFT_OPEN: &str = "not determined by the record";
     let share = material.uncertainty.as_ref().map_or(0.95, |uncertainty| uncertainty.confidence);
     let parameters = parameters_of_material(material, true);
-    // Each has a unit of its own, so that it stands in the row.
-    let suited = |parameter: &ParameterDocument| {
-        let (unit, factor) = suited(&parameter.unit, parameter.value.unwrap_or(0.0));
-        (if unit == "1" { "" } else { unit }.to_owned(), factor)
-    };
-    let estimate = |parameter: &ParameterDocument| {
-        let (_, factor) = suited(parameter);
-        match (parameter.role.as_str(), parameter.interval) {
-            ("given", _) => Cell::text(format!("{} (given)", parameter.cell().shown(factor))),
-            (_, None) => Cell::missing(LEFT_OPEN),
-            _ => Cell::text(parameter.cell().shown(factor)),
-        }
+    let estimate = |parameter: &ParameterDocument| match (parameter.role.as_str(), parameter.interval) {
+        ("estimated", None) => Cell::missing(LEFT_OPEN),
+        _ => Cell::text(parameter.shown().0),
     };
     let caption = format!("Parameters of the law {} with {} intervals.", material.candidate, percent(share));
     let mut table = Table::of("law", caption, &parameters)
         .column("Parameter", "parameter", "", |(name, _)| Cell::text(name.as_str()))
         .column("Value", "value", "", |(_, parameter)| estimate(parameter))
-        .column("Unit", "unit", "", |(_, parameter)| Cell::text(suited(parameter).0));
+        .column("Unit", "unit", "", |(_, parameter)| Cell::text(parameter.shown().1));
     if !profiles.is_empty() {
         let profile = |name: &str, parameter: &ParameterDocument| {
             let found = profiles.iter().find(|profile| profile.name == name);
-            let (_, factor) = suited(parameter);
+            let (_, factor) = suited(&parameter.unit, parameter.value?);
             let (low, high) = found.map(|found| (found.interval.low, found.interval.high))?;
             let ends = (low.map_or(0.0, |low| low * factor), high.map_or(f64::INFINITY, |high| high * factor));
             Some(with_interval(parameter.value? * factor, ends))
@@ -93,7 +84,7 @@ pub fn calibration_text(record: &CalibratedRecord) -> String {
     let mut text = format!("{}\n\n", record.input.called());
     text.extend(record.answer().iter().map(|line| wrapped(line)));
     if let Some(chosen) = record.chosen() {
-        text.push_str(&format!("\n{}", parameters_text_table(&chosen.material, &record.profiles).to_plain_text()));
+        text.push_str(&format!("\n{}", law_table(&chosen.material, &record.profiles).to_plain_text()));
     }
     text.push_str(&format!("\n{}\n", laws(record).to_plain_text()));
     record.remarks().iter().for_each(|remark| text.push_str(&wrapped(remark)));
@@ -107,7 +98,7 @@ pub fn calibration_text(record: &CalibratedRecord) -> String {
 pub fn calibration_page(record: &CalibratedRecord) -> Result<Page, StudyError> {
     let mut section = Section::new(&record.input.title).block(Block::List(record.answer()));
     if let Some(chosen) = record.chosen() {
-        section = section.block(Block::Table(parameters_text_table(&chosen.material, &record.profiles)));
+        section = section.block(Block::Table(law_table(&chosen.material, &record.profiles)));
     }
     section = section
         .block(Block::Table(laws(record)))

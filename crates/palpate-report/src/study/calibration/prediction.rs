@@ -43,15 +43,15 @@ pub fn prediction_table(prediction: &Prediction) -> Table {
         significant(prediction.noise, 2)
     );
     let samples: Vec<usize> = (0..course.len()).collect();
-    let parameter = |value: f64| Cell::Number(value, 4);
+    let number = |value: f64| Cell::Number(value, 4);
     Table::of("prediction", caption, &samples)
-        .column("Time", "time_s", "s", |i| parameter(course.time[*i]))
-        .column("Displacement", "displacement_mm", "mm", |i| parameter(1e3 * course.displacement[*i]))
-        .column("Force", "force_n", "N", |i| parameter(course.force[*i]))
-        .column("mean from", "force_low_n", "N", |i| parameter(prediction.force_interval(*i).0))
-        .column("to", "force_high_n", "N", |i| parameter(prediction.force_interval(*i).1))
-        .column("reading from", "reading_low_n", "N", |i| parameter(prediction.reading_interval(*i).0))
-        .column("to", "reading_high_n", "N", |i| parameter(prediction.reading_interval(*i).1))
+        .column("Time", "time_s", "s", |i| number(course.time[*i]))
+        .column("Displacement", "displacement_mm", "mm", |i| number(1e3 * course.displacement[*i]))
+        .column("Force", "force_n", "N", |i| number(course.force[*i]))
+        .column("mean from", "force_low_n", "N", |i| number(prediction.force_interval(*i).0))
+        .column("to", "force_high_n", "N", |i| number(prediction.force_interval(*i).1))
+        .column("reading from", "reading_low_n", "N", |i| number(prediction.reading_interval(*i).0))
+        .column("to", "reading_high_n", "N", |i| number(prediction.reading_interval(*i).1))
         .table()
 }
 

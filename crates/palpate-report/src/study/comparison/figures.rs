@@ -6,7 +6,7 @@ use palpate::laws::Law;
 
 use crate::figure::{Axis, Figure, Layer, Panel, Role};
 use crate::number::significant;
-use crate::result::{Answer, ComparedHold, ComparedRecord};
+use crate::result::{ComparedHold, ComparedRecord, law_of_record};
 use crate::study::findings::entry;
 use crate::study::grid::by_hold;
 
@@ -53,14 +53,9 @@ fn forward_errors(record: &ComparedRecord, suffix: &str) -> Option<Figure> {
     )
 }
 
-/// The law for the record, where there is one.
-fn law_for_record(record: &ComparedRecord) -> Option<Law> {
-    Answer::new(record).law?.parse().ok()
-}
-
 /// Which law a figure shows first, and why.
 fn for_record(record: &ComparedRecord) -> String {
-    law_for_record(record)
+    law_of_record(record)
         .map_or_else(String::new, |law| format!(" First in the legend: {law}, the law for this record."))
 }
 
@@ -74,7 +69,7 @@ fn best_laws(record: &ComparedRecord, holds: &[(&ComparedHold, &Comparison)]) ->
         }
     }
     let all = ranks.len();
-    let first = law_for_record(record);
+    let first = law_of_record(record);
     ranks.sort_by_key(|(law, sum)| (Some(*law) != first, *sum));
     ranks.truncate(if holds.len() == 1 { MOST_LAWS } else { FEWER_LAWS });
     (ranks.into_iter().map(|(law, _)| law).collect(), all)

@@ -6,7 +6,7 @@ use super::{figures, tables};
 use crate::document::{ComparisonDocument, ComparisonSettingsDocument};
 use crate::figure::{Figure, MOST_PANELS};
 use crate::page::{Block, Page, Section};
-use crate::result::{ComparedRecord, LeftOut, parameters_table};
+use crate::result::{Answer, ComparedRecord, LeftOut, parameters_table};
 use crate::study::bundle::{Bundle, Pictures, StudyError};
 use crate::study::{answer, findings};
 
@@ -28,7 +28,7 @@ pub fn comparison_bundle(
         bundle.figures(&figures, pictures)?;
         let found = findings::gathered_of(record, findings::MOST_LINES);
         let mut section = Section::new(&record.input.title)
-            .blocks(answer::answer_blocks(record, &found))
+            .blocks(answer::answer_blocks(record, &Answer::new(record), &found))
             .blocks(blocks(record, &figures)?);
         if !found.is_empty() {
             section = section

@@ -33,14 +33,14 @@ pub fn analysis_bundle(analysis: &Analysis, input: Input, pictures: Pictures) ->
     bundle.figures(figures.iter().chain(&of_laws), pictures)?;
     let mut which_law = None;
     if let Some(compare) = &analysis.options.compare {
+        let answer = Answer::new(&compared);
         which_law = Some(WhichLaw {
-            answer: answer::answer_blocks(&compared, &findings::gathered(analysis, findings::MOST_LINES)),
+            answer: answer::answer_blocks(&compared, &answer, &findings::gathered(analysis, findings::MOST_LINES)),
             comparison: comparison::page::blocks(&compared, &of_laws)?,
         });
         bundle.table(&comparison::tables::laws(slice::from_ref(&compared), &compare.cuts));
-        let answer = Answer::new(&compared);
         answer::verdicts(&answer).iter().for_each(|table| bundle.table(table));
-        answer::law_of_record(&compared, &answer).iter().for_each(|table| bundle.table(table));
+        answer::parameters_of_holds(&compared, &answer).iter().for_each(|table| bundle.table(table));
     }
     tables::all(analysis).iter().for_each(|table| bundle.table(table));
     let page = page(analysis, &input, &figures, which_law)?;

@@ -6,7 +6,7 @@ use palpate::record::Correction;
 use palpate::segment::{After, RelaxationType};
 
 use crate::number::significant;
-use crate::result::{ComparedRecord, Input, mode_word, word};
+use crate::result::{ComparedRecord, Input, mode_word, percent, word};
 use crate::study::comparison::tables as comparison_tables;
 use crate::study::{answer, findings};
 use crate::table::{Cell, Table};
@@ -113,7 +113,7 @@ pub(super) fn fits(analysis: &Analysis) -> Table {
         .column("Ended", "termination", "", |(.., fit)| Cell::text(word(fit.termination)))
         .table();
     analysis.holds.iter().filter_map(rate_bias_note).fold(table, Table::note)
-        .note("Value [low, high]: 95 % confidence interval, including the correlation of the residuals. The CSV file also has the standard errors.")
+        .note(format!("Value [low, high]: {} confidence interval, including the correlation of the residuals. The CSV file also has the standard errors.", percent(analysis.options.fit.confidence)))
         .note("v is in 1/s where the signal is strain. ΔBIC: information criterion less the lowest of the hold. Held-out error: error of the prediction beyond the fitted part, as a share of the change over the hold.")
 }
 

@@ -116,7 +116,7 @@ fn signals_without_a_law_end_with_a_reason() {
 }
 
 /// Parameters of all sizes, and those that are none.
-fn parameter() -> impl Strategy<Value = f64> {
+fn number() -> impl Strategy<Value = f64> {
     prop_oneof![
         6 => -10.0..10.0f64,
         1 => any::<f64>(),
@@ -136,11 +136,11 @@ fn columns() -> impl Strategy<Value = [Vec<f64>; 3]> {
             })
             .collect::<Vec<f64>>()
     });
-    let times = prop_oneof![5 => rising, 1 => prop::collection::vec(parameter(), 0..40)];
+    let times = prop_oneof![5 => rising, 1 => prop::collection::vec(number(), 0..40)];
     (
         times,
-        prop::collection::vec(parameter(), 40),
-        prop::collection::vec(prop_oneof![6 => 0.1..10.0f64, 1 => parameter()], 40),
+        prop::collection::vec(number(), 40),
+        prop::collection::vec(prop_oneof![6 => 0.1..10.0f64, 1 => number()], 40),
         any::<bool>(),
         1e-12..1e12f64,
     )
