@@ -92,8 +92,8 @@ def sources(rev: str | None) -> dict[str, str]:
     names = sorted({name for name in names if wanted.fullmatch(name) and not name.endswith("/tests.rs")})
     if rev is None:
         return {name: (ROOT / name).read_text("utf-8") for name in names if (ROOT / name).exists()}
-    asked = "".join(f"{rev}:{name}\n" for name in names).encode()
-    stream = subprocess.run(["git", "cat-file", "--batch"], cwd=ROOT, check=True, capture_output=True, input=asked).stdout
+    requested = "".join(f"{rev}:{name}\n" for name in names).encode()
+    stream = subprocess.run(["git", "cat-file", "--batch"], cwd=ROOT, check=True, capture_output=True, input=requested).stdout
     texts, at = {}, 0
     for name in names:
         head, at = stream[at : (end := stream.index(b"\n", at))], end + 1

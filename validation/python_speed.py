@@ -144,7 +144,7 @@ def main():
 Written by `validation/python_speed.py`: palpate {subprocess.run(["palpate", "--version"], capture_output=True, text=True, check=True).stdout.split()[1]}, CPython {platform.python_version()}, NumPy {np.__version__}, SciPy {scipy.__version__}, lmfit {lmfit.__version__}, {cores} cores.
 The fastest of {RUNS} runs in turn. SciPy and lmfit start near the truth; palpate has no starting values. Ratios are to palpate's row for the same n.
 
-| what | time or rate | ratio | asked for |
+| what | time or rate | ratio | requested |
 |---|---:|---:|---:|
 {chr(10).join(lines)}
 """

@@ -21,7 +21,7 @@ page="$(mktemp)"
 trap 'rm -f "$page"' EXIT
 cd "$data"
 
-# part TITLE TEXT ARGUMENTS...: a heading, a sentence, and the table of one call; what is missing is said.
+# part TITLE TEXT ARGUMENTS...: a heading, a sentence, and the table of one call; what is missing is stated.
 part() {
     local title="$1" text="$2"
     shift 2

@@ -11,7 +11,7 @@ cat >"$page" <<'TEXT'
 # Holds found in records whose truth is known
 
 Written by `validation/segmentation.sh`. The records are those of `crates/palpate/tests/records/segmentation_suite/`, which says what
-can be told and is therefore asked for: forces by the law, noise up to 1 % of the range of each column, encoders and load cells
+can be determined and is therefore requested: forces by the law, noise up to 1 % of the range of each column, encoders and load cells
 with steps, drift, dropouts, clocks that differ, uneven sampling, servos that overshoot, 2 to 60 holds in 200 to 50 000 samples.
 
 A hold is found if it shares more than half of itself with a true one, else it is extra. Errors of first and last sample are in

@@ -83,7 +83,7 @@ What to take from it:
   series of three terms. From less than a minute no law predicts well but the one with v by strain, which fits the ramp.
 - The law that fits best need not predict best. On records of one stretch v by strain has the lowest ΔBIC everywhere: one level shows no trend, and
   its factor bends to the ramp instead. From ten minutes of VHB, and on foam, it predicts worse than constant v.
-- On silicone in steps up and down v by direction is the best fit of all but one part, and predicts as well as constant v or better once it has seen
+- On silicone in steps up and down v by direction is the best fit of all but one part, and predicts as well as constant v or better once it has observed
   more than one cycle; all laws lie within a factor of 1.5 of each other there.
 - One ramp and half a hold of foam tell the equilibrium force nowhere else: no law predicts the way back.
 
@@ -126,12 +126,12 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("data", type=pathlib.Path)
     parser.add_argument("--palpate", default="palpate")
-    asked = parser.parse_args()
+    requested = parser.parse_args()
     page = [HEAD]
     for title, record, test, parts in RECORDS:
         page.append(f"\n## {title}\n")
         for until, what in parts.items():
-            document = calibrated(asked.palpate, asked.data.resolve(), record, test, until)
+            document = calibrated(requested.palpate, requested.data.resolve(), record, test, until)
             samples = next(law["holdout"]["samples"] for law in document["laws"] if law["holdout"])
             page.append(f"\nFitted up to {until}: {what}. {document['fitted']} samples fitted, {samples} predicted.\n\n")
             page.append(f"<!-- palpate calibrate {record} --test {test} --fit-until \"{until}\" --rate by-strain --alternatives {LAWS} -->\n\n")

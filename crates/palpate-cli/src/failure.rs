@@ -6,7 +6,7 @@ use palpate_report::spelling::with_flags;
 
 /// Writes `error:` and `hint:` lines to standard error, in colour where it is a terminal.
 pub(crate) fn tell(error: &JobError) {
-    line("error", AnsiColor::Red, &error.told(with_flags));
+    line("error", AnsiColor::Red, &error.reported(with_flags));
     if let Some(hint) = &error.hint {
         line("hint", AnsiColor::Cyan, &with_flags(hint));
     }

@@ -33,7 +33,7 @@ where
     let arguments = match Arguments::try_parse_from(arguments) {
         Ok(arguments) => arguments,
         Err(error) => {
-            // Help is asked for and goes to standard output; nothing can be done about a closed one.
+            // Help is requested and goes to standard output; nothing can be done about a closed one.
             let _ = error.print();
             return u8::try_from(error.exit_code()).unwrap_or(2);
         }

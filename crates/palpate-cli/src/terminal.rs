@@ -13,7 +13,7 @@ pub(crate) fn measure() {
     }
 }
 
-/// Writes `text` to standard output; a reader that has seen enough (`| head`) is no error.
+/// Writes `text` to standard output; a reader that has observed enough (`| head`) is no error.
 pub(crate) fn print(text: &str) -> Result<(), JobError> {
     print_with(|out| out.write_all(text.as_bytes()))
 }

@@ -3,7 +3,7 @@
 //! Every format answers in the same terms. [`Contents::open`] looks into a file and says what it found: its
 //! [`Format`], its tests ([`Part`]s) with their columns, and what was passed over and why. [`Contents::read`] then
 //! reads chosen columns of one test as `f64`, as they are written; units and signs are matters of
-//! [`record`](super::record). A format is told by content and never by the name of the file.
+//! [`record`](super::record). A format is recognised by content and never by the name of the file.
 
 use std::{fmt, path::Path};
 
@@ -47,7 +47,7 @@ pub enum Format {
     RobotLog,
 }
 
-/// A format, how a file of it is told, and what looks into one.
+/// A format, how a file of it is given, and what looks into one.
 type Known = (Format, fn(&Input) -> bool, LookInto);
 type LookInto = fn(&Input, &ReadOptions) -> Result<Found, FileError>;
 
@@ -153,7 +153,7 @@ impl Contents {
     /// Reads columns (numbers from 1, in any order) of the part with index `part`, as they are written.
     ///
     /// Where the part has several [clocks](Part::clocks), only columns of the same clock have the same length.
-    /// `progress` is told the bytes done and the bytes there are.
+    /// `progress` is given the bytes done and the bytes there are.
     ///
     /// # Errors
     /// [`FileError`] where the part or a column does not exist, or a cell holds no finite number.

@@ -93,7 +93,7 @@ impl Calibrate {
                 poisson_ratio: ratio.unwrap_or(0.5),
             }),
             (_, Some(_)) => Err(JobError::option(
-                "⟨poisson_ratio⟩ is for Hertz's law, which is not asked for",
+                "⟨poisson_ratio⟩ is for Hertz's law, which is not requested",
                 "add ⟨equilibrium=hertz⟩, or leave ⟨poisson_ratio⟩ out",
             )),
             (Equilibrium::UniformStrain, None) => Ok(EquilibriumLaw::UniformStrain),
@@ -101,7 +101,7 @@ impl Calibrate {
         }
     }
 
-    /// What is fitted: first what is asked for, then its alternatives.
+    /// What is fitted: first what is requested, then its alternatives.
     fn candidates(&self) -> Result<Vec<Candidate>, JobError> {
         let chosen = Candidate {
             law: self.law,
@@ -134,7 +134,7 @@ impl Calibrate {
         for candidate in candidates {
             match calibrate(&data, candidate, confidence, watch) {
                 Err(CalibrateError::Cancelled(cancelled)) => return Err(cancelled.into()),
-                // Without the law that was asked for its alternatives are of no use.
+                // Without the law that was requested its alternatives are of no use.
                 Err(error) if rows.is_empty() => return Err(refused(error)),
                 made => rows.push((candidate, made)),
             }
@@ -192,7 +192,7 @@ impl Results for Calibrated {
     }
 }
 
-/// Why there is no calibration: because of what was asked, of the record, of the body or of the samples.
+/// Why there is no calibration: because of what was requested, of the record, of the body or of the samples.
 fn uncalibrated(error: &CalibrateError, place: &str) -> JobError {
     let kind = match error {
         CalibrateError::Cancelled(_) => ErrorKind::Cancelled,

@@ -81,7 +81,7 @@ pub struct Compared {
     options: Options,
 }
 
-/// What is asked of every record.
+/// What is required of every record.
 #[derive(Debug, Clone, PartialEq)]
 struct Options {
     analysis: AnalysisOptions,
@@ -129,7 +129,7 @@ impl Compare {
         records: &NamedRecords,
         alone: bool,
         watch: &mut dyn Watch,
-        mut told: impl FnMut(&[String]),
+        mut reported: impl FnMut(&[String]),
     ) -> Result<Outcome<Compared>, JobError> {
         let mut found = Compared::none(self.over(records.described.options())?);
         records.each(
@@ -137,7 +137,7 @@ impl Compare {
             watch,
             |_| (),
             |part, watch| {
-                let measured = part.measurement.inspect(|measured| told(&measured.notes));
+                let measured = part.measurement.inspect(|measured| reported(&measured.notes));
                 match measured.and_then(|measured| self.one(measured, &found.options, watch)) {
                     Err(error) if error.kind == ErrorKind::Cancelled || (alone && part.only) => return Err(error),
                     made => found.take(
@@ -167,18 +167,23 @@ impl Compare {
     fn one(&self, measured: Measurement, options: &Options, watch: &mut dyn Watch) -> Result<ComparedRecord, JobError> {
         let Measurement { record, input, .. } = measured;
         watch.report(Progress::open(&format!("comparing laws on {}", input.path), 0))?;
-        let (asked, path) = (&options.analysis, &input.path);
+        let (requested, path) = (&options.analysis, &input.path);
         if self.creep {
-            let record = corrected(&record, asked).map_err(|error| JobError::analysis(&error, path))?.record;
-            let holds =
-                creep_holds(&record, (&asked.segment, &asked.given_holds), &options.compared, asked.fit_until, watch);
+            let record = corrected(&record, requested).map_err(|error| JobError::analysis(&error, path))?.record;
+            let holds = creep_holds(
+                &record,
+                (&requested.segment, &requested.given_holds),
+                &options.compared,
+                requested.fit_until,
+                watch,
+            );
             let refused = |error: CreepError| match error {
                 CreepError::Cancelled(cancelled) => cancelled.into(),
                 error => JobError::new(ErrorKind::Record, &error, error.hint().to_owned()).of(path),
             };
             return Ok(ComparedRecord::of_creep(holds.map_err(refused)?, input));
         }
-        let analysis = analyze_watched(&record, asked, watch).map_err(|error| JobError::analysis(&error, path))?;
+        let analysis = analyze_watched(&record, requested, watch).map_err(|error| JobError::analysis(&error, path))?;
         Ok(ComparedRecord::of_analysis(&analysis, input))
     }
 }

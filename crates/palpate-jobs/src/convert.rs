@@ -33,7 +33,7 @@ pub struct Converted {
 }
 
 impl Convert {
-    /// Reads the one record of a file, and corrects it as its description asks; without any corrections asked for, not even dropouts are
+    /// Reads the one record of a file, and corrects it as its description asks; without any corrections requested, not even dropouts are
     /// mended.
     ///
     /// # Errors
@@ -45,7 +45,11 @@ impl Convert {
             done.collect::<Vec<_>>()
         };
         let mut notes: Vec<String> = averaged(&file).into_iter().chain(done(&file, 0)).collect();
-        notes.extend(suspicious_signs(&file.record).iter().map(|sign| format!("{}; {}", sign.seen(), sign.remedy())));
+        notes.extend(
+            suspicious_signs(&file.record)
+                .iter()
+                .map(|sign| format!("{}; {}", sign.observation(), sign.remedy())),
+        );
         if file.record.displacement().is_none() {
             notes.push("the record has no displacement column: the table has time and force only".to_owned());
         }

@@ -92,7 +92,7 @@ impl JobError {
     }
 
     /// The message with the file in front, options spelled as a front end writes them.
-    pub fn told(&self, spell: impl Fn(&str) -> String) -> String {
+    pub fn reported(&self, spell: impl Fn(&str) -> String) -> String {
         let place = self.place.as_ref().map_or(String::new(), |place| format!("{place}: "));
         format!("{place}{}", spell(&self.message))
     }
@@ -100,7 +100,7 @@ impl JobError {
 
 impl fmt::Display for JobError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(&self.told(|message| spelled(message, &|name, _| name.to_owned())))
+        f.write_str(&self.reported(|message| spelled(message, &|name, _| name.to_owned())))
     }
 }
 

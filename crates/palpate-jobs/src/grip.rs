@@ -102,16 +102,16 @@ pub struct PlanGrip {
         help_heading = "Question",
     ))]
     pub control: Control,
-    /// Squeeze that is asked about.
+    /// Squeeze that is in question.
     #[cfg_attr(feature = "clap", arg(
         long = "squeeze", value_name = "LENGTH", value_parser = crate::typed::length, allow_hyphen_values = true,
         help_heading = "Question",
     ))]
     pub squeeze_m: Option<f64>,
-    /// Force that is asked about, where the force is held.
+    /// Force that is in question, where the force is held.
     #[cfg_attr(feature = "clap", arg(
         long = "force", value_name = "FORCE", value_parser = crate::typed::force, allow_hyphen_values = true,
-        help_heading = "Question", help = "Force that is asked about, with --control force",
+        help_heading = "Question", help = "Force that is in question, with --control force",
     ))]
     pub force_n: Option<f64>,
     /// How long it is to hold; 60 s if neither this nor a squeeze is given.
@@ -277,7 +277,7 @@ impl PlanGrip {
         grasp.acceleration_closing = self.acceleration_closing_m_per_s2;
         grasp.torque = self.torque_n_m;
         grasp.off_centre = self.off_centre_m;
-        let mut limits = Limits::new(self.speed_m_per_s.unwrap_or(material.range.fastest))?;
+        let mut limits = Limits::new(self.speed_m_per_s.unwrap_or(material.range().fastest))?;
         limits.stroke = self.stroke_m;
         limits.force = self.most_force_n;
         limits.closing = self.close_within_s;

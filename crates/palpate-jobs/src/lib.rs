@@ -1,4 +1,4 @@
-//! What palpate can be asked to do: one file or room a job, between the front ends and the library with its files and reports.
+//! What palpate can do: one file or room a job, between the front ends and the library with its files and reports.
 //!
 //! A job is a struct of options that has units in its names and a JSON form; its defaults stand here and nowhere else. `run` takes what
 //! the job works on and a [`Watch`](palpate::watch::Watch), which hears of its progress and may cancel it, and gives an [`Outcome`] or a
@@ -52,4 +52,4 @@ pub use predict::{Predict, Predicted};
 pub use reproduce::Reproduce;
 pub use simulate::{DriveBy, Simulate, Simulated};
 pub use sweep::{Sweep, Swept, sweep_fields, sweep_rows};
-pub use watch_log::{Event, HoldSeen, Seen, WatchLog};
+pub use watch_log::{Event, HoldObserved, Observed, WatchLog};

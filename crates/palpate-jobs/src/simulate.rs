@@ -111,7 +111,7 @@ impl Simulate {
                 Motion::new(times, displacement.to_vec()).map(Driver::Motion)
             }
             DriveBy::Force => {
-                // Noise about zero pulls at nothing; a jaw that really pulls is told by its size.
+                // Noise about zero pulls at nothing; a jaw that really pulls is recognised by its size.
                 let most = record.force().iter().fold(0.0, |most: f64, force| most.max(force.abs()));
                 let quiet = |force: &f64| if *force < 0.0 && *force > -PULL * most { 0.0 } else { *force };
                 ForceHistory::new(times, record.force().iter().map(quiet).collect()).map(Driver::Force)
@@ -128,7 +128,7 @@ impl Simulate {
 }
 
 impl Simulated {
-    /// Writes the series as CSV, as a record of a machine where noise was asked for.
+    /// Writes the series as CSV, as a record of a machine where noise was requested.
     ///
     /// # Errors
     /// An error of the writer.

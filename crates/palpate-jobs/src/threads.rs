@@ -34,7 +34,7 @@ impl Watch for Share<'_> {
     }
 }
 
-/// Does the pieces with indices below `count` over threads, all processors if it is not said how many, and returns what came of them in
+/// Does the pieces with indices below `count` over threads, all processors if it is not stated how many, and returns what came of them in
 /// their order. `progress` is where the whole stands at the beginning. The first error ends all.
 pub(crate) fn over_threads<T: Send>(
     count: usize,

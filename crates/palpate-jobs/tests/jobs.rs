@@ -65,7 +65,7 @@ fn options_that_exclude_each_other_name_themselves() {
     };
     let error = job.run(ball(), &mut Unwatched).unwrap_err();
     assert_eq!(error.kind, ErrorKind::Option);
-    assert_eq!(error.to_string(), "poisson_ratio is for Hertz's law, which is not asked for");
+    assert_eq!(error.to_string(), "poisson_ratio is for Hertz's law, which is not requested");
 }
 
 #[test]
@@ -82,7 +82,7 @@ fn text_and_document_are_made_of_one_result() {
     assert_eq!(outcome.result.document().input.sha256, outcome.result.input.sha256);
 }
 
-/// A watch that cancels once it is told to.
+/// A watch that cancels on request.
 struct Impatient {
     cancelled: Arc<AtomicBool>,
 }
@@ -106,12 +106,12 @@ fn heard_after(mut job: impl FnMut(&mut Impatient) -> Result<(), JobError>) -> D
         });
         let result = job(&mut Impatient { cancelled });
         let ended = Instant::now();
-        let asked = clock.join().unwrap();
+        let requested = clock.join().unwrap();
         match result {
             Err(error) => assert_eq!(error.kind, ErrorKind::Cancelled, "{error}"),
             Ok(()) => break,
         }
-        shortest = shortest.min(ended.saturating_duration_since(asked));
+        shortest = shortest.min(ended.saturating_duration_since(requested));
     }
     shortest
 }

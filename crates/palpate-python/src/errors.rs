@@ -32,10 +32,10 @@ create_exception!(
 
 /// An exception with a message and, on a line of its own, what would help.
 pub(crate) fn refused<E: PyTypeInfo>(message: impl Display, hint: Option<impl Display>) -> PyErr {
-    PyErr::new::<E, _>(told(message, hint))
+    PyErr::new::<E, _>(reported(message, hint))
 }
 
-fn told(message: impl Display, hint: Option<impl Display>) -> String {
+fn reported(message: impl Display, hint: Option<impl Display>) -> String {
     let text = hint.map_or(message.to_string(), |hint| format!("{message}\nhint: {hint}"));
     spelled(&text, &keyword)
 }
@@ -45,7 +45,7 @@ pub(crate) fn refused_plainly<E: PyTypeInfo>(message: impl Display) -> PyErr {
     refused::<E>(message, None::<&str>)
 }
 
-/// Why there is no fit: because of what was asked, or of the samples.
+/// Why there is no fit: because of what was requested, or of the samples.
 pub(crate) fn unfitted(error: palpate::fit::FitError) -> PyErr {
     use palpate::fit::FitError as Refused;
     match error {
@@ -70,7 +70,7 @@ pub(crate) fn failed(error: JobError) -> PyErr {
     } = error;
     let place = place.filter(|_| matches!(kind, ErrorKind::File(_)));
     let message = place.map_or(message.clone(), |place| format!("{place}: {message}"));
-    let text = told(message, hint);
+    let text = reported(message, hint);
     match kind {
         ErrorKind::Option => PyErr::new::<OptionError, _>(text),
         ErrorKind::File(kind) => io::Error::new(kind, text).into(),
@@ -84,7 +84,7 @@ pub(crate) fn failed(error: JobError) -> PyErr {
 /// What a file cannot be written for.
 pub(crate) fn unwritten(error: JobError) -> PyErr {
     let message = error.to_string();
-    PyErr::new::<PalpateError, _>(told(message, error.hint))
+    PyErr::new::<PalpateError, _>(reported(message, error.hint))
 }
 
 /// An option of a job as a keyword, with its unit; thresholds of phases stand in the description of a test, and only a hold that is fitted by
@@ -176,7 +176,7 @@ pub(crate) fn one_of<T: Clone>(option: &str, choices: &[(&str, T)], found: &str)
 /// Warns of findings, each with what it means.
 pub(crate) fn warn_of<'a>(py: Python<'_>, findings: impl IntoIterator<Item = &'a Finding>) -> PyResult<()> {
     for finding in findings {
-        warn(py, &format!("{}: {}; {}", finding.code(), finding.seen(), finding.meaning()))?;
+        warn(py, &format!("{}: {}; {}", finding.code(), finding.observation(), finding.meaning()))?;
     }
     Ok(())
 }

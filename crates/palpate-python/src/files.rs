@@ -6,7 +6,7 @@ use palpate::laws::Law;
 use palpate_files::description::{parse_test, read_material};
 use palpate_jobs::input::{Described, NamedRecords, OpenedFile};
 use palpate_jobs::output::write_bundle;
-use palpate_jobs::{Batch, Convert, HoldSeen, Inspect, Reproduce, Seen, Sweep, WatchLog};
+use palpate_jobs::{Batch, Convert, HoldObserved, Inspect, Observed, Reproduce, Sweep, WatchLog};
 use palpate_report::document::{WatchDocument, WatchSummaryDocument};
 use palpate_report::study::{Pictures, reproduction_bundle};
 use pyo3::prelude::*;
@@ -19,14 +19,14 @@ use crate::work::{job, plain};
 pub(crate) type Given<'py, 'a> = Option<&'a Bound<'py, PyAny>>;
 
 /// A path, or a text, as a function of the package tells of what was given.
-pub(crate) fn said(tell: &str, given: &Bound<'_, PyAny>) -> PyResult<(Option<PathBuf>, Option<String>)> {
+pub(crate) fn stated(tell: &str, given: &Bound<'_, PyAny>) -> PyResult<(Option<PathBuf>, Option<String>)> {
     given.py().import("palpate")?.call_method1(tell, (given,))?.extract()
 }
 
 /// The description of records in a file, with the part that is meant, and the path that it has.
 pub(crate) fn described(test: Given<'_, '_>, part: Given<'_, '_>) -> PyResult<(Described, Option<PathBuf>)> {
     let part = part.map(|part| part.str()?.extract::<String>()).transpose()?;
-    let (path, text) = test.map(|test| said("_described", test)).transpose()?.unwrap_or_default();
+    let (path, text) = test.map(|test| stated("_described", test)).transpose()?.unwrap_or_default();
     Ok((read_or_parsed(path.as_deref(), text, part.as_deref())?, path))
 }
 
@@ -298,11 +298,11 @@ pub(crate) fn watch<'py>(
         let opened = OpenedFile::open(&path, &described)?;
         let measured = opened.measurement(opened.only()?, watch)?;
         let (place, mut lines) = (path.display().to_string(), Vec::new());
-        let holds = log.run((&measured.record, &place), material, watch, |seen: Seen| {
-            lines.extend(seen.document());
+        let holds = log.run((&measured.record, &place), material, watch, |observed: Observed| {
+            lines.extend(observed.document());
             true
         })?;
-        let holds = holds.result.iter().map(HoldSeen::document).collect();
+        let holds = holds.result.iter().map(HoldObserved::document).collect();
         lines.push(WatchDocument::Summary(WatchSummaryDocument::new(holds)));
         Ok(lines)
     })?;

@@ -89,11 +89,11 @@ pub(crate) fn at_length<T: Send + 'static>(
     py: Python<'_>,
     work: impl FnOnce(Heard) -> T + Send + 'static,
 ) -> PyResult<T> {
-    at_length_told(py, None, work)
+    at_length_reported(py, None, work)
 }
 
 /// Likewise, and calls `tell` with how much is done; an exception of it ends the work too.
-pub(crate) fn at_length_told<T: Send + 'static>(
+pub(crate) fn at_length_reported<T: Send + 'static>(
     py: Python<'_>,
     tell: Option<&Py<PyAny>>,
     work: impl FnOnce(Heard) -> T + Send + 'static,

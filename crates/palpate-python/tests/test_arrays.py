@@ -70,7 +70,7 @@ def test_an_array_is_not_changed() -> None:
         (None, "signal: expected a column of numbers, found NoneType None"),
     ],
 )
-def test_what_is_no_column_of_numbers_is_said(values: Any, found: str) -> None:
+def test_what_is_no_column_of_numbers_is_stated(values: Any, found: str) -> None:
     with pytest.raises(palpate.OptionError) as caught:
         palpate.fit_hold([0.0, 1.0], values)
     assert found in str(caught.value)

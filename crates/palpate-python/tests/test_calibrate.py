@@ -84,8 +84,8 @@ def test_a_calibration_is_that_of_the_command_line_to_the_last_bit(
 
 
 def test_its_text_is_that_of_the_command_line(calibration: palpate.Calibration) -> None:
-    told = done("calibrate", RECORD, "--test", TEST, "--alternatives", "standard-linear-solid")
-    assert str(calibration) == calibration.report() == told
+    reported = done("calibrate", RECORD, "--test", TEST, "--alternatives", "standard-linear-solid")
+    assert str(calibration) == calibration.report() == reported
 
 
 def test_numbers_have_intervals_and_units(material: palpate.Material) -> None:
@@ -130,11 +130,11 @@ def test_what_is_left_over_is_the_record_less_the_law(record: palpate.Record, ca
 def test_a_prediction_is_that_of_the_command_line_to_the_last_bit(material: palpate.Material, tmp_path: Path) -> None:
     path, out = tmp_path / "ball.toml", tmp_path / "force.csv"
     material.write(path)
-    asked: list[tuple[list[str], dict[str, Any]]] = [
+    requested: list[tuple[list[str], dict[str, Any]]] = [
         (["--at", "60 s", "--at", "10 s"], {"at_s": [10.0, 60.0]}),
         (["--confidence", "0.8"], {"confidence": 0.8}),
     ]
-    for flags, keywords in asked:
+    for flags, keywords in requested:
         done("predict", path, "--protocol", HOLD, "--out", out, *flags)
         with out.open() as file:
             rows = list(csv.DictReader(file))
@@ -181,7 +181,7 @@ def test_intervals_lie_in_each_other(material: palpate.Material) -> None:
     narrow = material.predict(SQUEEZE, at_s=[0.6, 5.0], confidence=0.5)
     assert np.all(narrow.force_high_n < prediction.force_high_n)
     np.testing.assert_allclose(prediction.force_standard_error_n, (narrow.force_high_n - narrow.force_n) / 0.6745, rtol=1e-3)
-    # Under a force it is the place that is open.
+    # Under a force it is the displacement that is open.
     with pytest.warns(palpate.PalpateWarning, match="the force is held, while the test held the displacement"):
         pressed = material.predict([{"to_force": "2 N", "force_rate": "1 N/s", "hold_force": "5 s"}], at_s=[7.0])
     assert pressed.displacement_low_m < pressed.displacement_m < pressed.displacement_high_m
@@ -252,15 +252,15 @@ def test_a_rate_coefficient_that_varies_is_one_more_number(record: palpate.Recor
 
 
 def test_profile_intervals_stand_beside_the_others(record: palpate.Record) -> None:
-    asked = record.calibrate(alternatives=[], profile=True)
-    numbers = polars.DataFrame(asked.parameter_table)
+    requested = record.calibrate(alternatives=[], profile=True)
+    numbers = polars.DataFrame(requested.parameter_table)
     assert numbers["name"].to_list() == ["modulus_pa", "exponent", "rate_coefficient_per_s", "layer_thickness_m"]
     value, low, high = (numbers[name].to_numpy() for name in ("value", "profile_low", "profile_high"))
     assert (low < value).all() and (value < high).all()
     # The record tells all four: χ² is nearly a parabola of the logarithms, and both intervals nearly agree.
     for end in ("low", "high"):
         np.testing.assert_allclose(np.log(numbers[f"profile_{end}"] / value), np.log(numbers[end] / value), rtol=0.1)
-    assert "Profile interval" in asked.report() and pickle.loads(pickle.dumps(asked)) == asked
+    assert "Profile interval" in requested.report() and pickle.loads(pickle.dumps(requested)) == requested
     assert "profile_low" not in polars.DataFrame(record.calibrate(alternatives=[]).parameter_table).columns
 
 
@@ -278,8 +278,8 @@ def test_all_of_it_comes_back(calibration: palpate.Calibration, material: palpat
 
 def test_a_number_that_is_left_open_is_a_warning(material: palpate.Material, tmp_path: Path) -> None:
     t = np.linspace(0, 20, 1000)
-    force, place = 2 * np.minimum(t, 1) + 0.01 * np.sin(50 * t), 5e-3 * np.minimum(t, 1)
-    elastic = palpate.Record.from_arrays(time_s=t, displacement_m=place, force_n=force)
+    force, displacement = 2 * np.minimum(t, 1) + 0.01 * np.sin(50 * t), 5e-3 * np.minimum(t, 1)
+    elastic = palpate.Record.from_arrays(time_s=t, displacement_m=displacement, force_n=force)
     with pytest.warns(palpate.PalpateWarning, match="left a parameter open"):
         calibration = elastic.calibrate(law="prony:4", test={"specimen": {"shape": "ball", "radius": "35 mm"}}, alternatives=[])
     assert not calibration.is_good and calibration.material.log_covariance is None
@@ -311,8 +311,8 @@ def test_what_cannot_be_calibrated_has_the_words_of_the_command_line(
 ) -> None:
     with pytest.raises(kind) as caught:
         record.calibrate(alternatives=[], **keywords)
-    told = command("calibrate", RECORD, "--test", TEST, "--no-alternatives", *flags).stderr
-    assert told.strip() == f"error: {RECORD}: {caught.value}"
+    reported = command("calibrate", RECORD, "--test", TEST, "--no-alternatives", *flags).stderr
+    assert reported.strip() == f"error: {RECORD}: {caught.value}"
 
 
 def test_a_record_without_a_body_or_without_a_motion_is_refused(record: palpate.Record) -> None:
@@ -326,20 +326,20 @@ def test_a_record_without_a_body_or_without_a_motion_is_refused(record: palpate.
 
 
 @pytest.mark.parametrize(
-    ("keywords", "told"),
+    ("keywords", "reported"),
     [
         ({"law": "foo"}, 'no law is called "foo"'),
         ({"alternatives": ["foo"]}, 'no law is called "foo"'),
         ({"alternatives": "prony:2"}, "alternatives: expected a list of laws, found 'prony:2'"),
         ({"equilibrium": "flat"}, 'equilibrium is one of "uniform-strain", "hertz", "table", found "flat"'),
-        ({"poisson_ratio": 0.3}, "poisson_ratio is for Hertz's law, which is not asked for\nhint: add equilibrium=\"hertz\""),
+        ({"poisson_ratio": 0.3}, "poisson_ratio is for Hertz's law, which is not requested\nhint: add equilibrium=\"hertz\""),
         ({"confidence": 95}, "confidence is a share between 0 and 1, found 95"),
     ],
 )
-def test_a_wrong_option_is_named(record: palpate.Record, keywords: dict[str, Any], told: str) -> None:
+def test_a_wrong_option_is_named(record: palpate.Record, keywords: dict[str, Any], reported: str) -> None:
     with pytest.raises(palpate.OptionError) as caught:
         record.calibrate(**keywords)
-    assert told in str(caught.value)
+    assert reported in str(caught.value)
 
 
 def test_a_material_file_that_is_none_has_the_words_of_the_command_line(material: palpate.Material, tmp_path: Path) -> None:
@@ -356,8 +356,8 @@ def test_a_material_file_that_is_none_has_the_words_of_the_command_line(material
         kind: type[Exception] = palpate.OptionError if name in edited else FileNotFoundError
         with pytest.raises(kind) as caught:
             palpate.Material.read(tmp_path / name)
-        told = command("predict", tmp_path / name, "--protocol", HOLD).stderr
-        assert told.strip() == f"error: {caught.value}"
+        reported = command("predict", tmp_path / name, "--protocol", HOLD).stderr
+        assert reported.strip() == f"error: {caught.value}"
     with pytest.raises(palpate.PalpateError, match="cannot write"):
         material.write(tmp_path / "edited.toml" / "inside.toml")
     with pytest.raises(IsADirectoryError, match="expected a file, found a directory"):
@@ -365,7 +365,7 @@ def test_a_material_file_that_is_none_has_the_words_of_the_command_line(material
 
 
 @pytest.mark.parametrize(
-    ("protocol", "keywords", "kind", "told"),
+    ("protocol", "keywords", "kind", "reported"),
     [
         ("none.toml", {}, FileNotFoundError, "none.toml: no such file"),
         ([], {}, palpate.OptionError, "step: missing"),
@@ -377,9 +377,9 @@ def test_a_material_file_that_is_none_has_the_words_of_the_command_line(material
         (SQUEEZE, {"confidence": 1}, palpate.OptionError, "confidence is a share between 0 and 1, found 1"),
     ],
 )
-def test_what_cannot_be_predicted_is_said(
-    material: palpate.Material, protocol: Any, keywords: dict[str, Any], kind: type[Exception], told: str
+def test_what_cannot_be_predicted_is_stated(
+    material: palpate.Material, protocol: Any, keywords: dict[str, Any], kind: type[Exception], reported: str
 ) -> None:
     with pytest.raises(kind) as caught:
         material.predict(protocol, **keywords)
-    assert told in str(caught.value)
+    assert reported in str(caught.value)

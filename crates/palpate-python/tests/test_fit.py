@@ -144,7 +144,7 @@ def test_bounds_may_be_lists_and_open() -> None:
         assert palpate.fit_hold(t, y, bounds={"exponent": pair}).parameters["exponent"] == pytest.approx(free, rel=1e-6)
 
 
-def test_intervals_rest_on_what_was_asked_for() -> None:
+def test_intervals_rest_on_what_was_requested_for() -> None:
     # The law is the one that made the data and the noise is white: all three methods must agree.
     t = np.linspace(0.0, 10.0, 400)
     y = 0.2 + 0.1 * np.exp(-t / 2.0) + np.random.default_rng(3).normal(0.0, 1e-3, t.size)
@@ -160,7 +160,7 @@ def test_intervals_rest_on_what_was_asked_for() -> None:
 
 
 @pytest.mark.parametrize(
-    ("keyword", "value", "told"),
+    ("keyword", "value", "reported"),
     [
         ("law", None, "law: expected a word, found None"),
         ("fixed", {"exponent": "4"}, "fixed\\[\"exponent\"\\]: expected a number, found '4'"),
@@ -176,16 +176,16 @@ def test_intervals_rest_on_what_was_asked_for() -> None:
         ("intervals", "guess", "intervals is one of"),
     ],
 )
-def test_a_wrong_option_is_an_option_error_that_names_it(keyword: str, value: object, told: str) -> None:
+def test_a_wrong_option_is_an_option_error_that_names_it(keyword: str, value: object, reported: str) -> None:
     t, y = relaxation(noise=1e-4)
     arguments: dict[str, Any] = {keyword: value}
-    with pytest.raises(palpate.OptionError, match=told):
+    with pytest.raises(palpate.OptionError, match=reported):
         palpate.fit_hold(t, y, **arguments)
-    with pytest.raises(palpate.OptionError, match=told):
+    with pytest.raises(palpate.OptionError, match=reported):
         palpate.fit_many(t, [y], **arguments)
 
 
-def test_a_sample_that_is_no_number_is_told_with_its_column() -> None:
+def test_a_sample_that_is_no_number_is_reported_with_its_column() -> None:
     t, y = relaxation()
     spoiled = np.where(np.arange(t.size) == 5, np.nan, y)
     with pytest.raises(palpate.FitError, match="the value of sample 5 must be a finite number, found NaN"):

@@ -103,9 +103,9 @@ def test_wrong_columns_are_refused() -> None:
     with pytest.raises(palpate.OptionError, match="a column of lists of numbers"):
         palpate.fit_many(TIMES[0], pyarrow.array([["a"]]))
     for table in (pandas.DataFrame(np.ones((3, 400))), polars.DataFrame(np.ones((3, 400)))):
-        with pytest.raises(palpate.OptionError, match="found a table of 400 columns\nhint: pass one column") as told:
+        with pytest.raises(palpate.OptionError, match="found a table of 400 columns\nhint: pass one column") as reported:
             palpate.fit_many(TIMES[0], table)
-        assert len(str(told.value)) < 200
+        assert len(str(reported.value)) < 200
     for wrong in ({"a": SIGNALS[0]}, None, 5.0):
         with pytest.raises(palpate.OptionError, match="signal: expected a list of curves, found"):
             palpate.fit_many(TIMES[0], wrong)
@@ -129,9 +129,9 @@ def test_a_curve_that_is_no_column_of_numbers_stops_no_other() -> None:
         ([y, np.where(np.arange(400) == 5, np.inf, y), y], None, "the value of sample 5 must be a finite number, found inf"),
     ]
     alone = palpate.fit_hold(t, y)
-    for signal, weights, told in many:
+    for signal, weights, reported in many:
         table = palpate.fit_many(t, signal, weights=weights)
-        assert table["error"] == [None, told, None]
+        assert table["error"] == [None, reported, None]
         assert table["exponent"][[0, 2]].tolist() == [alone.parameters["exponent"]] * 2
         assert np.isnan(table["exponent"][1]) and np.isnan(table["samples"][1])
 

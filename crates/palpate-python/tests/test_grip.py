@@ -158,7 +158,7 @@ def test_it_slips_where_the_predicted_force_falls_below_the_needed_one(material:
     assert twisted.needed_force_n == pytest.approx(1.5 * math.hypot(half, 0.01 * half / (3 * math.pi / 16 * radius)) / 0.6, rel=1e-9)
 
 
-def test_the_least_squeeze_holds_exactly_as_long_as_is_asked(material: palpate.Material, least: palpate.Grip) -> None:
+def test_the_least_squeeze_holds_exactly_as_long_as_is_requested(material: palpate.Material, least: palpate.Grip) -> None:
     assert least.holds and least.time_to_slip_s == pytest.approx(60.0, rel=1e-6) and least.squeeze_m is not None
     less = material.grip(**LOAD, squeeze_m=0.99 * least.squeeze_m, hold_s=60.0)
     assert not less.holds and less.time_to_slip_s is not None and 0 < less.time_to_slip_s < 60
@@ -226,7 +226,7 @@ def test_a_question_that_is_none_has_the_words_of_the_command_line(
 
 
 @pytest.mark.parametrize(
-    ("keywords", "told"),
+    ("keywords", "reported"),
     [
         ({"control": "speed"}, 'control is one of "position", "force", found "speed"'),
         ({"objective": "time"}, 'objective is one of "squeeze", "peak-force", "work", found "time"'),
@@ -246,10 +246,10 @@ def test_a_question_that_is_none_has_the_words_of_the_command_line(
         ({"mass_kg": math.nan}, "mass must be finite and above 0, found NaN kg"),
     ],
 )
-def test_a_wrong_option_is_named(material: palpate.Material, keywords: dict[str, Any], told: str) -> None:
+def test_a_wrong_option_is_named(material: palpate.Material, keywords: dict[str, Any], reported: str) -> None:
     with pytest.raises(palpate.OptionError) as caught:
         material.grip(**{**LOAD, **keywords})
-    assert told in str(caught.value)
+    assert reported in str(caught.value)
 
 
 def test_what_is_missing_or_bonded_is_refused(material: palpate.Material, tmp_path: Path) -> None:

@@ -32,10 +32,10 @@ def ticks() -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float6
     return record.time_s, record.force_n, record.displacement_m
 
 
-def attributes(seen: palpate.Observation) -> dict[str, Any]:
+def attributes(observed: palpate.Observation) -> dict[str, Any]:
     """All that is known, by name."""
     names = [name for name in dir(palpate.Observation) if not name.startswith("_")]
-    return {name: getattr(seen, name) for name in names if getattr(seen, name) is not None}
+    return {name: getattr(observed, name) for name in names if getattr(observed, name) is not None}
 
 
 def watched(*flags: str) -> list[dict[str, Any]]:
@@ -43,12 +43,12 @@ def watched(*flags: str) -> list[dict[str, Any]]:
     arguments = ["watch", str(RECORD), "--test", str(TEST), "--format", "jsonl", "--every", "1 ms", *flags]
     ran = subprocess.run([sys.executable, "-m", "palpate", *arguments], capture_output=True, text=True, check=False)
     assert ran.returncode == 0, ran.stderr
-    told = [line for line in map(json.loads, ran.stdout.splitlines()) if line.pop("event") == "tick"]
-    for line in told:
+    reported = [line for line in map(json.loads, ran.stdout.splitlines()) if line.pop("event") == "tick"]
+    for line in reported:
         for key in ("time_to_slip_s", "time_to_slip_low_s", "time_to_slip_high_s"):
             if key in line or line.get("slips") == "never":
                 line[key] = math.inf if line.get(key) is None else line[key]
-    return told
+    return reported
 
 
 @pytest.mark.parametrize(
@@ -64,23 +64,23 @@ def watched(*flags: str) -> list[dict[str, Any]]:
 def test_observations_are_those_of_the_command_line_to_the_last_bit(flags: list[str], keywords: dict[str, Any]) -> None:
     if "material" in keywords:
         keywords = {**keywords, "material": palpate.Material.read(PATH)}
-    t, force, place = ticks()
+    t, force, displacement = ticks()
     one, many = palpate.Observer(**keywords), palpate.Observer(**keywords)
-    seen = [one.feed(*tick) for tick in zip(t, force, place, strict=True)]
-    told = watched(*flags)
-    assert len(told) == len(seen) == len(t)
-    for line, now in zip(told, seen, strict=True):
+    observed = [one.feed(*tick) for tick in zip(t, force, displacement, strict=True)]
+    reported = watched(*flags)
+    assert len(reported) == len(observed) == len(t)
+    for line, now in zip(reported, observed, strict=True):
         ours = attributes(now)
         began, warning = ours.pop("began"), ours["warning"]
         if "slip_force_n" not in keywords:
             assert ours.pop("warning") == "none"
         assert ours == line and isinstance(began, bool) and warning in ("none", "soon", "slipping")
     # The same in one call.
-    table = many.feed_many(t, force, place)
-    assert many == one and len(table) == len(seen)
+    table = many.feed_many(t, force, displacement)
+    assert many == one and len(table) == len(observed)
     assert set(table.column_names) == {name for name in dir(palpate.Observation) if not name.startswith("_")}
     for name in table.column_names:
-        for cell, now in zip(table[name], seen, strict=True):
+        for cell, now in zip(table[name], observed, strict=True):
             known = getattr(now, name)
             assert (cell is None or cell != cell) if known is None else cell == known, name
 
@@ -88,49 +88,49 @@ def test_observations_are_those_of_the_command_line_to_the_last_bit(flags: list[
 def test_a_slip_is_predicted_and_a_hold_that_stays_is_not() -> None:
     t = np.arange(30_001) * 1e-3
     hold = palpate.laws.latency(np.maximum(t - 0.5, 0.0), 1.2, 1.7, 6.0, 5.0)
-    force, place = np.where(t < 0.5, 5.8 * t, hold), np.minimum(0.01 * t, 0.005)
+    force, displacement = np.where(t < 0.5, 5.8 * t, hold), np.minimum(0.01 * t, 0.005)
     slips_at = t[500 + np.argmax(force[500:] < 2.0)]
-    seen = palpate.Observer(slip_force_n=2.0, warn_before_s=0.2).feed_many(t, force, place)
+    observed = palpate.Observer(slip_force_n=2.0, warn_before_s=0.2).feed_many(t, force, displacement)
     before = (t > 0.8) & (t < slips_at)
-    predicted = t[before] + seen["time_to_slip_s"][before]
+    predicted = t[before] + observed["time_to_slip_s"][before]
     np.testing.assert_allclose(predicted, slips_at, atol=0.02)
-    assert np.all(seen["time_to_slip_low_s"][before] <= seen["time_to_slip_high_s"][before])
-    soon, slipping = seen["warning"].index("soon"), seen["warning"].index("slipping")
+    assert np.all(observed["time_to_slip_low_s"][before] <= observed["time_to_slip_high_s"][before])
+    soon, slipping = observed["warning"].index("soon"), observed["warning"].index("slipping")
     assert slips_at - 0.4 < t[soon] < t[slipping] < slips_at + 0.01
-    assert seen["equilibrium_force_n"][-1] == pytest.approx(1.2, abs=2e-3)
-    assert seen["relative_rate_per_s"][-1] == pytest.approx(6.0 / (1 + 4 * 6.0 * 29.5), rel=1e-2)
-    stays = palpate.Observer(slip_force_n=1.0).feed_many(t, force, place)
+    assert observed["equilibrium_force_n"][-1] == pytest.approx(1.2, abs=2e-3)
+    assert observed["relative_rate_per_s"][-1] == pytest.approx(6.0 / (1 + 4 * 6.0 * 29.5), rel=1e-2)
+    stays = palpate.Observer(slip_force_n=1.0).feed_many(t, force, displacement)
     assert stays["slips"][-1] == "never" and stays["time_to_slip_s"][-1] == math.inf and "soon" not in stays["warning"]
-    # Without a displacement a hold is told from its force alone.
+    # Without a displacement a hold is given from its force alone.
     unknown = palpate.Observer().feed_many(t, force + np.random.default_rng(1).normal(0.0, 0.01, len(t)))
     assert unknown["slips"] == [None] * len(t) and np.isnan(unknown["time_to_slip_s"]).all() and unknown["held"][-1] == "displacement"
 
 
 def test_a_material_tells_the_excess_strain(material: palpate.Material) -> None:
     trajectory = palpate.simulate({"material": material, "step": [{"to": "5 mm", "rate": "500 mm/min", "hold": "5 s"}]})
-    t, place = trajectory.time_s, trajectory.displacement_m
+    t, displacement = trajectory.time_s, trajectory.displacement_m
     rises = np.concatenate([[True], np.diff(t) > 0])
     noise = np.random.default_rng(1).normal(0.0, 0.01, len(t))
-    seen = palpate.Observer(material).feed_many(t[rises], (trajectory.force_n + noise)[rises], place[rises])
-    off = np.abs(seen["excess_strain"] - trajectory.excess_strain[rises])
+    observed = palpate.Observer(material).feed_many(t[rises], (trajectory.force_n + noise)[rises], displacement[rises])
+    off = np.abs(observed["excess_strain"] - trajectory.excess_strain[rises])
     late = t[rises] > 1.0
-    assert np.all(off[late] < 5 * seen["excess_strain_standard_error"][late]) and late.sum() > 50
-    assert seen["excess_strain_standard_error"][-1] < 0.1 * trajectory.excess_strain.max()
-    assert np.isnan(palpate.Observer().feed_many(t[rises], trajectory.force_n[rises], place[rises])["excess_strain"]).all()
+    assert np.all(off[late] < 5 * observed["excess_strain_standard_error"][late]) and late.sum() > 50
+    assert observed["excess_strain_standard_error"][-1] < 0.1 * trajectory.excess_strain.max()
+    assert np.isnan(palpate.Observer().feed_many(t[rises], trajectory.force_n[rises], displacement[rises])["excess_strain"]).all()
 
 
 @pytest.mark.parametrize("informed", [False, True])
 def test_an_observer_goes_on_elsewhere_to_the_last_bit(material: palpate.Material, informed: bool) -> None:
-    t, force, place = ticks()
+    t, force, displacement = ticks()
     observer = palpate.Observer(material if informed else None, slip_force_n=3.0, displacement_noise_m=1e-6, force_noise_n=0.05)
     for cut in (0, 5, 40, 700):
         here = copy.copy(observer)
-        here.feed_many(t[:cut], force[:cut], place[:cut])
+        here.feed_many(t[:cut], force[:cut], displacement[:cut])
         twins = [pickle.loads(pickle.dumps(here)), copy.copy(here), copy.deepcopy(here)]
-        expected = here.feed_many(t[cut:], force[cut:], place[cut:])
+        expected = here.feed_many(t[cut:], force[cut:], displacement[cut:])
         for twin in twins:
             assert (twin != here) and twin.material == observer.material and twin.slip_force_n == 3.0
-            assert twin.feed_many(t[cut:], force[cut:], place[cut:]) == expected
+            assert twin.feed_many(t[cut:], force[cut:], displacement[cut:]) == expected
             assert twin == here and repr(twin) == repr(here)
     last = observer.feed(0.0, 0.0, 0.0)
     assert pickle.loads(pickle.dumps(last)) == last == copy.deepcopy(last)
@@ -141,7 +141,7 @@ def test_an_observer_goes_on_elsewhere_to_the_last_bit(material: palpate.Materia
 
 
 @pytest.mark.parametrize(
-    ("tick", "kind", "told"),
+    ("tick", "kind", "reported"),
     [
         ((0.5, 1.0, 1e-3), palpate.RecordError, "time must rise from tick to tick, found 0.5 s after 1 s\nhint: after a clock was set"),
         ((1.0, 1.0, 1e-3), palpate.RecordError, "time must rise from tick to tick, found 1 s after 1 s"),
@@ -152,7 +152,7 @@ def test_an_observer_goes_on_elsewhere_to_the_last_bit(material: palpate.Materia
     ],
 )
 def test_a_tick_that_cannot_be_taken_changes_nothing(
-    material: palpate.Material, tick: tuple[float, float, float], kind: type[Exception], told: str
+    material: palpate.Material, tick: tuple[float, float, float], kind: type[Exception], reported: str
 ) -> None:
     observer = palpate.Observer(material)
     observer.feed(0.0, 0.1, 1e-4)
@@ -160,7 +160,7 @@ def test_a_tick_that_cannot_be_taken_changes_nothing(
     before = copy.copy(observer)
     with pytest.raises(kind) as caught:
         observer.feed(*tick)
-    assert told in str(caught.value) and observer == before
+    assert reported in str(caught.value) and observer == before
     # In an array it is named, and none of the others is taken either.
     times, forces, places = zip((1.2, 1.0, 1e-3), (1.4, 1.0, 1e-3), tick, strict=True)
     with pytest.raises(kind) as caught:
@@ -180,7 +180,7 @@ def test_columns_that_do_not_fit_are_refused() -> None:
 
 
 @pytest.mark.parametrize(
-    ("keywords", "told"),
+    ("keywords", "reported"),
     [
         ({"exponent": 0.5}, "the exponent must be from 1 to 30, found 0.5"),
         ({"exponent_standard_error": -1.0}, "the deviation of the exponent must be from 0 to 10, found -1"),
@@ -193,10 +193,10 @@ def test_columns_that_do_not_fit_are_refused() -> None:
         ({"touch_standard_error_m": math.nan}, "the deviation of first touch must be 0 m or more, found NaN"),
     ],
 )
-def test_a_wrong_option_is_named(keywords: dict[str, Any], told: str) -> None:
+def test_a_wrong_option_is_named(keywords: dict[str, Any], reported: str) -> None:
     with pytest.raises(palpate.OptionError) as caught:
         palpate.Observer(**keywords)
-    assert told in str(caught.value)
+    assert reported in str(caught.value)
 
 
 def test_a_material_says_the_exponent_itself_and_obeys_the_latency_law(material: palpate.Material) -> None:
@@ -213,11 +213,11 @@ def test_a_material_says_the_exponent_itself_and_obeys_the_latency_law(material:
 def test_ten_times_the_ticks_take_ten_times_as_long() -> None:
     t = np.arange(200_000) * 1e-3
     force = palpate.laws.latency(t, 1.2, 1.7, 6.0, 5.0)
-    place = np.full(len(t), 5e-3)
+    displacement = np.full(len(t), 5e-3)
 
     def seconds(count: int) -> float:
         start = time.perf_counter()
-        table = palpate.Observer().feed_many(t[:count], force[:count], place[:count])
+        table = palpate.Observer().feed_many(t[:count], force[:count], displacement[:count])
         assert len(table) == count
         return time.perf_counter() - start
 

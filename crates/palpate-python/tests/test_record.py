@@ -27,15 +27,15 @@ def command(*arguments: str) -> subprocess.CompletedProcess[str]:
 @pytest.mark.filterwarnings("ignore::palpate.PalpateWarning")
 def test_an_analysis_is_that_of_the_command_line_to_the_last_bit(root: Path) -> None:
     record, test = root / "examples/records/ball.csv", root / "examples/records/ball.toml"
-    told = command("analyze", str(record), "--test", str(test), "--format", "json")
-    assert told.returncode == 0, told.stderr
-    expected = json.loads(told.stdout)
+    reported = command("analyze", str(record), "--test", str(test), "--format", "json")
+    assert reported.returncode == 0, reported.stderr
+    expected = json.loads(reported.stdout)
     assert palpate.read(record, test=test).analyze().to_dict() == expected
     # A description may come later, and as a mapping.
     bare = palpate.read(record).analyze(compare=False).to_dict()
     mapped = palpate.read(record, test={"fit": {"exponents": [5], "free_exponent": False}}).analyze(compare=False)
-    asked = palpate.read(record).analyze(exponents=[5], free_exponent=False, compare=False)
-    assert mapped.to_dict()["holds"] == asked.to_dict()["holds"] != bare["holds"]
+    requested = palpate.read(record).analyze(exponents=[5], free_exponent=False, compare=False)
+    assert mapped.to_dict()["holds"] == requested.to_dict()["holds"] != bare["holds"]
 
 
 @pytest.mark.filterwarnings("ignore::palpate.PalpateWarning")

@@ -102,10 +102,10 @@ def test_a_number_in_si_stands_under_a_key_with_its_unit() -> None:
         ({"radius_m": 0.035, "radius": "35 mm"}, "specimen.radius_m: expected either this or specimen.radius, found both"),
         ({"radius_s": 0.035}, 'specimen.radius = "0.035 s": "s" is not a unit of length'),
     ]
-    for specimen, told in wrong:
+    for specimen, reported in wrong:
         with pytest.raises(palpate.OptionError) as caught:
             palpate.simulate({**texts, "specimen": {"shape": "ball", "modulus": "28 kPa", **specimen}})
-        assert told in str(caught.value)
+        assert reported in str(caught.value)
     with pytest.raises(palpate.OptionError, match=r'specimen.radius = 0.035: .*\n.*radius = "0.035 mm".*; or a number in SI: radius_m = 0.035'):
         palpate.simulate({**texts, "specimen": {"shape": "ball", "modulus": "28 kPa", "radius": 0.035}})
 
@@ -162,8 +162,8 @@ def test_a_mapping_may_hold_any_number_and_text() -> None:
         (np.float32("inf"), "law.exponent: expected a finite number, found inf"),
         (None, "law.exponent: expected a text, a number, a list or a table, found NoneType"),
     ]
-    for value, told in wrong:
-        with pytest.raises(palpate.OptionError, match=told):
+    for value, reported in wrong:
+        with pytest.raises(palpate.OptionError, match=reported):
             palpate.simulate({**PAPER, "law": {**law, "exponent": value}})
     with pytest.raises(palpate.OptionError, match='such as radius = "0.035 mm" or "0.035 m"'):
         palpate.simulate({**PAPER, "specimen": {**PAPER["specimen"], "radius": 0.035}})

@@ -62,18 +62,18 @@ def test_a_run_that_no_body_can_take_says_why_and_stops_no_other() -> None:
         ({"law.exponent": ["five"]}, None, palpate.OptionError, "law.exponent"),
     ],
 )
-def test_what_is_wrong_is_said(numbers: dict[str, Any], times_s: Any, kind: type[Exception], text: str) -> None:
+def test_what_is_wrong_is_stated(numbers: dict[str, Any], times_s: Any, kind: type[Exception], text: str) -> None:
     with pytest.raises(kind, match=text.replace("?", r"\?")):
         palpate.simulate_many(PROTOCOL, numbers, times_s=times_s)
 
 
-def test_progress_is_told() -> None:
+def test_progress_is_reported() -> None:
     tqdm = pytest.importorskip("tqdm.auto")
-    seen: list[int] = []
+    observed: list[int] = []
 
     class Bar(tqdm.tqdm):  # type: ignore[misc, name-defined]
         def update(self, n: float | None = 1) -> bool | None:
-            seen.append(int(n or 0))
+            observed.append(int(n or 0))
             return None
 
     original, tqdm.tqdm = tqdm.tqdm, Bar
@@ -83,7 +83,7 @@ def test_progress_is_told() -> None:
         palpate.simulate_many(PROTOCOL, {"law.exponent": np.linspace(2, 6, 30)}, progress=True)
     finally:
         tqdm.tqdm = original
-    assert seen[-1] == 30 and 50 in seen
+    assert observed[-1] == 30 and 50 in observed
 
 
 def test_contacts_side_by_side_are_contacts() -> None:

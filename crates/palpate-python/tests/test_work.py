@@ -95,8 +95,8 @@ os._exit(0)
 def test_ctrl_c_ends_the_work(work: str) -> None:
     before = signal.getsignal(signal.SIGINT)
     script = INTERRUPTED.format(work=work)
-    told = subprocess.run([sys.executable, "-W", "ignore", "-c", script], capture_output=True, text=True, timeout=120, check=True)
-    heard, busy = map(float, told.stdout.split())
+    reported = subprocess.run([sys.executable, "-W", "ignore", "-c", script], capture_output=True, text=True, timeout=120, check=True)
+    heard, busy = map(float, reported.stdout.split())
     assert heard < 0.2 * float(os.environ.get("PALPATE_PATIENCE", "3"))
     # A second later no processor is busy with it.
     assert busy < 0.1, busy

@@ -255,10 +255,10 @@ fn law_table() -> Table {
 fn page(table: Table, figures: Section) -> Page {
     let text = "Every kind of block with made-up data. The page opens without a network, needs no \
                 script, and prints on A4.";
-    let finding = |severity, code: &str, seen: &str| Finding {
+    let finding = |severity, code: &str, observed: &str| Finding {
         severity,
         code: code.to_owned(),
-        seen: seen.to_owned(),
+        observation: observed.to_owned(),
         meaning: "The contact may not have settled when the hold began.".to_owned(),
         remedy: "Hold longer, or start the fit later.".to_owned(),
     };

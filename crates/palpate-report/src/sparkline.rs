@@ -91,7 +91,7 @@ mod tests {
     }
 
     #[test]
-    fn a_short_ramp_between_long_holds_is_seen() {
+    fn a_short_ramp_between_long_holds_is_observed() {
         let stretches = [(0.0, 4.0, '-'), (4.0, 4.1, '/'), (4.1, 9.9, '-'), (9.9, 10.0, '\\')];
         assert_eq!(strip(0.0, 10.0, &stretches, 10), "----/----\\");
         // Where every share has a stretch of its own nothing gives way.

@@ -27,7 +27,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         let candidate = Candidate::new(law.parse()?, EquilibriumLaw::UniformStrain);
         let found = calibrate(&data, candidate, 0.95, &mut Unwatched)?;
         println!("{law}: leaves {:.3} N, BIC {:.0}", found.rmse, found.criteria.bic);
-        for parameter in &found.material.parameters {
+        for parameter in found.material.parameters() {
             println!("  {} {:.4e} {:?}", parameter.name, parameter.estimate.value, parameter.estimate.interval);
         }
         // Squeezed by 22 mm, six times as long as any hold of the test.

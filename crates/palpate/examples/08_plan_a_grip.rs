@@ -29,7 +29,7 @@ fn calibrated() -> Result<Material, Box<dyn std::error::Error>> {
     Ok(calibrate(&data, candidate, 0.95, &mut Unwatched)?.material)
 }
 
-fn told(lasts: TimeToSlip) -> String {
+fn reported(lasts: TimeToSlip) -> String {
     lasts.seconds().map_or_else(|| "always".to_owned(), |time| format!("{time:.2} s"))
 }
 
@@ -50,9 +50,9 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
             1e3 * squeeze,
             holding.start_force,
             holding.needed_force,
-            told(holding.lasts),
-            told(low),
-            told(high)
+            reported(holding.lasts),
+            reported(low),
+            reported(high)
         );
     }
 

@@ -18,7 +18,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         slip_force: Some(1.6),
         ..ObserverOptions::default()
     })?;
-    let (mut warned, mut slipped, mut told, mut worst, mut all) = (false, false, 0, 0.0f64, 0.0f64);
+    let (mut warned, mut slipped, mut reported, mut worst, mut all) = (false, false, 0, 0.0f64, 0.0f64);
     let ticks = 60_000;
     for tick in 1..=ticks {
         let time = 1e-3 * f64::from(tick);
@@ -26,16 +26,16 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         let force = contact.step(&model, 1e-3, displacement)?;
         let (displacement, force) = (displacement + 1e-6 * noise.normal(), force + 0.05 * noise.normal());
         let started = Instant::now();
-        let seen = observer.feed(time, Some(displacement), force)?;
+        let observed = observer.feed(time, Some(displacement), force)?;
         let cost = started.elapsed().as_secs_f64();
         worst = worst.max(cost);
         all += cost;
-        if seen.began {
-            println!("{time:.3} s: a hold began at {:.3} s", seen.held_since.unwrap_or(time));
+        if observed.began {
+            println!("{time:.3} s: a hold began at {:.3} s", observed.held_since.unwrap_or(time));
         }
-        if seen.phase == ContactPhase::Holding && time > 0.7 + 2.0 * f64::from(told) && told < 4 {
-            told += 1;
-            match seen.time_to_slip {
+        if observed.phase == ContactPhase::Holding && time > 0.7 + 2.0 * f64::from(reported) && reported < 4 {
+            reported += 1;
+            match observed.time_to_slip {
                 Some(SlipForecast::Known {
                     best: TimeToSlip::After(value),
                     low: TimeToSlip::After(low),
@@ -46,11 +46,11 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
                 _ => println!("{time:.3} s: time to slip is still open"),
             }
         }
-        if seen.slip == Slip::Soon && !warned && time > 1.0 {
+        if observed.slip == Slip::Soon && !warned && time > 1.0 {
             warned = true;
-            println!("{time:.3} s: warned, {:.2} N", seen.force);
+            println!("{time:.3} s: warned, {:.2} N", observed.force);
         }
-        if seen.slip == Slip::Slipping && !slipped {
+        if observed.slip == Slip::Slipping && !slipped {
             slipped = true;
             println!("{time:.3} s: slips");
         }

@@ -1,4 +1,4 @@
-//! Steps contacts at 1 kHz as a controller does, and prints every force and displacement to the last bit. Told a file of such parameters,
+//! Steps contacts at 1 kHz as a controller does, and prints every force and displacement to the last bit. Given a file of such parameters,
 //! it says how far they are from its own.
 //!
 //! `controller/` builds it as well, without std and therefore with other elementary functions: `./test bare` compares the two.

@@ -117,9 +117,9 @@ mod tests {
     fn a_shuffle_holds_every_number_once() {
         for len in (1..70).chain([255, 256, 257, 1000, 4097]) {
             let shuffle = Shuffle::new(3, len);
-            let mut seen: Vec<u64> = (0..len).map(|place| shuffle.at(place)).collect();
-            seen.sort_unstable();
-            assert_eq!(seen, (0..len).collect::<Vec<_>>());
+            let mut observed: Vec<u64> = (0..len).map(|place| shuffle.at(place)).collect();
+            observed.sort_unstable();
+            assert_eq!(observed, (0..len).collect::<Vec<_>>());
         }
         assert_eq!(Shuffle::new(3, 0).at(5), 0);
     }

@@ -51,6 +51,7 @@ impl Default for RateWindow {
 
 /// Strain and strain rate at a number of times.
 #[derive(Debug, Clone, PartialEq, Default)]
+#[non_exhaustive]
 pub struct StrainRates {
     /// Time since the start of the hold, s.
     pub time: Vec<f64>,

@@ -213,7 +213,7 @@ pub enum UnitError {
     /// The text does not start with a number.
     #[error("expected a {dimension} such as \"{example}\", found \"{found}\"", dimension = .dimension.name(), example = .dimension.row().1)]
     NotANumber {
-        /// What was asked for.
+        /// What was requested.
         dimension: Dimension,
         /// What stood there.
         found: String,
@@ -221,7 +221,7 @@ pub enum UnitError {
     /// A number without a unit.
     #[error("expected a unit after the number in \"{found}\" (a {dimension}: {accepted})", dimension = .dimension.name(), accepted = .dimension.accepted())]
     MissingUnit {
-        /// What was asked for.
+        /// What was requested.
         dimension: Dimension,
         /// What stood there.
         found: String,
@@ -229,7 +229,7 @@ pub enum UnitError {
     /// A unit that this quantity does not take.
     #[error("\"{unit}\" is not a unit of {dimension} (accepted: {accepted})", dimension = .dimension.name(), accepted = .dimension.accepted())]
     UnknownUnit {
-        /// What was asked for.
+        /// What was requested.
         dimension: Dimension,
         /// The unit that stood there.
         unit: String,
@@ -237,7 +237,7 @@ pub enum UnitError {
     /// The number is NaN or infinite.
     #[error("expected a finite {dimension}, found \"{found}\"", dimension = .dimension.name())]
     NotFinite {
-        /// What was asked for.
+        /// What was requested.
         dimension: Dimension,
         /// What stood there.
         found: String,

@@ -8,16 +8,16 @@ use crate::arguments::{CalibrateArguments, Format};
 use crate::progress::Bars;
 use crate::terminal::{notes, print};
 
-pub(crate) fn run(asked: &CalibrateArguments) -> Result<Verdict, JobError> {
-    let (out, figure) = (&asked.out, &asked.figure);
-    keep_apart([&asked.record].into_iter().chain(&asked.described.test), out.iter().chain(figure))?;
+pub(crate) fn run(requested: &CalibrateArguments) -> Result<Verdict, JobError> {
+    let (out, figure) = (&requested.out, &requested.figure);
+    keep_apart([&requested.record].into_iter().chain(&requested.described.test), out.iter().chain(figure))?;
     figure.as_deref().map_or(Ok(()), check_figure)?;
-    let described = asked.described.read()?;
-    let opened = OpenedFile::open(&asked.record, &described)?;
+    let described = requested.described.read()?;
+    let opened = OpenedFile::open(&requested.record, &described)?;
     notes(&opened.notes());
     let measured = opened.measurement(opened.only()?, &mut Bars::default())?;
     notes(&measured.notes);
-    let outcome = asked.job().run(measured, &mut Bars::default())?;
+    let outcome = requested.job().run(measured, &mut Bars::default())?;
     notes(&outcome.notes);
     let drawn = figure.as_ref().map(|path| picture(path, &outcome.result.figure())).transpose()?;
     if let (Some(path), Some(material)) = (out, outcome.result.material()) {
@@ -26,7 +26,7 @@ pub(crate) fn run(asked: &CalibrateArguments) -> Result<Verdict, JobError> {
     if let (Some(path), Some(bytes)) = (figure, drawn) {
         write_file(path, &bytes)?;
     }
-    print(&match asked.format {
+    print(&match requested.format {
         Format::Text => outcome.result.text(),
         Format::Json => outcome.result.json()?,
     })?;

@@ -8,11 +8,11 @@ use crate::arguments::ConvertArguments;
 use crate::progress::Bars;
 use crate::terminal::{note, notes};
 
-pub(crate) fn run(asked: &ConvertArguments) -> Result<Verdict, JobError> {
-    let (record, out) = (&asked.record, &asked.out);
-    keep_apart([record].into_iter().chain(&asked.described.test), [out])?;
+pub(crate) fn run(requested: &ConvertArguments) -> Result<Verdict, JobError> {
+    let (record, out) = (&requested.record, &requested.out);
+    keep_apart([record].into_iter().chain(&requested.described.test), [out])?;
     Converted::check_name(out)?;
-    let described = asked.described.read()?;
+    let described = requested.described.read()?;
     let opened = OpenedFile::open(record, &described)?;
     notes(&opened.notes());
     let outcome = Convert {}.run(&opened, &mut Bars::default())?;

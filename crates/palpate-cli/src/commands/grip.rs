@@ -8,13 +8,13 @@ use crate::arguments::{Format, GripArguments};
 use crate::progress::Bars;
 use crate::terminal::{note_report, notes, print};
 
-pub(crate) fn run(asked: &GripArguments) -> Result<Verdict, JobError> {
-    let (out, figure) = (&asked.out, &asked.figure);
+pub(crate) fn run(requested: &GripArguments) -> Result<Verdict, JobError> {
+    let (out, figure) = (&requested.out, &requested.figure);
     out.as_deref().map_or(Ok(()), check_folder)?;
-    keep_apart([&asked.material], figure)?;
+    keep_apart([&requested.material], figure)?;
     figure.as_deref().map_or(Ok(()), check_figure)?;
-    let material = MaterialSource::read(&asked.material)?;
-    let outcome = asked.job.run(&material, &mut Bars::default())?;
+    let material = MaterialSource::read(&requested.material)?;
+    let outcome = requested.job.run(&material, &mut Bars::default())?;
     let drawn = figure.as_ref().map(|path| picture(path, &grip_figure(&outcome.result, "grip"))).transpose()?;
     if let Some(folder) = out {
         write_bundle(folder, &grip_bundle(&outcome.result, Pictures::default())?)?;
@@ -22,7 +22,7 @@ pub(crate) fn run(asked: &GripArguments) -> Result<Verdict, JobError> {
     if let (Some(path), Some(bytes)) = (figure, drawn) {
         write_file(path, &bytes)?;
     }
-    print(&match asked.format {
+    print(&match requested.format {
         Format::Text => outcome.result.text(),
         Format::Json => outcome.result.json()?,
     })?;

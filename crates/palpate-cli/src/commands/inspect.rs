@@ -8,17 +8,17 @@ use crate::arguments::InspectArguments;
 use crate::progress::Bars;
 use crate::terminal::{note, notes, print};
 
-pub(crate) fn run(asked: &InspectArguments) -> Result<Verdict, JobError> {
-    let (test, figure, write_test) = (&asked.described.test, &asked.figure, &asked.write_test);
+pub(crate) fn run(requested: &InspectArguments) -> Result<Verdict, JobError> {
+    let (test, figure, write_test) = (&requested.described.test, &requested.figure, &requested.write_test);
     // Without a list of machines there is a record: the command line asks for one.
-    let Some(record) = asked.record.as_ref().filter(|_| !asked.machines) else {
+    let Some(record) = requested.record.as_ref().filter(|_| !requested.machines) else {
         print(&machines_text())?;
         return Ok(Verdict::Positive);
     };
     keep_apart([record].into_iter().chain(test), figure.iter().chain(write_test))?;
     figure.as_deref().map_or(Ok(()), check_figure)?;
     write_test.as_deref().map_or(Ok(()), check_new)?;
-    let described = asked.described.read()?;
+    let described = requested.described.read()?;
     let opened = OpenedFile::open(record, &described)?;
     let job = Inspect { only: figure.is_some() };
     let outcome = job.run(&opened, &mut Bars::default())?;

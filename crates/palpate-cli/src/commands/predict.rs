@@ -8,18 +8,18 @@ use crate::arguments::PredictArguments;
 use crate::progress::Bars;
 use crate::terminal::{notes, print, print_with};
 
-pub(crate) fn run(asked: &PredictArguments) -> Result<Verdict, JobError> {
-    let (material, protocol, figure) = (&asked.material, &asked.protocol, &asked.figure);
-    keep_apart([material, protocol], asked.out.iter().chain(figure))?;
+pub(crate) fn run(requested: &PredictArguments) -> Result<Verdict, JobError> {
+    let (material, protocol, figure) = (&requested.material, &requested.protocol, &requested.figure);
+    keep_apart([material, protocol], requested.out.iter().chain(figure))?;
     figure.as_deref().map_or(Ok(()), check_figure)?;
-    let (job, file) = (&asked.job, read_material(material)?);
+    let (job, file) = (&requested.job, read_material(material)?);
     let of = (&read_protocol_of(protocol, &file)?, &*protocol.display().to_string());
     let outcome = job.run((&file, &material.display().to_string()), of, figure.is_some(), &mut Bars::default())?;
     let predicted = &outcome.result;
     if let Some(path) = figure {
         write_file(path, &picture(path, &predicted.figure())?)?;
     }
-    match &asked.out {
+    match &requested.out {
         Some(path) => write_file_with(path, |out| predicted.write_series(out))?,
         None if job.at_s.is_empty() => print_with(|out| predicted.write_series(out))?,
         None => {}

@@ -8,52 +8,58 @@ use crate::arguments::SimulateArguments;
 use crate::progress::Bars;
 use crate::terminal::{notes, print_with};
 
-pub(crate) fn run(asked: &SimulateArguments) -> Result<Verdict, JobError> {
-    let series = [&asked.out, &asked.wave, &asked.energy, &asked.energy_by_step, &asked.energy_by_cycle];
-    let figures = [&asked.figure, &asked.hysteresis, &asked.strain_map].into_iter().flatten();
+pub(crate) fn run(requested: &SimulateArguments) -> Result<Verdict, JobError> {
+    let series = [
+        &requested.out,
+        &requested.wave,
+        &requested.energy,
+        &requested.energy_by_step,
+        &requested.energy_by_cycle,
+    ];
+    let figures = [&requested.figure, &requested.hysteresis, &requested.strain_map].into_iter().flatten();
     let series = series.into_iter().flatten();
-    let reads = [&asked.protocol].into_iter().chain(&asked.drive).chain(&asked.test);
+    let reads = [&requested.protocol].into_iter().chain(&requested.drive).chain(&requested.test);
     keep_apart(reads, series.clone().chain(figures))?;
     series.into_iter().try_for_each(|path| check_series(path))?;
     let bars = &mut Bars::default();
-    let described = Described::read(asked.test.as_deref().filter(|_| asked.drive.is_some()), None)?
-        .with_columns(asked.columns.as_ref());
-    let opened = asked.drive.as_ref().map(|path| OpenedFile::open(path, &described)).transpose()?;
+    let described = Described::read(requested.test.as_deref().filter(|_| requested.drive.is_some()), None)?
+        .with_columns(requested.columns.as_ref());
+    let opened = requested.drive.as_ref().map(|path| OpenedFile::open(path, &described)).transpose()?;
     let measured = opened.map(|opened| opened.measurement(opened.only()?, bars)).transpose()?;
     let driver = measured.as_ref().map(|measured| (&measured.record, measured.input.path.as_str()));
     measured.iter().for_each(|measured| notes(&measured.notes));
-    let outcome = asked.job().run(&asked.protocol, driver, bars)?;
+    let outcome = requested.job().run(&requested.protocol, driver, bars)?;
     let simulated = &outcome.result;
     // Everything is made before anything is written.
     let mut made = Vec::new();
-    if let Some(path) = &asked.figure {
+    if let Some(path) = &requested.figure {
         made.push((path, picture(path, &simulated.figure(path))?));
     }
-    if let Some(path) = &asked.hysteresis {
+    if let Some(path) = &requested.hysteresis {
         made.push((path, picture(path, &simulated.hysteresis(path, bars)?)?));
     }
-    if let Some(path) = &asked.energy_by_step {
+    if let Some(path) = &requested.energy_by_step {
         made.push((path, simulated.energy_by_step(bars)?.into_bytes()));
     }
-    if let Some(path) = &asked.energy_by_cycle {
+    if let Some(path) = &requested.energy_by_cycle {
         made.push((path, simulated.energy_by_cycle(bars)?.into_bytes()));
     }
-    if asked.wave.is_some() || asked.strain_map.is_some() {
+    if requested.wave.is_some() || requested.strain_map.is_some() {
         let strains = simulated.wave(bars)?;
-        if let Some(path) = &asked.strain_map {
+        if let Some(path) = &requested.strain_map {
             made.push((path, picture(path, &simulated.wave_figure(&strains, path))?));
         }
-        if let Some(path) = &asked.wave {
+        if let Some(path) = &requested.wave {
             made.push((path, Simulated::wave_csv(&strains).into_bytes()));
         }
     }
-    if let Some(path) = &asked.energy {
+    if let Some(path) = &requested.energy {
         made.push((path, simulated.energy(bars)?.into_bytes()));
     }
     for (path, bytes) in &made {
         write_file(path, bytes)?;
     }
-    match &asked.out {
+    match &requested.out {
         Some(path) => write_file_with(path, |out| simulated.write_series(out))?,
         None => print_with(|out| simulated.write_series(out))?,
     }

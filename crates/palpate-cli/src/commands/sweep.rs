@@ -6,9 +6,9 @@ use crate::arguments::SweepArguments;
 use crate::progress::Bars;
 use crate::terminal::notes;
 
-pub(crate) fn run(asked: &SweepArguments) -> Result<Verdict, JobError> {
-    let (out, figure) = (asked.out.as_deref(), asked.figure.as_deref());
-    let outcome = asked.job.run(&asked.protocol, out, figure, &mut Bars::default())?;
+pub(crate) fn run(requested: &SweepArguments) -> Result<Verdict, JobError> {
+    let (out, figure) = (requested.out.as_deref(), requested.figure.as_deref());
+    let outcome = requested.job.run(&requested.protocol, out, figure, &mut Bars::default())?;
     notes(&outcome.notes);
     Ok(outcome.verdict)
 }

@@ -38,9 +38,9 @@ fn a_header_that_is_not_understood_is_one_option_away() {
     assert!(error.contains(&format!("--columns \"{option}\"")), "{error}");
     let convert = ["convert", &record, "--out", "c.csv"];
     let others = ["inspect", "compare", "watch"].map(|command| [command, &record]);
-    let asked = others.iter().map(|asked| &asked[..]).chain([&analyze[..], &batch, &convert]);
-    for asked in asked {
-        done(folder.path(), &[asked, &["--columns", option]].concat());
+    let requested = others.iter().map(|requested| &requested[..]).chain([&analyze[..], &batch, &convert]);
+    for requested in requested {
+        done(folder.path(), &[requested, &["--columns", option]].concat());
     }
     // What was typed stands in what is kept.
     let kept = std::fs::read_to_string(folder.path().join("c.csv")).unwrap();
@@ -71,10 +71,13 @@ fn a_cell_without_a_number_costs_its_row_alone() {
         let both = one.replacen("\n3.0000,", &format!("\n{word},"), 1);
         assert_ne!(one, both);
         let record = file(folder.path(), &format!("{number}.csv"), &both);
-        let told = done(folder.path(), &["inspect", &record]);
-        assert!(told.contains("2 of 121 rows left out, in which a cell holds no number (lines 42, 62)"), "{told}");
-        let told = done(folder.path(), &["analyze", &record, "--no-compare"]);
-        assert!(told.contains("2 of 121 rows left out"), "{told}");
+        let reported = done(folder.path(), &["inspect", &record]);
+        assert!(
+            reported.contains("2 of 121 rows left out, in which a cell holds no number (lines 42, 62)"),
+            "{reported}"
+        );
+        let reported = done(folder.path(), &["analyze", &record, "--no-compare"]);
+        assert!(reported.contains("2 of 121 rows left out"), "{reported}");
     }
     // More than a few in a hundred are no slip.
     let bad = good.lines().enumerate().map(|(line, row)| match line % 20 {
@@ -88,7 +91,7 @@ fn a_cell_without_a_number_costs_its_row_alone() {
 fn time_that_does_not_rise() {
     let good = ramp_and_hold(5.0, 20.0);
     refuses(good.replacen("\n2.0000,", "\n0.5000,", 1), &["line 42", "rise", "0.5 s after 1.95 s"]);
-    // Two rows of one stamp are one, and that is said.
+    // Two rows of one stamp are one, and that is stated.
     let folder = tempdir().unwrap();
     let name = file(folder.path(), "record.csv", good.replacen("\n2.0000,", "\n1.9500,", 1));
     let text = done(folder.path(), &["analyze", &name]);
@@ -116,9 +119,9 @@ fn records_with_nothing_to_fit() {
     assert!(error.contains("3 samples"), "{error}");
 }
 
-/// "entity already exists" said nothing of what stands in the way.
+/// "entity already exists" states nothing of what stands in the way.
 #[test]
-fn what_stands_where_a_report_should_go_is_told() {
+fn what_stands_where_a_report_should_go_is_reported() {
     let folder = tempdir().unwrap();
     let record = file(folder.path(), "record.csv", ramp_and_hold(5.0, 20.0));
     std::fs::create_dir(folder.path().join("other")).unwrap();
@@ -140,7 +143,7 @@ fn what_stands_where_a_report_should_go_is_told() {
 fn lists_and_names_that_are_mistyped_are_shown_as_they_should_be() {
     let folder = tempdir().unwrap();
     let record = file(folder.path(), "record.csv", ramp_and_hold(5.0, 20.0));
-    for (asked, expected) in [
+    for (requested, expected) in [
         (&["analyze", "--exponents", "3;5"][..], "numbers above 0 with commas between them, such as 3,5"),
         (&["analyze", "--exponents", "x"], "such as 1,3,5"),
         (&["compare", "--cuts", "0.1 0.2"], "such as 0.1,0.2"),
@@ -152,8 +155,8 @@ fn lists_and_names_that_are_mistyped_are_shown_as_they_should_be() {
         (&["compare", "--laws", "Pronny:3"], "did you mean prony:K?"),
         (&["analyze", "--part", "2"], "expected the one test that the file holds, found \"2\""),
     ] {
-        let error = refused(folder.path(), &[asked, &[&record]].concat());
-        assert!(error.contains(expected), "{asked:?}: {error}");
+        let error = refused(folder.path(), &[requested, &[&record]].concat());
+        assert!(error.contains(expected), "{requested:?}: {error}");
     }
 }
 

@@ -93,8 +93,11 @@ fn a_material_predicts_and_every_command_takes_it() {
     );
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
     let text = String::from_utf8(output.stdout).unwrap();
-    let told = String::from_utf8(output.stderr).unwrap();
-    assert!(told.contains("beyond the test: the longest hold lasts 60.0 s, that of the test 20.0 s"), "{told}");
+    let reported = String::from_utf8(output.stderr).unwrap();
+    assert!(
+        reported.contains("beyond the test: the longest hold lasts 60.0 s, that of the test 20.0 s"),
+        "{reported}"
+    );
     assert!(std::fs::read_to_string(folder.join("p.csv")).unwrap().lines().count() == 3);
     assert!(folder.join("p.svg").exists());
     // The truth, by the protocol that the record was simulated with.
@@ -130,13 +133,13 @@ fn a_material_predicts_and_every_command_takes_it() {
 }
 
 #[test]
-fn what_cannot_be_calibrated_or_predicted_is_said_and_nothing_is_written() {
+fn what_cannot_be_calibrated_or_predicted_is_stated_and_nothing_is_written() {
     let (folder, _) = calibrated();
     let folder = folder.path();
     file(folder, "hold.toml", HOLD);
     let record = example("records/ball.csv");
-    let told = refused(folder, &["calibrate", &record, "--out", "new.toml"]);
-    assert!(told.contains("needs the geometry of the body") && told.contains("[specimen]"), "{told}");
+    let reported = refused(folder, &["calibrate", &record, "--out", "new.toml"]);
+    assert!(reported.contains("needs the geometry of the body") && reported.contains("[specimen]"), "{reported}");
     let test = example("records/ball.toml");
     for (more, expected) in [
         (&["--law", "power"][..], "not a law of a whole contact"),
@@ -147,11 +150,11 @@ fn what_cannot_be_calibrated_or_predicted_is_said_and_nothing_is_written() {
         (&["--confidence", "95"], "between 0 and 1"),
         (&["--figure", "x.pdf"], ".svg"),
     ] {
-        let told = refused(
+        let reported = refused(
             folder,
             &[&["calibrate", &record, "--test", &test, "--no-alternatives", "--out", "new.toml"], more].concat(),
         );
-        assert!(told.contains(expected), "{more:?}: {told}");
+        assert!(reported.contains(expected), "{more:?}: {reported}");
     }
     assert!(!folder.join("new.toml").exists());
     let text = std::fs::read_to_string(folder.join("ball.toml")).unwrap();
@@ -168,8 +171,8 @@ fn what_cannot_be_calibrated_or_predicted_is_said_and_nothing_is_written() {
         ("ball.toml", "hold.toml", &["--at", "99 s"], "99"),
         ("ball.toml", "hold.toml", &["--out", "ball.toml"], "an output file"),
     ] {
-        let told = refused(folder, &[&["predict", material, "--protocol", protocol], more].concat());
-        assert!(told.contains(expected), "{material} {protocol} {more:?}: {told}");
+        let reported = refused(folder, &[&["predict", material, "--protocol", protocol], more].concat());
+        assert!(reported.contains(expected), "{material} {protocol} {more:?}: {reported}");
     }
     assert_eq!(std::fs::read_to_string(folder.join("ball.toml")).unwrap(), text);
 }

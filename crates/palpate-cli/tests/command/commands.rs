@@ -7,21 +7,24 @@ use crate::common::{data, done, file, palpate, ramp_and_hold, root};
 use serde_json::Value;
 use tempfile::tempdir;
 
-/// "palpate 0.1.0" in a report of a bug said nothing of the build.
+/// "palpate 0.1.0" in a report of a bug states nothing of the build.
 #[test]
 fn the_version_says_which_build_it_is() {
-    let told = done(&root(), &["--version"]);
-    let lines: Vec<&str> = told.lines().collect();
-    assert!(lines[0].starts_with("palpate 0.") && lines[1].starts_with("commit: "), "{told}");
+    let reported = done(&root(), &["--version"]);
+    let lines: Vec<&str> = reported.lines().collect();
+    assert!(lines[0].starts_with("palpate 0.") && lines[1].starts_with("commit: "), "{reported}");
     let commit = lines[1].trim_start_matches("commit: ");
-    assert!(commit == "unknown" || commit.len() >= 12 && commit.chars().all(|c| c.is_ascii_hexdigit()), "{told}");
-    assert!(lines[2].contains("-") && lines[3] == "features: arrow, png, robot-log", "{told}");
+    assert!(
+        commit == "unknown" || commit.len() >= 12 && commit.chars().all(|c| c.is_ascii_hexdigit()),
+        "{reported}"
+    );
+    assert!(lines[2].contains("-") && lines[3] == "features: arrow, png, robot-log", "{reported}");
     assert_eq!(done(&root(), &["-V"]), format!("{}\n", lines[0]));
 }
 
 /// Intervals by another way are other intervals of the same numbers, and the document says which.
 #[test]
-fn intervals_rest_on_what_is_asked_for() {
+fn intervals_rest_on_what_is_requested_for() {
     let folder = tempdir().unwrap();
     let example = |name: &str| root().join("examples/records").join(name).display().to_string();
     let (record, test) = (example("ball.csv"), example("ball.toml"));
@@ -359,8 +362,8 @@ fn every_hold_says_what_was_held() {
     let record = file(folder.path(), "press.csv", ramp_and_hold(7.0, 20.0));
     let document = json(folder.path(), &["analyze", &record, "--no-compare", "--format", "json"]);
     assert_eq!(document["holds"][0]["mode"], "displacement");
-    let told = done(folder.path(), &["analyze", &record, "--no-compare"]);
-    assert!(told.contains("Held") && told.contains("displacement"), "{told}");
+    let reported = done(folder.path(), &["analyze", &record, "--no-compare"]);
+    assert!(reported.contains("Held") && reported.contains("displacement"), "{reported}");
     done(folder.path(), &["batch", &record, "--out", "holds.csv"]);
     let table = std::fs::read_to_string(folder.path().join("holds.csv")).unwrap();
     let mut lines = table.lines().skip_while(|line| line.starts_with('#'));
@@ -411,14 +414,17 @@ fn records_without_a_hold_are_refused() {
 
 /// Stress without a section was shown in N without a word.
 #[test]
-fn stress_without_a_section_is_told() {
+fn stress_without_a_section_is_reported() {
     let folder = tempdir().unwrap();
     let folder = folder.path();
     let text = ramp_and_hold(7.0, 20.0).replace("force_n", "Stress (Pa)");
     file(folder, "press.csv", text);
-    let told = done(folder, &["analyze", "press.csv"]);
-    let told = told.split_whitespace().collect::<Vec<_>>().join(" ");
-    assert!(told.contains("the file gives stress") && told.contains("stands for the same value in Pa"), "{told}");
+    let reported = done(folder, &["analyze", "press.csv"]);
+    let reported = reported.split_whitespace().collect::<Vec<_>>().join(" ");
+    assert!(
+        reported.contains("the file gives stress") && reported.contains("stands for the same value in Pa"),
+        "{reported}"
+    );
     assert!(done(folder, &["inspect", "press.csv"]).contains("done: stress read as the force on 1 m²"));
     done(folder, &["convert", "press.csv", "--out", "plain.csv"]);
     assert!(std::fs::read_to_string(folder.join("plain.csv")).unwrap().contains("stress_as_force"));

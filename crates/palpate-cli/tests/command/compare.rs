@@ -59,11 +59,11 @@ fn documents_agree_with_their_schema_and_each_other() {
     let folder = tempdir().unwrap();
     let schema = json(folder.path(), &["schema", "comparison"]);
     let record = file(folder.path(), "record.csv", ramp_and_hold(10.0, 20.0));
-    // Intervals that are not the usual ones are said in the settings.
-    let asked = |command: &str, out: &str| {
+    // Intervals that are not the usual ones are stated in the settings.
+    let requested = |command: &str, out: &str| {
         json(folder.path(), &[command, &record, "--intervals", "profile", "--format", "json", "--out", out])
     };
-    let document = asked("compare", "laws");
+    let document = requested("compare", "laws");
     let same_keys = |value: &Value, schema: &Value| {
         let promised: Vec<&String> = schema["properties"].as_object().unwrap().keys().collect();
         let mut found: Vec<&String> = value.as_object().unwrap().keys().collect();
@@ -94,7 +94,7 @@ fn documents_agree_with_their_schema_and_each_other() {
     ] {
         assert!(laws.join(name).metadata().unwrap().len() > 100, "{name}");
     }
-    let analysis = asked("analyze", "study");
+    let analysis = requested("analyze", "study");
     assert_eq!(&analysis["holds"][0]["comparison"], comparison);
     let study = folder.path().join("study");
     let page = std::fs::read_to_string(study.join("report.html")).unwrap();
@@ -161,7 +161,7 @@ fn creep_at_constant_force() {
     let sls = laws.iter().find(|law| law["law"] == "standard-linear-solid").unwrap();
     assert!((sls["parameters"]["time_constant_s"]["value"].as_f64().unwrap() - 5.0).abs() < 1e-3);
     assert!((sls["parameters"]["amplitude"]["value"].as_f64().unwrap() - 3e-4).abs() < 1e-6);
-    // A hold whose limits are given is that one; one in which the displacement is said to be held does not creep.
+    // A hold whose limits are given is that one; one in which the displacement is stated to be held does not creep.
     let given = |mode: &str| format!("[[phases.hold]]\nfrom = \"3 s\"\nto = \"13 s\"\n{mode}");
     file(folder.path(), "given.toml", given(""));
     let arguments = ["compare", &record, "--creep", "--format", "json", "--test", "given.toml"];

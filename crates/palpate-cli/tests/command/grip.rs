@@ -68,7 +68,7 @@ fn a_verdict_holds_with_a_confidence_or_by_the_best_estimate() {
 
 /// Half of the parameters that the test allows let a hold slip that begins with just the equilibrium force that is needed.
 #[test]
-fn a_hold_that_may_slip_at_once_is_not_said_to_hold_always() {
+fn a_hold_that_may_slip_at_once_is_not_stated_to_hold_always() {
     let (folder, ball) = (tempdir().unwrap(), ball());
     let text = done(folder.path(), &load(&ball));
     let row = text.lines().find(|line| line.starts_with("overshoot and back off")).unwrap();
@@ -123,7 +123,7 @@ fn the_report_has_all_of_it() {
 }
 
 #[test]
-fn numbers_that_make_no_grip_are_told_by_name() {
+fn numbers_that_make_no_grip_are_reported_by_name() {
     let (folder, ball) = (tempdir().unwrap(), ball());
     for (arguments, words) in [
         (&["--mass", "250g", "--friction", "0"][..], "friction must be finite and above 0, found 0"),

@@ -7,8 +7,8 @@ use crate::common::{data, done, file, palpate, ramp_and_hold, refused};
 
 /// The table of phases of a record.
 fn phases(folder: &Path, arguments: &[&str]) -> String {
-    let told = done(folder, arguments);
-    let (_, table) = told.split_once("\nPhases\n").unwrap_or_else(|| panic!("{told}"));
+    let reported = done(folder, arguments);
+    let (_, table) = reported.split_once("\nPhases\n").unwrap_or_else(|| panic!("{reported}"));
     // Up to the line below the rows; whether a first touch is sought depends on the description.
     let mut rules = table.match_indices("\n──");
     let end = rules.nth(1).map_or(table.len(), |(place, _)| place);
@@ -16,23 +16,23 @@ fn phases(folder: &Path, arguments: &[&str]) -> String {
 }
 
 /// What stands on standard error where inspection failed, but showed what is in the file.
-fn failed_but_told(folder: &Path, arguments: &[&str]) -> String {
+fn failed_but_reported(folder: &Path, arguments: &[&str]) -> String {
     let output = palpate(folder, arguments);
     let error = String::from_utf8_lossy(&output.stderr).into_owned();
     assert_eq!(output.status.code(), Some(2), "{error}");
-    let told = String::from_utf8_lossy(&output.stdout);
-    assert!(told.contains("Columns"), "{told}");
+    let reported = String::from_utf8_lossy(&output.stdout);
+    assert!(reported.contains("Columns"), "{reported}");
     error
 }
 
 #[test]
-fn the_cut_is_seen_at_a_glance() {
+fn the_cut_is_observed_at_a_glance() {
     let folder = tempfile::tempdir().unwrap();
     let folder = folder.path();
     let record = file(folder, "press.csv", ramp_and_hold(7.0, 20.0));
-    let told = done(folder, &["inspect", &record]);
+    let reported = done(folder, &["inspect", &record]);
     let line = |label: &str| {
-        let line = told.lines().find(|line| line.starts_with(label)).unwrap_or_else(|| panic!("{told}"));
+        let line = reported.lines().find(|line| line.starts_with(label)).unwrap_or_else(|| panic!("{reported}"));
         line[label.len()..].trim().to_owned()
     };
     assert_eq!(line("displacement  ").chars().count(), 64);
@@ -120,12 +120,12 @@ fn the_body_of_a_first_description_has_the_sizes_in_the_file() {
 }
 
 #[test]
-fn what_the_file_does_not_say_is_asked_for_and_not_guessed() {
+fn what_the_file_does_not_say_is_requested_for_and_not_guessed() {
     let folder = tempfile::tempdir().unwrap();
     let folder = folder.path();
     let text = ramp_and_hold(7.0, 20.0).replace("time_s,displacement_mm,force_n", "Time,Pos,Force");
     let record = file(folder, "gripper.csv", text);
-    failed_but_told(folder, &["inspect", &record, "--write-test", "t.toml"]);
+    failed_but_reported(folder, &["inspect", &record, "--write-test", "t.toml"]);
     let written = fs::read_to_string(folder.join("t.toml")).unwrap();
     assert!(written.contains("unit = \"?\"    # the file gives no unit; one of N, kN"), "{written}");
     let error = refused(folder, &["inspect", &record, "--test", "t.toml"]);
@@ -153,8 +153,8 @@ fn the_cut_of_a_real_record_can_be_drawn() {
         return;
     };
     let folder = tempfile::tempdir().unwrap();
-    let told = done(folder.path(), &["inspect", record.to_str().unwrap(), "--figure", "cut.png"]);
-    assert!(told.contains("phases        ////━━━━"), "{told}");
+    let reported = done(folder.path(), &["inspect", record.to_str().unwrap(), "--figure", "cut.png"]);
+    assert!(reported.contains("phases        ////━━━━"), "{reported}");
     assert!(fs::read(folder.path().join("cut.png")).unwrap().starts_with(b"\x89PNG"));
 }
 
@@ -236,9 +236,9 @@ fn the_holds_of_a_first_description_can_be_given_and_moved() {
     assert_eq!(phases(folder, &["inspect", &record, "--test", "given.toml"]), before);
     let moved = with_holds(&written).replace("to = \"8 s\"", "to = \"6 s\"");
     file(folder, "moved.toml", moved);
-    let told = phases(folder, &["inspect", &record, "--test", "moved.toml"]);
-    let hold = told.lines().find(|line| line.starts_with("hold")).unwrap_or_else(|| panic!("{told}"));
-    assert_eq!(hold.split_whitespace().nth(3), Some("6.00000"), "{told}");
+    let reported = phases(folder, &["inspect", &record, "--test", "moved.toml"]);
+    let hold = reported.lines().find(|line| line.starts_with("hold")).unwrap_or_else(|| panic!("{reported}"));
+    assert_eq!(hold.split_whitespace().nth(3), Some("6.00000"), "{reported}");
 }
 
 #[test]
@@ -247,7 +247,7 @@ fn a_given_hold_that_the_record_does_not_contain_is_refused() {
     let folder = folder.path();
     let record = file(folder, "press.csv", ramp_and_hold(7.0, 20.0));
     file(folder, "given.toml", "[[phases.hold]]\nfrom = \"2 s\"\nto = \"80 s\"\n");
-    let error = failed_but_told(folder, &["inspect", &record, "--test", "given.toml"]);
+    let error = failed_but_reported(folder, &["inspect", &record, "--test", "given.toml"]);
     assert!(error.contains("given hold 1 is from 2 s to 80 s, the record from 0 s to 8.00000 s"), "{error}");
 }
 
@@ -258,19 +258,19 @@ fn a_column_is_named_as_in_the_header_with_or_without_its_unit() {
     let text = ramp_and_hold(7.0, 20.0).replace("force_n", "Load (N)").replace("displacement_mm", "Load (mm)");
     let record = file(folder, "press.csv", &text);
     let both = |displacement: &str, force: &str| {
-        let said = format!("columns.displacement.column = \"{displacement}\"\ncolumns.force.column = \"{force}\"\n");
-        file(folder, "columns.toml", said);
+        let stated = format!("columns.displacement.column = \"{displacement}\"\ncolumns.force.column = \"{force}\"\n");
+        file(folder, "columns.toml", stated);
     };
     both("Load (mm)", "Load (N)");
-    let told = done(folder, &["inspect", &record, "--test", "columns.toml"]);
-    assert!(told.contains("displacement 0 to 1.000 mm\nforce 0 to 2.000 N"), "{told}");
+    let reported = done(folder, &["inspect", &record, "--test", "columns.toml"]);
+    assert!(reported.contains("displacement 0 to 1.000 mm\nforce 0 to 2.000 N"), "{reported}");
     both("Load (mm)", "Load");
-    let error = failed_but_told(folder, &["inspect", &record, "--test", "columns.toml"]);
+    let error = failed_but_reported(folder, &["inspect", &record, "--test", "columns.toml"]);
     assert!(error.contains("columns.force.column") && error.contains("found \"Load\""), "{error}");
 }
 
 #[test]
-fn clocks_that_differ_are_told_in_the_terminal() {
+fn clocks_that_differ_are_reported_in_the_terminal() {
     let folder = tempfile::tempdir().unwrap();
     let folder = folder.path();
     // Three stairs, of which the force comes 60 ms after the displacement.
@@ -283,11 +283,14 @@ fn clocks_that_differ_are_told_in_the_terminal() {
         .map(|t| format!("{t:.3},{:.5},{:.5}\n", at(t), 3.0 * at((t - 0.06).max(0.0))))
         .collect();
     let record = file(folder, "stairs.csv", format!("time_s,displacement_mm,force_n\n{rows}"));
-    let told = done(folder, &["inspect", &record]);
-    assert!(told.contains("ms later than the displacement; set skew = \"auto\" in [clock]"), "{told}");
+    let reported = done(folder, &["inspect", &record]);
+    assert!(reported.contains("ms later than the displacement; set skew = \"auto\" in [clock]"), "{reported}");
     file(folder, "auto.toml", "[clock]\nskew = \"auto\"\n");
-    let told = done(folder, &["inspect", &record, "--test", "auto.toml"]);
-    assert!(!told.contains("later than the displacement") && told.contains("done: force shifted by "), "{told}");
+    let reported = done(folder, &["inspect", &record, "--test", "auto.toml"]);
+    assert!(
+        !reported.contains("later than the displacement") && reported.contains("done: force shifted by "),
+        "{reported}"
+    );
 }
 
 #[test]
@@ -296,20 +299,20 @@ fn hundreds_of_named_values_are_counted_and_not_listed() {
     let folder = folder.path();
     let named: String = (0..40).map(|i| format!("# setting {i}: {i}\n")).collect();
     let record = file(folder, "press.csv", named + &ramp_and_hold(7.0, 20.0));
-    let told = done(folder, &["inspect", &record]);
-    assert!(told.contains("setting 14") && !told.contains("setting 15"), "{told}");
-    assert!(told.contains("… and 25 more named values"), "{told}");
+    let reported = done(folder, &["inspect", &record]);
+    assert!(reported.contains("setting 14") && !reported.contains("setting 15"), "{reported}");
+    assert!(reported.contains("… and 25 more named values"), "{reported}");
 }
 
-/// A weight in g was said not to be in the file, and pounds were to become N.
+/// A weight in g was stated not to be in the file, and pounds were to become N.
 #[test]
-fn a_unit_that_is_none_of_force_is_told_with_what_was_meant() {
+fn a_unit_that_is_none_of_force_is_reported_with_what_was_meant() {
     let folder = tempfile::tempdir().unwrap();
     let folder = folder.path();
     for (unit, meant) in [("g", "gf"), ("kg", "kgf"), ("lbs", "lbf")] {
         let text = ramp_and_hold(7.0, 20.0).replace("force_n", &format!("Force ({unit})"));
         file(folder, "press.csv", text);
-        let error = failed_but_told(folder, &["inspect", "press.csv", "--write-test", &format!("{unit}.toml")]);
+        let error = failed_but_reported(folder, &["inspect", "press.csv", "--write-test", &format!("{unit}.toml")]);
         assert!(error.contains(&format!("unit = \"{meant}\"")), "{error}");
         let written = fs::read_to_string(folder.join(format!("{unit}.toml"))).unwrap();
         assert!(
@@ -352,7 +355,7 @@ fn a_plain_table_is_corrected_as_described() {
 
 /// A force stamped 0.1 s late made the displacement look clipped in every hold.
 #[test]
-fn clocks_that_differ_are_no_saturation_and_signs_are_told() {
+fn clocks_that_differ_are_no_saturation_and_signs_are_reported() {
     let folder = tempfile::tempdir().unwrap();
     let folder = folder.path();
     let mut text = "Time (s),Displacement (mm),Force (N)\n".to_owned();
@@ -367,8 +370,8 @@ fn clocks_that_differ_are_no_saturation_and_signs_are_told() {
         text.push_str(&format!("{t:.2},{:.6},{:.6}\n", travel(t), 10.0 * travel(late) + rest + ripple));
     }
     file(folder, "press.csv", &text);
-    let told = done(folder, &["inspect", "press.csv"]);
-    assert!(told.contains("later than the displacement") && !told.contains("clipped"), "{told}");
+    let reported = done(folder, &["inspect", "press.csv"]);
+    assert!(reported.contains("later than the displacement") && !reported.contains("clipped"), "{reported}");
     let document = done(folder, &["analyze", "press.csv", "--no-compare", "--format", "json"]);
     assert!(document.contains("clocks_skewed") && !document.contains("\"saturated\""));
     let turned = text.lines().map(|line| match line.rsplit_once(',') {
@@ -376,6 +379,6 @@ fn clocks_that_differ_are_no_saturation_and_signs_are_told() {
         _ => format!("{line}\n"),
     });
     file(folder, "turned.csv", turned.collect::<String>());
-    let told = done(folder, &["inspect", "turned.csv"]);
-    assert!(told.contains("sign"), "{told}");
+    let reported = done(folder, &["inspect", "turned.csv"]);
+    assert!(reported.contains("sign"), "{reported}");
 }

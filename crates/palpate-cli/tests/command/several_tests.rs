@@ -7,7 +7,7 @@ use std::path::Path;
 use crate::common::{data, done, palpate, ramp_and_hold, refused};
 use palpate_files::parquet_table::{Field, Kind, Rows, TableWriter, Values};
 
-/// A table of two tests and of a third that never moves, told apart by `test_id`.
+/// A table of two tests and of a third that never moves, distinguished by `test_id`.
 fn table(folder: &Path) -> &'static str {
     let (mut tests, mut columns) = (Vec::new(), [Vec::new(), Vec::new(), Vec::new()]);
     for (name, hold) in [("left / 1", 5.0), ("right", 8.0)] {
@@ -34,12 +34,15 @@ fn inspect_lists_them_and_shows_one() {
     let folder = tempfile::tempdir().unwrap();
     let folder = folder.path();
     let file = table(folder);
-    let told = done(folder, &["inspect", file]);
-    assert!(told.contains("left / 1") && told.contains("right") && told.contains("Holds"), "{told}");
-    assert!(!told.contains("Used as"), "{told}");
+    let reported = done(folder, &["inspect", file]);
+    assert!(
+        reported.contains("left / 1") && reported.contains("right") && reported.contains("Holds"),
+        "{reported}"
+    );
+    assert!(!reported.contains("Used as"), "{reported}");
     for part in ["right", "2"] {
-        let told = done(folder, &["inspect", file, "--part", part]);
-        assert!(told.contains("phases        /") && told.contains("over 9.0000 s"), "{told}");
+        let reported = done(folder, &["inspect", file, "--part", part]);
+        assert!(reported.contains("phases        /") && reported.contains("over 9.0000 s"), "{reported}");
     }
     let error = refused(folder, &["inspect", file, "--part", "middle"]);
     assert!(
@@ -60,8 +63,8 @@ fn analyze_takes_all_of_them_or_one() {
         assert_eq!(document["holds"].as_array().map(Vec::len), Some(1));
         assert_eq!(document["input"]["part"].as_str().map(|name| name.replace('/', "-")), Some(part.to_owned()));
     }
-    let told = done(folder, &["analyze", file, "--no-compare", "--part", "right", "--format", "json"]);
-    let document: serde_json::Value = serde_json::from_str(&told).unwrap();
+    let reported = done(folder, &["analyze", file, "--no-compare", "--part", "right", "--format", "json"]);
+    let document: serde_json::Value = serde_json::from_str(&reported).unwrap();
     assert_eq!((document["input"]["part"].as_str(), document["input"]["rows"].as_u64()), (Some("right"), Some(181)));
 }
 
@@ -93,7 +96,7 @@ fn one_first_description_serves_all_of_them() {
 }
 
 #[test]
-fn where_one_record_is_needed_one_is_asked_for() {
+fn where_one_record_is_needed_one_is_requested_for() {
     let folder = tempfile::tempdir().unwrap();
     let folder = folder.path();
     let file = table(folder);
@@ -110,7 +113,7 @@ fn a_workbook_of_tests_names_what_it_skips() {
         return;
     };
     let folder = tempfile::tempdir().unwrap();
-    let told = done(folder.path(), &["inspect", book.to_str().unwrap()]);
-    assert!(told.lines().filter(|line| line.starts_with("skipped ")).count() >= 3, "{told}");
-    assert!(told.contains("Holds"), "{told}");
+    let reported = done(folder.path(), &["inspect", book.to_str().unwrap()]);
+    assert!(reported.lines().filter(|line| line.starts_with("skipped ")).count() >= 3, "{reported}");
+    assert!(reported.contains("Holds"), "{reported}");
 }

@@ -124,8 +124,11 @@ fn a_run_that_is_refused_is_a_row_with_a_reason() {
     let sweep = protocol(folder.path(), "specimen.radius = \"2, 35 mm\"\nstep.1.to = \"3, 5 mm\"");
     let output = palpate(folder.path(), &["sweep", &sweep, "--out", "t.parquet", "--figure", "t.svg"]);
     assert_eq!(output.status.code(), Some(0));
-    let told = String::from_utf8_lossy(&output.stderr).into_owned();
-    assert!(told.contains("1 of 4 runs refused, first run 2: ") && told.contains("step[1].to"), "{told}");
+    let reported = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert!(
+        reported.contains("1 of 4 runs refused, first run 2: ") && reported.contains("step[1].to"),
+        "{reported}"
+    );
     let out = folder.path().join("t.parquet");
     let reasons = texts(&out, "refused");
     assert!(reasons[1].as_ref().unwrap().contains("found \"5 mm\""), "{reasons:?}");
@@ -216,33 +219,33 @@ fn a_sweep_that_was_killed_goes_on_and_nothing_is_lost_or_doubled() {
     assert!(error.contains("those of another") && error.contains("--restart"), "{error}");
     let output = palpate(folder.path(), &arguments);
     assert!(output.status.success());
-    let told = String::from_utf8_lossy(&output.stderr).into_owned();
-    assert!(told.contains("4000 runs in ") && told.contains(" computed before"), "{told}");
+    let reported = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert!(reported.contains("4000 runs in ") && reported.contains(" computed before"), "{reported}");
     assert!(!parts.exists(), "{:?}", names(&parts));
     done(folder.path(), &["sweep", &sweep, "--out", "whole.parquet"]);
     assert!(fs::read(&out).unwrap() == fs::read(folder.path().join("whole.parquet")).unwrap());
     assert_eq!(numbers(&out, "run"), (1..=4000).map(|run| Some(f64::from(run))).collect::<Vec<_>>());
     // What is done is not done again; what changed is.
-    let told = |arguments: &[&str]| String::from_utf8_lossy(&palpate(folder.path(), arguments).stderr).into_owned();
-    assert!(told(&arguments).contains("all computed before"));
+    let reported = |arguments: &[&str]| String::from_utf8_lossy(&palpate(folder.path(), arguments).stderr).into_owned();
+    assert!(reported(&arguments).contains("all computed before"));
 }
 
 #[test]
 fn restart_computes_everything() {
     let folder = tempdir().unwrap();
     let sweep = protocol(folder.path(), "law.exponent = \"1, 2\"");
-    let told = |more: &[&str]| {
+    let reported = |more: &[&str]| {
         let arguments = [&["sweep", &sweep, "--out", "t.parquet"], more].concat();
         String::from_utf8_lossy(&palpate(folder.path(), &arguments).stderr).into_owned()
     };
-    assert!(!told(&[]).contains("before"));
-    assert!(told(&[]).contains("all computed before"));
-    assert!(!told(&["--restart"]).contains("before"));
+    assert!(!reported(&[]).contains("before"));
+    assert!(reported(&[]).contains("all computed before"));
+    assert!(!reported(&["--restart"]).contains("before"));
     // Parts of an older sweep make room.
     let parts = folder.path().join("t.parquet.parts");
     parts_of(&parts, "of another");
     fs::write(parts.join("note.md"), "mine").unwrap();
-    assert!(!told(&["--restart"]).contains("before"));
+    assert!(!reported(&["--restart"]).contains("before"));
     assert_eq!(names(&parts), ["note.md"], "files of others stay");
     assert_eq!(numbers(&folder.path().join("t.parquet"), "law_exponent"), [Some(1.0), Some(2.0)]);
 }

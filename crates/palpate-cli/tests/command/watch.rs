@@ -16,12 +16,12 @@ fn ball() -> String {
 }
 
 #[test]
-fn a_hold_is_seen_as_it_comes_and_a_warning_precedes_slip() {
+fn a_hold_is_observed_as_it_comes_and_a_warning_precedes_slip() {
     let folder = tempdir().unwrap();
     let log = file(folder.path(), "log.csv", ramp_and_hold(30.0, 100.0));
     // F = 1 + (1 + 4 t)^(-1/4): 1.5 N after 3.75 s of the hold, which begins at 1 s.
-    let told = objects(&done(folder.path(), &["watch", &log, "--slip-force", "1.5 N", "--format", "jsonl"]));
-    let of = |event: &str| told.iter().filter(|line| line["event"] == event).cloned().collect::<Vec<_>>();
+    let reported = objects(&done(folder.path(), &["watch", &log, "--slip-force", "1.5 N", "--format", "jsonl"]));
+    let of = |event: &str| reported.iter().filter(|line| line["event"] == event).cloned().collect::<Vec<_>>();
     let began = of("hold_begins");
     assert_eq!(began.len(), 1);
     assert!((began[0]["held_since_s"].as_f64().unwrap() - 1.0).abs() < 0.03, "{began:?}");
@@ -32,7 +32,7 @@ fn a_hold_is_seen_as_it_comes_and_a_warning_precedes_slip() {
         line["time_s"].as_f64().unwrap()
     };
     assert!((first("slipping") - 4.75).abs() < 0.03 && first("soon") < 3.8, "{warnings:?}");
-    let summary = told.last().unwrap();
+    let summary = reported.last().unwrap();
     assert_eq!(summary["event"], "summary");
     let hold = &summary["holds"][0];
     assert!((hold["equilibrium_force_n"].as_f64().unwrap() - 1.0).abs() < 0.01, "{hold}");
@@ -45,8 +45,8 @@ fn a_hold_is_seen_as_it_comes_and_a_warning_precedes_slip() {
 #[test]
 fn the_steps_of_the_example_are_holds_with_their_equilibrium() {
     let folder = tempdir().unwrap();
-    let told = objects(&done(folder.path(), &["watch", &ball(), "--format", "jsonl", "--every", "1 s"]));
-    let holds = told.last().unwrap()["holds"].as_array().unwrap().clone();
+    let reported = objects(&done(folder.path(), &["watch", &ball(), "--format", "jsonl", "--every", "1 s"]));
+    let holds = reported.last().unwrap()["holds"].as_array().unwrap().clone();
     // E (u/depth) A(u) at 5, 10 and 15 mm: 28 kPa, r = 35 mm, u = d/2
     for (start, displacement) in [(0.6, 5e-3), (21.2, 10e-3), (41.8, 15e-3)] {
         let hold = holds.iter().find(|hold| (hold["start_s"].as_f64().unwrap() - start).abs() < 0.11).unwrap();
@@ -60,8 +60,8 @@ fn the_steps_of_the_example_are_holds_with_their_equilibrium() {
         assert_eq!(hold["held"], "displacement");
     }
     let material = root().join("examples/records/ball-material.toml").display().to_string();
-    let told = objects(&done(folder.path(), &["watch", &ball(), "--material", &material, "--format", "jsonl"]));
-    let strain = told.iter().find_map(|line| line["excess_strain"].as_f64()).unwrap();
+    let reported = objects(&done(folder.path(), &["watch", &ball(), "--material", &material, "--format", "jsonl"]));
+    let strain = reported.iter().find_map(|line| line["excess_strain"].as_f64()).unwrap();
     assert!((0.09..0.14).contains(&strain), "{strain}");
 }
 
@@ -95,8 +95,8 @@ fn wrong_options_are_refused() {
         (&["--warn-before", "1 s"], "--slip-force"),
         (&["--material", "none.toml"], "no such file"),
     ] {
-        let told = refused(folder.path(), &[&["watch", &ball()], more].concat());
-        assert!(told.contains(expected), "{more:?}: {told}");
+        let reported = refused(folder.path(), &[&["watch", &ball()], more].concat());
+        assert!(reported.contains(expected), "{more:?}: {reported}");
     }
     assert!(refused(folder.path(), &["watch", "none.csv"]).contains("no such file"));
 }
@@ -108,11 +108,11 @@ fn a_gripper_that_holds_a_force_creeps_and_does_not_slip() {
     };
     let own = tempdir().unwrap();
     let test = root().join("examples/tests/gripper.toml").display().to_string();
-    let told = objects(&done(
+    let reported = objects(&done(
         own.path(),
         &["watch", &log.display().to_string(), "--test", &test, "--slip-force", "0.5 N", "--format", "jsonl"],
     ));
-    let holds = told.last().unwrap()["holds"].as_array().unwrap().clone();
+    let holds = reported.last().unwrap()["holds"].as_array().unwrap().clone();
     // Two grasps at a set force, 6 N and 5 N.
     for (start, force) in [(2.6, 6.0), (15.4, 5.05)] {
         let hold = holds.iter().find(|hold| (hold["start_s"].as_f64().unwrap() - start).abs() < 0.5).unwrap();
@@ -123,15 +123,15 @@ fn a_gripper_that_holds_a_force_creeps_and_does_not_slip() {
 }
 
 #[test]
-fn rows_out_of_order_are_told_and_readings_that_are_none_are_refused() {
+fn rows_out_of_order_are_reported_and_readings_that_are_none_are_refused() {
     let folder = tempdir().unwrap();
     let log = ramp_and_hold(5.0, 100.0);
     let mut rows: Vec<&str> = log.lines().collect();
     rows.swap(300, 301);
     let late = file(folder.path(), "late.csv", rows.join("\n"));
-    let told = palpate(folder.path(), &["watch", &late]);
-    let said = String::from_utf8(told.stderr).unwrap();
-    assert!(told.status.success() && said.contains("1 row up to 0.0100 s late"), "{said}");
+    let reported = palpate(folder.path(), &["watch", &late]);
+    let stated = String::from_utf8(reported.stderr).unwrap();
+    assert!(reported.status.success() && stated.contains("1 row up to 0.0100 s late"), "{stated}");
     rows[300] = "2.9900,inf,1.5";
     let none = file(folder.path(), "none.csv", rows.join("\n"));
     assert!(refused(folder.path(), &["watch", &none]).contains("expected a finite number"));

@@ -86,7 +86,7 @@ impl Sources {
         &self,
         module: &ModulePath,
         path: &[String],
-        seen: &mut BTreeSet<(ModulePath, String)>,
+        observed: &mut BTreeSet<(ModulePath, String)>,
     ) -> Option<String> {
         let mut at = module.clone();
         let mut rest = path;
@@ -105,14 +105,14 @@ impl Sources {
             at.pop();
             rest = &rest[1..];
         }
-        self.find(at, rest, seen)
+        self.find(at, rest, observed)
     }
 
     fn find(
         &self,
         mut at: ModulePath,
         mut rest: &[String],
-        seen: &mut BTreeSet<(ModulePath, String)>,
+        observed: &mut BTreeSet<(ModulePath, String)>,
     ) -> Option<String> {
         while let Some(name) = rest.first() {
             let below = joined(&at, name);
@@ -122,16 +122,16 @@ impl Sources {
                 continue;
             }
             let module = self.modules.get(&at)?;
-            if module.defined.contains(name) || !seen.insert((at.clone(), name.clone())) {
+            if module.defined.contains(name) || !observed.insert((at.clone(), name.clone())) {
                 break;
             }
             if let Some(bound) = module.bound.get(name) {
                 let whole: Vec<String> = bound.iter().chain(&rest[1..]).cloned().collect();
-                return self.resolve(&at, &whole, seen);
+                return self.resolve(&at, &whole, observed);
             }
             let behind = |glob: &Vec<String>| {
                 let whole: Vec<String> = glob.iter().chain([name]).cloned().collect();
-                self.resolve(&at, &whole, &mut seen.clone()).filter(|file| self.defines(file, name))
+                self.resolve(&at, &whole, &mut observed.clone()).filter(|file| self.defines(file, name))
             };
             if let Some(file) = module.globs.iter().find_map(behind) {
                 return Some(file);

@@ -88,7 +88,7 @@ pub(crate) fn is_not_finite(cell: &[u8]) -> bool {
         || bare.starts_with(b"1,#")
 }
 
-/// Whether a cell is empty, or says that there is no number; infinity is said of one that there was.
+/// Whether a cell is empty, or says that there is no number; infinity is stated of one that there was.
 pub(crate) fn is_absent(cell: &[u8]) -> bool {
     let cell = cell.trim_ascii();
     let is_infinite = || {

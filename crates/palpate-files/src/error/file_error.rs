@@ -70,8 +70,9 @@ impl Error for FileError {
     }
 }
 
-/// What can be wrong with a file, as it is said behind its path.
+/// What can be wrong with a file, as it is written behind its path.
 #[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum FileProblem {
     /// There is no such file; what the operating system says.
     #[error(": no such file")]
@@ -95,10 +96,10 @@ pub enum FileProblem {
     #[error(": expected a zip archive of one file, found {}", files(.0))]
     Archive(Vec<String>),
     /// Something in the file is not as its format has it, is of a kind that is not read, or is not the number that was
-    /// asked for.
+    /// requested.
     #[error("{place}: expected {}, found {}", shown(expected), shown(found))]
     Unlike {
-        /// Where in the file, as it is said behind its path.
+        /// Where in the file, as it is written behind its path.
         place: String,
         /// What should be there.
         expected: String,
@@ -139,7 +140,7 @@ pub enum FileProblem {
         line: usize,
         /// That line, shortened.
         found: String,
-        /// The delimiter the caller asked for.
+        /// The delimiter the caller requested.
         delimiter: Option<Delimiter>,
     },
     /// There are no rows of numbers, though there may be names of columns.
@@ -239,7 +240,7 @@ impl FileProblem {
         }
     }
 
-    /// A cell does not hold the number that was asked for, in a format where cells have names.
+    /// A cell does not hold the number that was requested, in a format where cells have names.
     pub(crate) fn bad_cell(
         place: &str,
         expected: impl Into<String>,

@@ -10,7 +10,7 @@ use super::source::Input;
 use crate::error::FileError;
 
 thread_local! {
-    /// Whether a panic of this thread is caught and told as damage, so that nothing else need be said of it.
+    /// Whether a panic of this thread is caught and reported as damage, so that nothing else need be stated of it.
     static CAUGHT: Cell<bool> = const { Cell::new(false) };
 }
 

@@ -8,7 +8,7 @@ use std::{
     },
 };
 
-/// A reader whose progress can be seen from outside.
+/// A reader whose progress can be observed from outside.
 pub(super) struct Counting<R> {
     pub(super) inner: R,
     /// Bytes read so far.

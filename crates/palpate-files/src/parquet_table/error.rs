@@ -7,6 +7,7 @@ use parquet::errors::ParquetError;
 
 /// Why a table cannot be written or read.
 #[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum TableError {
     /// The operating system refuses.
     #[error(transparent)]

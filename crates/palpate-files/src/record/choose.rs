@@ -84,15 +84,15 @@ pub(super) struct Chooser<'a> {
 /// Chooses the columns of one test.
 pub(super) fn choose(part: &Part, test: &TestDescription) -> Result<Plan, ColumnError> {
     let chooser = Chooser { part };
-    let said = &test.columns;
-    let (load, load_said) = chooser.force_or_stress(test)?;
-    let displacement = chooser.find(Quantity::Displacement, said.displacement.as_ref())?;
-    let may_be_there = displacement.is_none() && load_said.is_none_or(|load| load.column.is_none());
+    let stated = &test.columns;
+    let (load, load_stated) = chooser.force_or_stress(test)?;
+    let displacement = chooser.find(Quantity::Displacement, stated.displacement.as_ref())?;
+    let may_be_there = displacement.is_none() && load_stated.is_none_or(|load| load.column.is_none());
     let clocks = [
-        (Quantity::Displacement, said.displacement.as_ref(), displacement.as_ref()),
-        (load.role.measured(), load_said, Some(&load)),
+        (Quantity::Displacement, stated.displacement.as_ref(), displacement.as_ref()),
+        (load.role.measured(), load_stated, Some(&load)),
     ];
-    let one_time = said.time.as_ref().is_some_and(|time| time.column.is_some());
+    let one_time = stated.time.as_ref().is_some_and(|time| time.column.is_some());
     let mut found = Vec::new();
     let mut needs_time = false;
     for (quantity, choice, values) in clocks {
@@ -104,12 +104,12 @@ pub(super) fn choose(part: &Part, test: &TestDescription) -> Result<Plan, Column
         }
     }
     let added = displacement.as_ref().map(|displacement| chooser.added(displacement)).transpose()?.flatten();
-    let deflection = match (&displacement, &said.deflection) {
+    let deflection = match (&displacement, &stated.deflection) {
         (Some(height), Some(choice)) => Some(chooser.deflection(height, choice)?),
         _ => None,
     };
     if needs_time {
-        let time = chooser.find(Quantity::Time, said.time.as_ref())?;
+        let time = chooser.find(Quantity::Time, stated.time.as_ref())?;
         found.push(time.ok_or_else(|| chooser.missing(Quantity::Time))?);
     }
     found.extend(displacement);
@@ -132,8 +132,8 @@ pub(super) fn choose(part: &Part, test: &TestDescription) -> Result<Plan, Column
 impl<'a> Chooser<'a> {
     /// The column of force, or that of stress where the description says so or there is no force.
     fn force_or_stress(&self, test: &'a TestDescription) -> Result<(Found<'a>, Option<&'a ColumnChoice>), ColumnError> {
-        let said = &test.columns;
-        let (quantity, choice) = match (&said.stress, &said.force) {
+        let stated = &test.columns;
+        let (quantity, choice) = match (&stated.stress, &stated.force) {
             (Some(stress), _) => (Quantity::Stress, Some(stress)),
             (None, force) => (Quantity::Force, force.as_ref()),
         };

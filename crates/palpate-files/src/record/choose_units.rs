@@ -21,7 +21,7 @@ impl Found<'_> {
 }
 
 impl Chooser<'_> {
-    /// A column whose unit is none that a header could give: a travel said for each unit of it, or a time since 1970.
+    /// A column whose unit is none that a header could give: a travel stated for each unit of it, or a time since 1970.
     fn without_plain_unit(&self, found: &Found<'_>) -> Result<Option<ColumnUse>, ColumnError> {
         if let Some(travel) = found.choice.and_then(|choice| choice.travel_per_unit) {
             return Ok(Some(found.used(format!("{} mm each", travel * 1e3), travel)));
@@ -38,11 +38,11 @@ impl Chooser<'_> {
                 ..date
             }));
         }
-        let is_said = found.unit.is_some_and(|unit| unit.trim().eq_ignore_ascii_case(epoch::EPOCH));
+        let is_stated = found.unit.is_some_and(|unit| unit.trim().eq_ignore_ascii_case(epoch::EPOCH));
         let is_named = found.unit.or(found.column.unit.as_deref()).is_none() && epoch::is_named(found.column);
         match epoch::unit(found.column) {
-            Some((unit, factor)) if is_said || is_named => Ok(Some(found.used(format!("{unit} since 1970"), factor))),
-            None if is_said => Err(ColumnError::NoEpoch(found.column.into(), found.column.sample.clone())),
+            Some((unit, factor)) if is_stated || is_named => Ok(Some(found.used(format!("{unit} since 1970"), factor))),
+            None if is_stated => Err(ColumnError::NoEpoch(found.column.into(), found.column.sample.clone())),
             _ => Ok(None),
         }
     }
@@ -50,11 +50,15 @@ impl Chooser<'_> {
     /// A unit that nobody wrote down for this file, but the conventions of a machine, gives way to none in the header.
     fn refuse_contradiction(&self, found: &Found<'_>) -> Result<(), ColumnError> {
         if let Some(choice) = found.choice
-            && let (Some(machine), Some(said), Some(written)) = (&choice.unit_by, &choice.unit, &found.column.unit)
+            && let (Some(machine), Some(stated), Some(written)) = (&choice.unit_by, &choice.unit, &found.column.unit)
             && contradicts(found.role.measured(), choice, found.column)
         {
-            let (machine, said, written) = (machine.clone(), said.clone(), written.clone());
-            return Err(found.wrong_unit(UnitProblem::OfMachine { machine, said, written }));
+            let (machine, stated, written) = (machine.clone(), stated.clone(), written.clone());
+            return Err(found.wrong_unit(UnitProblem::OfMachine {
+                machine,
+                stated,
+                written,
+            }));
         }
         Ok(())
     }

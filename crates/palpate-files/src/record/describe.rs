@@ -179,7 +179,7 @@ fn write_columns(out: &mut String, part: &Part, columns: &[ColumnUse]) {
     }
 }
 
-/// What a column counts in, with what the description said beside the unit.
+/// What a column counts in, with what the description stated beside the unit.
 fn write_unit(out: &mut String, column: &ColumnUse, info: &ColumnInfo) {
     let (dimension, factor) = (column.role.measured().dimension(), column.factor);
     let symbol = dimension.units()[0].0;
@@ -218,13 +218,13 @@ fn write_questions(out: &mut String, part: &Part) {
                 format!("\"{ASK}\"    # {} are all candidates", numbers.join(", "))
             }
         };
-        let unit = asked_unit(quantity, &candidates);
+        let unit = requested_unit(quantity, &candidates);
         let _ = writeln!(out, "[columns.{quantity}]\ncolumn = {column}\nunit = {unit}\n");
     }
 }
 
 /// The unit that all columns have which could hold a quantity, or a question for it.
-fn asked_unit(quantity: Quantity, possible: &[&ColumnInfo]) -> String {
+fn requested_unit(quantity: Quantity, possible: &[&ColumnInfo]) -> String {
     let accepted = quantity.dimension().accepted();
     let mut units: Vec<Option<&str>> = possible.iter().map(|column| column.unit.as_deref()).collect();
     units.dedup();
@@ -233,9 +233,9 @@ fn asked_unit(quantity: Quantity, possible: &[&ColumnInfo]) -> String {
             format!("{}    # from the file", quoted(unit))
         }
         [Some(unit)] => {
-            let (said, meant) = (quoted(unit), quantity.unit_meant(unit));
+            let (stated, meant) = (quoted(unit), quantity.unit_meant(unit));
             format!(
-                "\"{ASK}\"    # the file gives {said}, which is no unit of {quantity}; \"{meant}\", or one of {accepted}"
+                "\"{ASK}\"    # the file gives {stated}, which is no unit of {quantity}; \"{meant}\", or one of {accepted}"
             )
         }
         _ => format!("\"{ASK}\"    # the file gives no unit; one of {accepted}"),

@@ -34,22 +34,22 @@ pub(super) fn write_body(out: &mut String, part: &Part) {
 fn of_sizes(part: &Part) -> Option<String> {
     let size = |known: &str| part.metadata.iter().find_map(|entry| millimetres(entry, known));
     let length = size(LENGTH);
-    let said = |mm: f64| format!("\"{mm} mm\"    # guessed from what the file says");
+    let stated = |mm: f64| format!("\"{mm} mm\"    # guessed from what the file says");
     match (size(DIAMETER), size(WIDTH), size(THICKNESS), size(RADIUS)) {
         (_, Some(width), Some(thickness), _) => {
-            let length = length.map_or_else(|| "\"?\"".to_owned(), said);
+            let length = length.map_or_else(|| "\"?\"".to_owned(), stated);
             Some(format!(
                 "shape = \"strip\"\nwidth = {}\nthickness = {}\nlength = {length}",
-                said(width),
-                said(thickness)
+                stated(width),
+                stated(thickness)
             ))
         }
         (Some(diameter), _, thickness, _) if length.or(thickness).is_some() => {
             let length = length.or(thickness).unwrap_or_default();
-            Some(format!("shape = \"cylinder\"\ndiameter = {}\nlength = {}", said(diameter), said(length)))
+            Some(format!("shape = \"cylinder\"\ndiameter = {}\nlength = {}", stated(diameter), stated(length)))
         }
-        (Some(diameter), ..) => Some(format!("shape = \"ball\"\nradius = {}", said(0.5 * diameter))),
-        (None, .., Some(radius)) => Some(format!("shape = \"ball\"\nradius = {}", said(radius))),
+        (Some(diameter), ..) => Some(format!("shape = \"ball\"\nradius = {}", stated(0.5 * diameter))),
+        (None, .., Some(radius)) => Some(format!("shape = \"ball\"\nradius = {}", stated(radius))),
         _ => None,
     }
 }

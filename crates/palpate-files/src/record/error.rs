@@ -15,6 +15,7 @@ use crate::{
 
 /// Why it is not clear which column holds what.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum ColumnError {
     /// No column was found for a quantity that a record needs among all columns of the file.
     #[error("expected a column of {}, found {}", .0, snippet::described(.1))]
@@ -64,7 +65,7 @@ pub enum ColumnError {
         /// All columns of the file.
         columns: Vec<ColumnInfo>,
     },
-    /// One column is said to hold two quantities.
+    /// One column is stated to hold two quantities.
     #[error("{0}: expected one quantity in a column, found {1} and {2}")]
     Twice(NamedColumn, Quantity, Quantity),
     /// A column is to be added to one that was stamped by another clock.
@@ -90,12 +91,12 @@ pub enum UnitProblem {
     #[error("\"{}\" is not a unit of {} (accepted: {})", .1, .0, .0.dimension().accepted())]
     Unknown(Quantity, String),
     /// The conventions of a machine say one unit, the header another.
-    #[error("expected {said}, the unit of machine.preset = \"{machine}\", found {written} in the header")]
+    #[error("expected {stated}, the unit of machine.preset = \"{machine}\", found {written} in the header")]
     OfMachine {
         /// The machine.
         machine: String,
         /// Its unit.
-        said: String,
+        stated: String,
         /// The unit in the header.
         written: String,
     },
@@ -124,22 +125,24 @@ impl ColumnError {
             Self::NotNumbers(_, found) => crate::error::hint_of_text(found, DecimalMark::Point).to_owned(),
             Self::Ambiguous(quantity, candidates) => {
                 let number = candidates.first().map_or(1, |column| column.number);
-                let said = candidates.first().map(|first| {
+                let stated = candidates.first().map(|first| {
                     let same = candidates.iter().filter(|other| other.name == first.name).count();
                     snippet::entry(*quantity, first, None, same == 1)
                 });
-                let said = snippet::option(said);
-                format!("choose one: {said}, or in a test description:\n[columns.{quantity}]\ncolumn = {number}")
+                let stated = snippet::option(stated);
+                format!("choose one: {stated}, or in a test description:\n[columns.{quantity}]\ncolumn = {number}")
             }
             Self::Unclear { candidates, columns } => snippet::of_unclear(candidates, columns),
             Self::NoUnit(columns) => {
                 let lines = columns.iter().map(|(key, unit, column)| snippet::of_unit(key, unit, column));
                 let lines = lines.collect::<Vec<_>>().join("\n");
-                let said = columns.iter().map(|(key, unit, column)| {
+                let stated = columns.iter().map(|(key, unit, column)| {
                     Some(snippet::entry(snippet::quantity_of(key)?, column, Some(unit), true))
                 });
-                match said.collect::<Option<Vec<_>>>() {
-                    Some(said) => format!("state it: {}, or in a test description:\n{lines}", snippet::option(said)),
+                match stated.collect::<Option<Vec<_>>>() {
+                    Some(stated) => {
+                        format!("state it: {}, or in a test description:\n{lines}", snippet::option(stated))
+                    }
                     None => format!("state it in a test description:\n{lines}"),
                 }
             }
@@ -180,7 +183,7 @@ impl UnitProblem {
                 }
                 let meant = quantity.unit_meant(unit);
                 let lines = snippet::of_unit_and_column(key, meant, column);
-                let said = snippet::quantity_of(key).map_or_else(String::new, |quantity| {
+                let stated = snippet::quantity_of(key).map_or_else(String::new, |quantity| {
                     let entry = snippet::entry(quantity, column, Some(meant), true);
                     format!(": {}, or", snippet::option([entry]))
                 });
@@ -188,7 +191,7 @@ impl UnitProblem {
                     true => "another unit is meant".to_owned(),
                     false => format!("\"{unit}\" stands for {meant}"),
                 };
-                format!("if {doubt}, state it{said} in a test description:\n{lines}")
+                format!("if {doubt}, state it{stated} in a test description:\n{lines}")
             }
             Self::Unknown(_, unit) if key == "columns.force.unit" && column.name.as_deref() == Some(UNCALIBRATED) => {
                 snippet::of_bending(column, unit)
@@ -255,6 +258,7 @@ impl fmt::Display for Counted {
 
 /// Why a file gives no record.
 #[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum ReadError {
     /// The file cannot be read.
     #[error(transparent)]
@@ -268,7 +272,7 @@ pub enum ReadError {
         source: ColumnError,
     },
     /// The numbers make no record.
-    #[error("{}{}{}: {}", path.display(), behind_comma(part.as_ref()), behind_comma(line.as_ref()), said(source, line.is_some()))]
+    #[error("{}{}{}: {}", path.display(), behind_comma(part.as_ref()), behind_comma(line.as_ref()), stated(source, line.is_some()))]
     Record {
         /// The file.
         path: PathBuf,
@@ -302,7 +306,7 @@ pub enum ReadError {
     NoSuchPart {
         /// The file.
         path: PathBuf,
-        /// What was asked for.
+        /// What was requested.
         found: String,
         /// The names there are.
         parts: Vec<String>,
@@ -341,7 +345,7 @@ fn behind_comma(what: Option<&impl fmt::Display>) -> String {
     what.map_or_else(String::new, |what| format!(", {what}"))
 }
 
-/// What could be said of a file with these parts.
+/// What could be stated of a file with these parts.
 fn one_of_parts(parts: &[String]) -> String {
     let numbered = parts.iter().enumerate().map(|(index, part)| format!("{} (\"{part}\")", index + 1));
     match parts.len() {
@@ -357,7 +361,7 @@ fn first(parts: &[String]) -> String {
 
 /// The message of a record error; less its row where a line of the file is known, which says more. Records count their
 /// rows from 0, files from 1.
-fn said(error: &RecordError, placed: bool) -> String {
+fn stated(error: &RecordError, placed: bool) -> String {
     let message = error.to_string();
     let row = error.row().and_then(|row| Some((message.strip_suffix(&format!(" in row {row}"))?, row + 1)));
     match (row, placed) {

@@ -116,7 +116,7 @@ pub fn read_part(
     let mut read = contents.read(part, &numbers, progress)?;
     let mut values = std::mem::take(&mut read.values);
     for (column, values) in plan.columns.iter_mut().zip(&values) {
-        // The dates of a workbook are seen only now.
+        // The dates of a workbook are observed only now.
         let first = values.first().map_or(0.0, |first| first * column.factor);
         column.epoch |= column.role.measured() == Quantity::Time && epoch::is_of_our_days(first);
     }

@@ -78,7 +78,7 @@ pub(super) fn of_columns(columns: &[ColumnInfo]) -> String {
     let lines = lines.join("\n");
     let has = |quantity| proposed.iter().any(|proposed| proposed.quantity == quantity);
     let is_whole = (has(Quantity::Force) || has(Quantity::Stress)) && (is_log || has(Quantity::Time));
-    // What a volt stands for is said in a description alone.
+    // What a volt stands for is stated in a description alone.
     if !is_whole || proposed.iter().any(|proposed| is_volts(proposed.unit)) {
         return format!("assign the columns in a test description:\n{lines}");
     }
@@ -187,11 +187,11 @@ pub(super) fn of_unclear(candidates: &[NamedColumn], columns: &[ColumnInfo]) -> 
         name if name.contains("per ") => "\ndoubled = true  # of two fingers",
         _ => "",
     };
-    let said = candidates.first().filter(|_| sign.is_empty()).map_or_else(String::new, |column| {
+    let stated = candidates.first().filter(|_| sign.is_empty()).map_or_else(String::new, |column| {
         format!(": {}, or", option([entry(Quantity::Displacement, column, Some(unit), true)]))
     });
     format!(
-        "if it is, state this{said} in a test description:\n[columns.displacement]\ncolumn = {number}\nunit = \"{unit}\"{sign}{without}"
+        "if it is, state this{stated} in a test description:\n[columns.displacement]\ncolumn = {number}\nunit = \"{unit}\"{sign}{without}"
     )
 }
 

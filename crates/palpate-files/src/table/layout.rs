@@ -32,7 +32,7 @@ pub struct Layout {
     pub metadata: Vec<Metadata>,
     /// The columns, left to right.
     pub columns: Vec<ColumnInfo>,
-    /// No number seen so far had a mark, and nobody said which it is: a point further down could set off thousands.
+    /// No number observed so far had a mark, and nobody stated which it is: a point further down could set off thousands.
     #[serde(skip)]
     pub undecided: bool,
 }

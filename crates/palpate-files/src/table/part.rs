@@ -164,7 +164,7 @@ pub enum ColumnKind {
 pub struct ColumnInfo {
     /// Place in the row; the leftmost column is 1.
     pub number: usize,
-    /// Name as written, less a unit that could be told from it. `None`: the column has no name.
+    /// Name as written, less a unit that could be determined from it. `None`: the column has no name.
     pub name: Option<String>,
     /// Unit as written, less any brackets; not interpreted.
     pub unit: Option<String>,

@@ -76,7 +76,7 @@ pub(crate) fn possible_displacements(columns: &[ColumnInfo]) -> impl Iterator<It
             return false;
         };
         let words = words(measured(name));
-        // What is said per finger is a displacement all the same.
+        // What is stated per finger is a displacement all the same.
         let other = words.iter().any(|word| is_listed(word, OTHER) && !is_listed(word, STRAINS) && word != "per")
             || OTHER_CHARACTERS.split_whitespace().any(|part| name.contains(part))
             || BENDING.contains(&name.trim());

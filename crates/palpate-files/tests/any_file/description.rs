@@ -40,7 +40,7 @@ pub(crate) fn read_description(kind: DescriptionKind, name: &str, bytes: &[u8]) 
     }
 }
 
-/// What is no text is told by those who read it from a disk.
+/// What is no text is recognised by those who read it from a disk.
 fn from_disk(kind: DescriptionKind, name: &str, bytes: &[u8]) -> Result<(), Complaint> {
     let folder = tempfile::tempdir().expect("a folder");
     let path = folder.path().join(name);

@@ -28,7 +28,7 @@ const MOST_PARTS: usize = 8;
 /// Most columns of a part that are read one by one.
 const MOST_COLUMNS: usize = 3;
 
-/// What is said of a file that is refused.
+/// What is stated of a file that is refused.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(crate) struct Complaint {
     pub(crate) message: String,
@@ -140,7 +140,7 @@ fn choices(part: &Part) -> Vec<Vec<usize>> {
     std::iter::once(all.clone()).filter(|all| !all.is_empty()).chain(one).collect()
 }
 
-/// What is promised of columns: as many as asked for, of one length a clock, and finite.
+/// What is promised of columns: as many as requested, of one length a clock, and finite.
 fn check_columns(format: Format, part: &Part, columns: &[usize], read: &Columns) {
     assert_eq!(read.values.len(), columns.len());
     assert!(

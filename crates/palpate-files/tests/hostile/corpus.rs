@@ -63,7 +63,7 @@ impl Example {
         self.kind.map_or_else(|| self.bytes.clone(), |kind| any_file::packed(kind, &self.bytes))
     }
 
-    /// What is said of it, in memory that its size warrants.
+    /// What is stated of it, in memory that its size warrants.
     pub(crate) fn read(&self) -> Result<(), Complaint> {
         let file = self.file();
         if self.kind.is_some() {

@@ -1,4 +1,4 @@
-//! Files that are cut off, overwritten, made up or mistaken: what is said of each, and that none does harm.
+//! Files that are cut off, overwritten, made up or mistaken: what is stated of each, and that none does harm.
 //!
 //! The files are in `tests/corpus`, in one folder a format; `tests/any_file/pack.rs` says what they are. Files called
 //! `good…` are read; of all others `tests/corpus/messages.toml` holds the message and the hint. To write that table anew,

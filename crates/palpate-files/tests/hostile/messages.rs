@@ -1,4 +1,4 @@
-//! What is said of every bad file.
+//! What is stated of every bad file.
 
 use std::{collections::BTreeMap, fmt::Write as _, fs};
 
@@ -15,17 +15,17 @@ struct Expected {
     hint: Option<String>,
 }
 
-/// What is said of every file; `None` of those that are read.
+/// What is stated of every file; `None` of those that are read.
 fn complaints() -> BTreeMap<String, Option<Complaint>> {
-    let (mut said, mut panicked) = (BTreeMap::new(), Vec::new());
+    let (mut stated, mut panicked) = (BTreeMap::new(), Vec::new());
     for example in corpus::all() {
         match std::panic::catch_unwind(|| example.read()) {
-            Ok(read) => drop(said.insert(example.place, read.err())),
+            Ok(read) => drop(stated.insert(example.place, read.err())),
             Err(_) => panicked.push(example.place),
         }
     }
     assert!(panicked.is_empty(), "readers panic: {panicked:?}");
-    said
+    stated
 }
 
 fn is_good(place: &str) -> bool {
@@ -37,7 +37,8 @@ fn every_bad_file_has_its_message_and_good_ones_are_read() {
     let found = complaints();
     let mistaken: Vec<_> = found.iter().filter(|(place, complaint)| is_good(place) != complaint.is_none()).collect();
     assert!(mistaken.is_empty(), "good files that are refused, or bad ones that are read: {mistaken:#?}");
-    let bad: BTreeMap<String, Complaint> = found.into_iter().filter_map(|(place, said)| Some((place, said?))).collect();
+    let bad: BTreeMap<String, Complaint> =
+        found.into_iter().filter_map(|(place, stated)| Some((place, stated?))).collect();
     assert!(bad.len() >= FEWEST, "{} bad files", bad.len());
     let table = corpus::folder().join("messages.toml");
     if std::env::var_os("PALPATE_WRITE_MESSAGES").is_some() {
@@ -55,14 +56,16 @@ fn every_bad_file_has_its_message_and_good_ones_are_read() {
 
 #[test]
 fn nothing_is_refused_without_a_way_on() {
-    let without = complaints().into_iter().filter(|(_, said)| said.as_ref().is_some_and(|said| said.hint.is_none()));
+    let without = complaints()
+        .into_iter()
+        .filter(|(_, stated)| stated.as_ref().is_some_and(|stated| stated.hint.is_none()));
     let without: Vec<_> = without.collect();
     assert!(without.is_empty(), "{without:#?}");
 }
 
 /// The table as it is committed.
 fn written(found: &BTreeMap<String, Complaint>) -> String {
-    let mut text = String::from("# What is said of every bad file of this folder, and what is said to help.\n");
+    let mut text = String::from("# What is stated of every bad file of this folder, and what is stated to help.\n");
     for (place, Complaint { message, hint }) in found {
         write!(text, "\n[\"{place}\"]\nmessage = '''\n{message}\n'''\n").expect("a text in memory");
         if let Some(hint) = hint {

@@ -1,4 +1,4 @@
-//! Times counted from 1970 in delimited text: told apart by their size, said in the result, relative in the record.
+//! Times counted from 1970 in delimited text: distinguished by their size, stated in the result, relative in the record.
 
 use std::path::Path;
 
@@ -48,7 +48,7 @@ fn seconds_lose_nothing_that_was_written() {
 }
 
 #[test]
-fn the_unit_is_told_by_the_size_and_said() {
+fn the_unit_is_reported_by_the_size_and_stated() {
     for (cells, unit) in [
         (["1724504945198", "1724504945209", "1724504945220", "1724504946198"], "ms since 1970"),
         (["1724504945198000", "1724504945209000", "1724504945220000", "1724504946198000"], "us since 1970"),
@@ -72,7 +72,7 @@ fn the_unit_is_told_by_the_size_and_said() {
 }
 
 #[test]
-fn a_plain_time_of_that_size_is_asked_for_its_unit() {
+fn a_plain_time_of_that_size_is_requested_for_its_unit() {
     let error = record(&rows("Time", SECONDS), "").unwrap_err();
     assert!(
         matches!(
@@ -96,8 +96,8 @@ fn a_plain_time_of_that_size_is_asked_for_its_unit() {
         ),
         "{error}"
     );
-    let said = "columns.time.unit = \"epoch\"";
-    let error = record(&rows("Time", ["0.1", "0.2", "0.3", "0.4"]), said).unwrap_err();
+    let stated = "columns.time.unit = \"epoch\"";
+    let error = record(&rows("Time", ["0.1", "0.2", "0.3", "0.4"]), stated).unwrap_err();
     let text = error.to_string();
     assert!(text.contains("column 1 (Time): expected a time since 1970 (of 2000 to 2100"), "{text}");
     assert!(text.ends_with("found 0.1") && error.hint().is_some(), "{text}");
@@ -145,7 +145,12 @@ fn dates_with_times_of_day_are_times() {
     ] {
         let file = record(&rows(header, cells), "").unwrap_or_else(|error| panic!("{header}: {error}"));
         assert_eq!((file.start, file.columns[0].unit.as_str()), (Some(1_724_504_945.5), "date and time"), "{header}");
-        let off = file.record.time().iter().zip([0.0, 0.011, 0.022, 1.0]).map(|(time, told)| (time - told).abs());
+        let off = file
+            .record
+            .time()
+            .iter()
+            .zip([0.0, 0.011, 0.022, 1.0])
+            .map(|(time, reported)| (time - reported).abs());
         assert!(off.fold(0.0, f64::max) < 3e-7, "{header}: {:?}", file.record.time());
     }
     // A column of numbers goes before the clock on the wall.

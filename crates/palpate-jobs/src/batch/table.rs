@@ -82,7 +82,7 @@ impl<W: Write + Send> Sink<W> {
     fn new(format: Format, mut out: W, fields: Vec<Field>, settings: &str) -> Result<Self, TableError> {
         match format {
             Format::Csv => {
-                // A comment, which readers of CSV can be told to pass over; palpate passes over it by itself.
+                // A comment, which readers of CSV can be set to pass over; palpate passes over it by itself.
                 writeln!(out, "# {MARK}: {settings}")?;
                 let mut writer = csv::Writer::from_writer(out);
                 writer.write_record(fields.iter().map(|field| field.name.as_str())).map_err(io::Error::from)?;

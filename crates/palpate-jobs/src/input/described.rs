@@ -7,10 +7,10 @@ use palpate_files::description::{NamedColumns, TestDescription, parse_test, read
 
 use crate::JobError;
 
-/// What is said about the tests in a file, and where it stands; the default says nothing.
+/// What is stated about the tests in a file, and where it stands; the default says nothing.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Described {
-    /// What is said.
+    /// What is stated.
     pub test: Option<TestDescription>,
     /// The file in which it stands.
     pub path: Option<PathBuf>,

@@ -13,14 +13,14 @@ use crate::written_by_batch::is_written_by_batch;
 use crate::{ErrorKind, JobError};
 
 /// The files that were named, those below the folders that were named, and those that patterns match, in order and each once, with what is
-/// said about them all.
+/// stated about them all.
 ///
 /// Folders and patterns pass over what a batch has written.
 #[derive(Debug, Clone)]
 pub struct NamedRecords {
     /// The files.
     pub paths: Vec<PathBuf>,
-    /// What is said about them.
+    /// What is stated about them.
     pub described: Described,
 }
 
@@ -68,12 +68,12 @@ impl NamedRecords {
                 paths.push(path.clone());
             }
         }
-        let mut seen = HashSet::new();
-        paths.retain(|path| seen.insert(path.canonicalize().unwrap_or_else(|_| path.clone())));
+        let mut observed = HashSet::new();
+        paths.retain(|path| observed.insert(path.canonicalize().unwrap_or_else(|_| path.clone())));
         Ok(Self { paths, described })
     }
 
-    /// Hands every test to `take`, one in memory at a time, with `out` as the folder for the results of all; `told` hears what else a file
+    /// Hands every test to `take`, one in memory at a time, with `out` as the folder for the results of all; `reported` hears what else a file
     /// holds. A file that cannot be opened is handed over once, as a test without a record.
     ///
     /// # Errors
@@ -82,7 +82,7 @@ impl NamedRecords {
         &self,
         out: Option<&Path>,
         watch: &mut dyn Watch,
-        mut told: impl FnMut(&[String]),
+        mut reported: impl FnMut(&[String]),
         mut take: impl FnMut(Part<'_>, &mut dyn Watch) -> Result<(), JobError>,
     ) -> Result<(), JobError> {
         let alone = self.paths.len() == 1;
@@ -96,7 +96,7 @@ impl NamedRecords {
                 }
             });
             let opened = OpenedFile::open(path, &self.described);
-            opened.iter().for_each(|opened| told(&opened.notes()));
+            opened.iter().for_each(|opened| reported(&opened.notes()));
             let parts = opened.as_ref().map_or(&[0][..], |opened| &opened.tests.parts);
             let (several, mut taken) = (parts.len() > 1, Vec::new());
             for part in parts {

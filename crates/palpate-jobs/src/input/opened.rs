@@ -33,7 +33,7 @@ pub struct OpenedFile<'d> {
     pub contents: Contents,
     /// Its tests among its parts, and what was passed over.
     pub tests: Tests,
-    /// What is said about its tests.
+    /// What is stated about its tests.
     pub described: &'d Described,
     digest: FileDigest,
 }
@@ -49,9 +49,9 @@ impl<'d> OpenedFile<'d> {
 
     /// Looks into a file whose bytes are there.
     pub(crate) fn of(source: Source, described: &'d Described) -> Result<Self, JobError> {
-        let said = described.test.clone().unwrap_or_default();
-        let contents = Contents::of(source.input, &said.reading).map_err(ReadError::File)?;
-        let tests = tests(&contents, &said)?;
+        let stated = described.test.clone().unwrap_or_default();
+        let contents = Contents::of(source.input, &stated.reading).map_err(ReadError::File)?;
+        let tests = tests(&contents, &stated)?;
         Ok(Self {
             contents,
             tests,
@@ -64,8 +64,8 @@ impl<'d> OpenedFile<'d> {
     #[must_use]
     pub fn notes(&self) -> Vec<String> {
         let path = self.contents.input.name.display();
-        let told = |part: &SkippedPart| format!("{path}: skipped {} ({})", part.name, part.reason);
-        self.tests.skipped.iter().map(told).collect()
+        let reported = |part: &SkippedPart| format!("{path}: skipped {} ({})", part.name, part.reason);
+        self.tests.skipped.iter().map(reported).collect()
     }
 
     /// What to call a part, where the file holds several tests.

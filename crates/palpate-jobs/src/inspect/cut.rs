@@ -65,15 +65,15 @@ impl Cut {
     }
 
     /// Sparklines, phases and first touch as text.
-    pub(super) fn told(&self, test: Option<&TestDescription>) -> String {
+    pub(super) fn reported(&self, test: Option<&TestDescription>) -> String {
         let mut out = self.sparklines();
         match &self.found {
             Ok(found) => {
                 out.push_str(&self.phases(found));
                 out.push_str(&self.contact(found, test));
                 let hunts = found.ripple.map(Finding::JawHunts);
-                for seen in hunts.into_iter().chain(suspicious_signs(&self.record)) {
-                    let _ = writeln!(out, "{}; {}", seen.seen(), seen.remedy());
+                for observed in hunts.into_iter().chain(suspicious_signs(&self.record)) {
+                    let _ = writeln!(out, "{}; {}", observed.observation(), observed.remedy());
                 }
             }
             Err(_) if self.refused().is_some() => {}
@@ -82,7 +82,7 @@ impl Cut {
             }
         }
         if let Some(skewed) = &self.skewed {
-            let _ = writeln!(out, "{}; {}", skewed.seen(), skewed.remedy());
+            let _ = writeln!(out, "{}; {}", skewed.observation(), skewed.remedy());
         }
         out
     }
@@ -136,7 +136,7 @@ impl Cut {
             .column("Force at end", "force_end_n", "N", |segment| Cell::Number(force[segment.end - 1], 4))
             .table();
         for rupture in &segmentation.ruptures {
-            table = table.note(Finding::Ruptured(*rupture).seen());
+            table = table.note(Finding::Ruptured(*rupture).observation());
         }
         let mut out = table.to_plain_text();
         let done = &record.corrections()[self.before..];

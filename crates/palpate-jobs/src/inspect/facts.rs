@@ -18,7 +18,7 @@ pub(super) fn part_facts(part: &Part, format: Format) -> String {
     if let Some(name) = &part.name {
         let _ = writeln!(out, "{name}");
     }
-    // Where nothing is to be said beyond the format, it was said.
+    // Where nothing is to be stated beyond the format, it was stated.
     if !part.written.is_empty() && part.written != format.to_string() {
         let _ = writeln!(out, "{}", part.written);
     }

@@ -58,11 +58,11 @@ impl Inspect {
             cut: None,
         };
         let mut notes = Vec::new();
-        let told = match &opened.tests.parts[..] {
+        let reported = match &opened.tests.parts[..] {
             [only] => found.one_test(opened, *only, &mut notes, watch),
             _ if self.only => opened.only().map(drop),
             several => {
-                // What is said for all, by the first that can be read.
+                // What is stated for all, by the first that can be read.
                 let file = several.iter().find_map(|part| Some((*part, opened.read(*part, watch).ok()?)));
                 let mut parts = several.to_vec();
                 if let Some((first, _)) = &file {
@@ -75,7 +75,7 @@ impl Inspect {
         for part in &opened.tests.skipped {
             let _ = writeln!(found.text, "skipped {}: {}", part.name, part.reason);
         }
-        found.refused = told.err();
+        found.refused = reported.err();
         match found.refused {
             Some(error) if error.kind == ErrorKind::Cancelled => Err(error),
             _ => Ok(Outcome::of(found).noted(notes)),
@@ -113,7 +113,7 @@ impl Inspected {
         out.push_str(&signal_facts(&file, cut.as_ref().ok().and_then(|cut| cut.signals.as_ref())));
         let place = file.path.display().to_string();
         let cut = cut.map_err(|error| JobError::analysis(&error, &place))?;
-        out.push_str(&cut.told(test));
+        out.push_str(&cut.reported(test));
         if let Some(error) = cut.refused() {
             return Err(JobError::new(ErrorKind::Record, error, error.hint().to_owned()).of(place));
         }

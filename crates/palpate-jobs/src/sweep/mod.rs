@@ -188,7 +188,7 @@ fn unpacked(bytes: &[u8], mut take: impl FnMut(Rows) -> Result<(), TableError>) 
     (0..table.groups()).try_for_each(|group| take(table.read(group)?))
 }
 
-/// Where the table goes: beside nothing else, under the name of the protocol, if nothing is said.
+/// Where the table goes: beside nothing else, under the name of the protocol, if nothing is stated.
 fn table_of(protocol: &Path, out: Option<&Path>) -> Result<PathBuf, JobError> {
     let usual = || beside(Path::new(protocol.file_stem().unwrap_or_default()), ".parquet");
     let out = out.map_or_else(usual, Path::to_owned);

@@ -12,7 +12,7 @@ pub enum Event {
     /// It turned out that something else is held.
     Changed(Observation),
     /// It ended.
-    Ended(f64, HoldSeen),
+    Ended(f64, HoldObserved),
     /// Slip is near, or there.
     Warned(Observation),
 }
@@ -21,26 +21,26 @@ impl Event {
     /// The line of `palpate.watch/1` that tells of it.
     #[must_use]
     pub fn document(&self) -> WatchDocument {
-        let observation = |event, seen| WatchDocument::Observation(ObservationDocument::new(event, seen));
+        let observation = |event, observed| WatchDocument::Observation(ObservationDocument::new(event, observed));
         match self {
-            Self::Began(seen) => observation("hold_begins", seen),
-            Self::Changed(seen) => observation("hold_changes", seen),
+            Self::Began(observed) => observation("hold_begins", observed),
+            Self::Changed(observed) => observation("hold_changes", observed),
             Self::Ended(time, hold) => WatchDocument::Hold(hold.document().ended(*time)),
-            Self::Warned(seen) => observation("warning", seen),
+            Self::Warned(observed) => observation("warning", observed),
         }
     }
 }
 
-/// A hold as it was seen.
+/// A hold as it was observed.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct HoldSeen {
+pub struct HoldObserved {
     /// When it began, s.
     pub since: f64,
     /// Likewise, its last tick, s.
     pub until: f64,
     /// What was held for most of its ticks.
     pub held: Held,
-    /// Force when it began and when it was last seen, N.
+    /// Force when it began and when it was last observed, N.
     pub forces: (f64, f64),
     /// The last equilibrium force, N.
     pub equilibrium: Option<Estimate>,
@@ -56,56 +56,56 @@ pub struct HoldSeen {
 /// The holds of a log.
 #[derive(Debug, Default)]
 pub(super) struct Holds {
-    ended: Vec<HoldSeen>,
-    now: Option<HoldSeen>,
+    ended: Vec<HoldObserved>,
+    now: Option<HoldObserved>,
     held: Option<Held>,
     slip: Slip,
 }
 
 impl Holds {
     /// Takes an observation and says what happened with it.
-    pub(super) fn follow(&mut self, seen: &Observation) -> Vec<Event> {
+    pub(super) fn follow(&mut self, observed: &Observation) -> Vec<Event> {
         let mut events = Vec::new();
-        if seen.phase != ContactPhase::Holding
+        if observed.phase != ContactPhase::Holding
             && let Some(hold) = self.now.take()
         {
             self.ended.push(hold);
-            events.push(Event::Ended(seen.time, hold));
+            events.push(Event::Ended(observed.time, hold));
         }
-        if let (Some(held), Some(since)) = (seen.held, seen.held_since) {
+        if let (Some(held), Some(since)) = (observed.held, observed.held_since) {
             if self.now.is_none() {
-                events.push(Event::Began(*seen));
+                events.push(Event::Began(*observed));
             } else if self.held != Some(held) {
-                events.push(Event::Changed(*seen));
+                events.push(Event::Changed(*observed));
             }
-            let hold = self.now.get_or_insert(HoldSeen {
+            let hold = self.now.get_or_insert(HoldObserved {
                 since,
-                until: seen.time,
+                until: observed.time,
                 held,
-                forces: (seen.force, seen.force),
+                forces: (observed.force, observed.force),
                 equilibrium: None,
                 creep: None,
                 warned: None,
                 slipped: None,
                 ticks: [0; 2],
             });
-            hold.follow(seen, held);
+            hold.follow(observed, held);
             self.held = Some(held);
         }
-        if seen.slip != self.slip && seen.slip != Slip::None {
-            events.push(Event::Warned(*seen));
+        if observed.slip != self.slip && observed.slip != Slip::None {
+            events.push(Event::Warned(*observed));
         }
-        self.slip = seen.slip;
+        self.slip = observed.slip;
         events
     }
 
     /// All holds, the one that goes on too.
-    pub(super) fn all(self) -> Vec<HoldSeen> {
+    pub(super) fn all(self) -> Vec<HoldObserved> {
         self.ended.into_iter().chain(self.now).collect()
     }
 }
 
-impl HoldSeen {
+impl HoldObserved {
     /// The hold in a line of `palpate.watch/1`.
     #[must_use]
     pub fn document(&self) -> WatchedHoldDocument {
@@ -116,18 +116,18 @@ impl HoldSeen {
         }
     }
 
-    fn follow(&mut self, seen: &Observation, held: Held) {
+    fn follow(&mut self, observed: &Observation, held: Held) {
         self.ticks[usize::from(held == Held::Force)] += 1;
         self.held = if self.ticks[1] > self.ticks[0] { Held::Force } else { Held::Displacement };
-        self.until = seen.time;
-        self.forces.1 = seen.force;
-        self.equilibrium = if held == Held::Force { None } else { seen.equilibrium_force.or(self.equilibrium) };
-        self.creep = seen.creep_rate.or(self.creep);
-        if seen.slip != Slip::None {
-            self.warned = self.warned.or(Some(seen.time));
+        self.until = observed.time;
+        self.forces.1 = observed.force;
+        self.equilibrium = if held == Held::Force { None } else { observed.equilibrium_force.or(self.equilibrium) };
+        self.creep = observed.creep_rate.or(self.creep);
+        if observed.slip != Slip::None {
+            self.warned = self.warned.or(Some(observed.time));
         }
-        if seen.slip == Slip::Slipping {
-            self.slipped = self.slipped.or(Some(seen.time));
+        if observed.slip == Slip::Slipping {
+            self.slipped = self.slipped.or(Some(observed.time));
         }
     }
 }

@@ -1,8 +1,8 @@
-//! A recorded log as a controller would have seen it: holds, where they tend, time to slip.
+//! A recorded log as a controller would have observed it: holds, where they tend, time to slip.
 //!
 //! | file | what |
 //! |---|---|
-//! | `holds.rs` | what happens from tick to tick, and the holds that were seen |
+//! | `holds.rs` | what happens from tick to tick, and the holds that were observed |
 
 mod holds;
 
@@ -14,7 +14,7 @@ use palpate_report::document::{ObservationDocument, WatchDocument};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-pub use holds::{Event, HoldSeen};
+pub use holds::{Event, HoldObserved};
 
 use crate::{ErrorKind, JobError, Outcome};
 use holds::Holds;
@@ -52,7 +52,7 @@ impl Default for WatchLog {
 
 /// What is reported while a log is watched, in its order.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Seen {
+pub enum Observed {
     /// A sample of this time comes next, s.
     Next(f64),
     /// Something happened.
@@ -61,13 +61,13 @@ pub enum Seen {
     Tick(Observation, bool),
 }
 
-impl Seen {
+impl Observed {
     /// The line of `palpate.watch/1` that tells of it; none of what is not reported.
     #[must_use]
     pub fn document(&self) -> Option<WatchDocument> {
         match self {
             Self::Event(event) => Some(event.document()),
-            Self::Tick(seen, true) => Some(WatchDocument::Observation(ObservationDocument::new("tick", seen))),
+            Self::Tick(observed, true) => Some(WatchDocument::Observation(ObservationDocument::new("tick", observed))),
             Self::Next(_) | Self::Tick(_, false) => None,
         }
     }
@@ -87,8 +87,8 @@ impl WatchLog {
         (record, place): (&Record, &str),
         material: Option<MaterialFile>,
         watch: &mut dyn Watch,
-        mut see: impl FnMut(Seen) -> bool,
-    ) -> Result<Outcome<Vec<HoldSeen>>, JobError> {
+        mut see: impl FnMut(Observed) -> bool,
+    ) -> Result<Outcome<Vec<HoldObserved>>, JobError> {
         let refused = |error: ObserveError| {
             let hint = error.hint().to_owned();
             JobError::new(ErrorKind::Option, error, hint).of(place)
@@ -109,16 +109,16 @@ impl WatchLog {
             if index % TICKS == 0 {
                 watch.report(Progress::counted("watching", index, times.len()))?;
             }
-            if !see(Seen::Next(*time)) {
+            if !see(Observed::Next(*time)) {
                 break;
             }
-            let seen = observer.feed(*time, displacement.map(|column| column[index]), *force).map_err(refused)?;
+            let observed = observer.feed(*time, displacement.map(|column| column[index]), *force).map_err(refused)?;
             let reported = *time >= next;
             if reported {
                 next += self.every_s * ((time - next) / self.every_s).floor() + self.every_s;
             }
-            let events = holds.follow(&seen).into_iter().map(Seen::Event);
-            if !events.chain([Seen::Tick(seen, reported)]).all(&mut see) {
+            let events = holds.follow(&observed).into_iter().map(Observed::Event);
+            if !events.chain([Observed::Tick(observed, reported)]).all(&mut see) {
                 break;
             }
         }

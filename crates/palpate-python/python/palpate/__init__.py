@@ -159,9 +159,9 @@ def _with_units(table: Mapping[str, Any], path: str = "") -> dict[str, Any]:
     """A mapping whose numbers under a key with a unit are texts with it, under the key without."""
     from numbers import Real
 
-    def said(value: Any, unit: str, key: str) -> Any:
+    def stated(value: Any, unit: str, key: str) -> Any:
         if isinstance(value, (list, tuple, np.ndarray)):
-            return [said(one, unit, f"{key}[{i}]") for i, one in enumerate(value, 1)]
+            return [stated(one, unit, f"{key}[{i}]") for i, one in enumerate(value, 1)]
         if isinstance(value, Real) and not isinstance(value, (bool, np.bool_)):
             if not np.isfinite(float(value)):
                 raise OptionError(f"{key}: expected a finite number, found {float(value)}")
@@ -186,7 +186,7 @@ def _with_units(table: Mapping[str, Any], path: str = "") -> dict[str, Any]:
         bare = name.removesuffix(end)
         if bare in made or (end and bare in table):
             raise OptionError(f"{key}: expected either this or {path}{bare}, found both\nhint: remove one of them")
-        made[bare] = said(value, _UNITS[end], key) if end else nested(value, key)
+        made[bare] = stated(value, _UNITS[end], key) if end else nested(value, key)
     return made
 
 
@@ -224,7 +224,7 @@ def _toml(table: Mapping[str, Any]) -> str:
 
 @contextmanager
 def _bar(progress: bool | None, total: int, unit: str) -> Generator[Callable[[int], None] | None]:
-    """Something to call with how much is done: a bar of tqdm where that is there, and where somebody looks or has asked."""
+    """Something to call with how much is done: a bar of tqdm where that is there, and where somebody looks or has requested it."""
     if progress is False or (progress is None and not sys.stderr.isatty()):
         yield None
         return

@@ -24,7 +24,7 @@ def as_doubles(values: Any, name: str) -> NDArray[np.float64]:
     except ValueError:
         raise OptionError(f"{name}: expected one column of numbers, found lists of different lengths") from None
     if array.ndim == 0:
-        raise OptionError(f"{name}: expected a column of numbers, found {_told(values)}")
+        raise OptionError(f"{name}: expected a column of numbers, found {_reported(values)}")
     if array.ndim > 1:
         raise OptionError(f"{name}: expected one column of numbers, found an array of shape {array.shape}")
     if array.size == 0:
@@ -38,7 +38,7 @@ def as_doubles(values: Any, name: str) -> NDArray[np.float64]:
     try:
         return np.ascontiguousarray(array, dtype=np.float64)
     except (TypeError, ValueError):
-        raise OptionError(f"{name}: expected numbers, found {_told(array[0])}") from None
+        raise OptionError(f"{name}: expected numbers, found {_reported(array[0])}") from None
 
 
 def as_ragged(curves: Any, name: str) -> tuple[NDArray[np.float64], NDArray[np.int64], dict[int, str]]:
@@ -55,7 +55,7 @@ def as_ragged(curves: Any, name: str) -> tuple[NDArray[np.float64], NDArray[np.i
     try:
         rows = list(curves)
     except TypeError:
-        raise OptionError(f"{name}: expected a list of curves, found {_told(curves)}") from None
+        raise OptionError(f"{name}: expected a list of curves, found {_reported(curves)}") from None
     if rows and all(row is None or np.ndim(row) == 0 for row in rows) and any(row is not None for row in rows):
         flat = as_doubles(rows, name)
         return flat, np.array([0, flat.size], dtype=np.int64), {}
@@ -71,6 +71,6 @@ def as_ragged(curves: Any, name: str) -> tuple[NDArray[np.float64], NDArray[np.i
     return (np.concatenate(columns) if columns else np.empty(0)), offsets, wrong
 
 
-def _told(value: Any) -> str:
+def _reported(value: Any) -> str:
     text = repr(value)
     return f"{type(value).__name__} {text if len(text) <= 40 else text[:37] + '...'}"

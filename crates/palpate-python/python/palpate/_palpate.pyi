@@ -81,7 +81,7 @@ class _Series(_Value):
     def __len__(self) -> int: ...
     def __arrow_c_stream__(self, requested_schema: object | None = None) -> object: ...
 
-class _Told(_Value):
+class _Reported(_Value):
     # What a command prints.
     def to_dict(self) -> dict[str, Any]: ...
     def to_json(self) -> str: ...
@@ -169,13 +169,13 @@ class Record(_Series):
 class Finding(_Value):
     code: Final[str]
     severity: Final[str]
-    seen: Final[str]
+    observation: Final[str]
     meaning: Final[str]
     remedy: Final[str]
     hold: Final[int | None]
 
 @final
-class Analysis(_Told):
+class Analysis(_Reported):
     segments: Final[Table]
     holds: Final[Table]
     fits: Final[Table]
@@ -188,7 +188,7 @@ class Analysis(_Told):
     def _repr_html_(self) -> str | None: ...
 
 @final
-class Calibration(_Series, _Told):
+class Calibration(_Series, _Reported):
     material: Final[Material]
     laws: Final[Table]
     parameter_table: Final[Table]
@@ -258,7 +258,7 @@ class Material(_Value):
     def _repr_html_(self) -> str: ...
 
 @final
-class Grip(_Told):
+class Grip(_Reported):
     holds: Final[bool]
     verdict: Final[str]
     question: Final[str]
@@ -452,7 +452,7 @@ class Comparison(_Value):
     def to_dict(self) -> dict[str, Any]: ...
 
 @final
-class RecordComparison(_Told):
+class RecordComparison(_Reported):
     laws: Final[Table]
 
 @final

@@ -11,13 +11,13 @@ use pyo3::types::{PyBytes, PyList, PyTuple, PyType};
 
 use crate::arrays::doubles;
 use crate::errors::{ModelError, OptionError, of_mapping, refused_plainly, undescribed};
-use crate::files::said;
+use crate::files::stated;
 use crate::shown::shown;
 use crate::work::{Made, briefly};
 
 /// A body and its law as a description has them: path of a file or mapping; and a text that makes them again anywhere.
 fn described(model: &Bound<'_, PyAny>) -> PyResult<(ContactModel, String)> {
-    let (path, text) = said("_described", model)?;
+    let (path, text) = stated("_described", model)?;
     let (model, text, path) = match path {
         Some(path) => (latency(read_scene(&path))?, std::fs::read_to_string(&path)?, path),
         None => {
@@ -258,7 +258,7 @@ shown! {
     #[pyo3(signature = (model, count=None))]
     fn new(model: &Bound<'_, PyAny>, count: Option<&Bound<'_, PyAny>>) -> PyResult<Self> {
         let several = model.is_instance_of::<PyList>() || model.is_instance_of::<PyTuple>();
-        let asked = |found: String| {
+        let requested = |found: String| {
             let message = format!(
                 "count: expected how many contacts of one model, 1 to {MOST}, or none beside a list of models, found {found}"
             );
@@ -266,11 +266,11 @@ shown! {
         };
         let count = match count {
             None if several => None,
-            None => return Err(asked("none".to_owned())),
-            Some(count) if several => return Err(asked(format!("a list and {count}"))),
+            None => return Err(requested("none".to_owned())),
+            Some(count) if several => return Err(requested(format!("a list and {count}"))),
             Some(count) => match count.extract::<usize>() {
                 Ok(number) if (1..=MOST).contains(&number) => Some(number),
-                _ => return Err(asked(count.to_string())),
+                _ => return Err(requested(count.to_string())),
             },
         };
         let described: Vec<(ContactModel, String)> = match count {
@@ -278,7 +278,7 @@ shown! {
             None => model.try_iter()?.map(|model| described(&model?)).collect::<PyResult<_>>()?,
         };
         if described.is_empty() {
-            return Err(asked("an empty list".to_owned()));
+            return Err(requested("an empty list".to_owned()));
         }
         let states = vec![State::default(); count.unwrap_or(described.len())];
         let (models, texts) = described.into_iter().unzip();

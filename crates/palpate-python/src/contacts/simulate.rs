@@ -37,7 +37,7 @@ pub(crate) fn simulate(py: Python<'_>, path: Option<PathBuf>, text: Option<&str>
     })
 }
 
-fn told(event: &ContactEvent) -> (String, f64, f64) {
+fn reported(event: &ContactEvent) -> (String, f64, f64) {
     (word(event.kind), event.time, event.contact_displacement)
 }
 
@@ -65,7 +65,7 @@ shown! {
         /// Whether the jaw touches the body.
         in_contact<'py>(py): Bound<'py, PyArray1<bool>> = PyArray1::from_slice(py, &self.series.in_contact),
         /// Contacts lost and regained: ("lost" or "regained", time in s, displacement of the surface in m).
-        events: Vec<(String, f64, f64)> = self.series.events.iter().map(told).collect(),
+        events: Vec<(String, f64, f64)> = self.series.events.iter().map(reported).collect(),
     }
 
     fn __len__(&self) -> usize {

@@ -54,12 +54,12 @@ shown! {
     }
 
     fn __repr__(&self) -> String {
-        told(&self.estimate, 6)
+        reported(&self.estimate, 6)
     }
 }
 
 /// A parameter with its interval, or to so many digits where it has none.
-pub(crate) fn told(estimate: &Estimate, digits: usize) -> String {
+pub(crate) fn reported(estimate: &Estimate, digits: usize) -> String {
     let plain = || significant(estimate.value, digits);
     estimate.interval.map_or_else(plain, |ends| with_interval(estimate.value, ends))
 }
@@ -233,7 +233,7 @@ shown! {
     }
 
     fn __repr__(&self) -> String {
-        let parameter = |parameter: &Parameter| format!("{}={}", parameter.name, told(&parameter.estimate, 4));
+        let parameter = |parameter: &Parameter| format!("{}={}", parameter.name, reported(&parameter.estimate, 4));
         let parameters: Vec<String> = self.fit.parameters.iter().map(parameter).collect();
         format!("<palpate.Fit {}: {}; {}>", self.fit.law, parameters.join(", "), word(self.fit.termination))
     }
@@ -297,7 +297,7 @@ pub(crate) fn intervals(name: &str) -> PyResult<IntervalMethod> {
 
 /// Options of a fit as keywords say them.
 #[derive(Clone)]
-pub(crate) struct Asked {
+pub(crate) struct Requested {
     pub(crate) law: Law,
     pub(crate) options: LawOptions,
 }
@@ -318,7 +318,7 @@ pub(crate) struct Keywords {
 }
 
 impl Keywords {
-    pub(crate) fn asked(self) -> PyResult<Asked> {
+    pub(crate) fn requested(self) -> PyResult<Requested> {
         let law = self.law.parse().map_err(refused_plainly::<OptionError>)?;
         if law == Law::Spectrum {
             let message = "the spectrum has no few parameters to estimate: palpate.compare fits and judges it";
@@ -337,7 +337,7 @@ impl Keywords {
             ..LawOptions::default()
         };
         options.suit(law).map_err(unfitted)?;
-        Ok(Asked { law, options })
+        Ok(Requested { law, options })
     }
 }
 
@@ -363,11 +363,11 @@ pub(crate) fn fitted(
     times: &[f64],
     values: &[f64],
     deviations: Option<&[f64]>,
-    asked: &Asked,
+    requested: &Requested,
 ) -> Result<Fit, palpate::fit::FitError> {
     let samples = Samples::new(times, values);
     let samples = deviations.map_or(samples, |deviations| samples.with_deviations(deviations));
-    fit_law(&samples, asked.law, &asked.options)
+    fit_law(&samples, requested.law, &requested.options)
 }
 
 #[pyfunction]
@@ -385,8 +385,8 @@ pub(crate) fn fit_hold<'py>(
         let message = format!("a fit needs as many weights as times, found {weights} and {times}");
         return Err(refused_plainly::<FitError>(message));
     }
-    let asked = keywords.asked()?;
-    let fit = briefly(py, || fitted(&times, &values, deviations.as_deref(), &asked))?;
+    let requested = keywords.requested()?;
+    let fit = briefly(py, || fitted(&times, &values, deviations.as_deref(), &requested))?;
     Ok(PyFit {
         fit: fit.map_err(unfitted)?,
     })

@@ -20,9 +20,9 @@ use pyo3_arrow::input::AnyArray;
 use rayon::prelude::*;
 
 use crate::errors::{OptionError, PalpateError, refused, refused_plainly, unfitted};
-use crate::fits::fit::{Asked, Keywords, deviations, fitted};
+use crate::fits::fit::{Keywords, Requested, deviations, fitted};
 use crate::table::{Column, Table};
-use crate::work::{Heard, at_length_told};
+use crate::work::{Heard, at_length_reported};
 
 /// One curve, or why it is none.
 type Curve = Result<ScalarBuffer<f64>, String>;
@@ -143,13 +143,14 @@ pub(crate) fn fit_many(
         }
         None => None,
     };
-    let asked = keywords.asked()?;
-    let shape = asked.clone();
+    let requested = keywords.requested()?;
+    let shape = requested.clone();
     let work = move |heard: Heard| -> Result<Vec<Fitted>, Cancelled> {
         let fit = |index: usize| {
             let time = numbers(&times[if one_time { 0 } else { index }])?;
             let deviations = weights.as_ref().map(|(one, found)| numbers(&found[if *one { 0 } else { index }]));
-            fitted(time, numbers(&values[index])?, deviations.transpose()?, &asked).map_err(|error| error.to_string())
+            fitted(time, numbers(&values[index])?, deviations.transpose()?, &requested)
+                .map_err(|error| error.to_string())
         };
         let one = |index: usize| {
             let fit = fit(index);
@@ -157,33 +158,33 @@ pub(crate) fn fit_many(
         };
         (0..curves).into_par_iter().map(one).collect()
     };
-    let fits = at_length_told(py, progress.as_ref(), work)?.map_err(refused_plainly::<PalpateError>)?;
+    let fits = at_length_reported(py, progress.as_ref(), work)?.map_err(refused_plainly::<PalpateError>)?;
     table(&shape, &fits)
 }
 
 /// The parameters that every fit of a law has, whatever the curve, by their names.
-fn parameters_of(asked: &Asked) -> PyResult<Vec<Parameter>> {
+fn parameters_of(requested: &Requested) -> PyResult<Vec<Parameter>> {
     let times: Vec<f64> = (0..200).map(f64::from).collect();
     let falling = |t: &f64| 1.0 / (1.0 + 0.1 * t).sqrt();
-    let sign = if asked.options.response == Response::Creep { -1.0 } else { 1.0 };
+    let sign = if requested.options.response == Response::Creep { -1.0 } else { 1.0 };
     let values: Vec<f64> = times.iter().map(|t| sign * falling(t)).collect();
     let plain = LawOptions {
-        response: asked.options.response,
+        response: requested.options.response,
         ..LawOptions::default()
     };
-    Ok(fit_law(&Samples::new(&times, &values), asked.law, &plain).map_err(unfitted)?.parameters)
+    Ok(fit_law(&Samples::new(&times, &values), requested.law, &plain).map_err(unfitted)?.parameters)
 }
 
 /// A row a curve; parameters that a fit does not have are missing.
-fn table(asked: &Asked, fits: &[Fitted]) -> PyResult<Table> {
+fn table(requested: &Requested, fits: &[Fitted]) -> PyResult<Table> {
     let good = || fits.iter().map(|fit| fit.as_ref().ok());
     let floats = |pick: &dyn Fn(&Fit) -> Option<f64>| Column::column(good().map(|fit| pick(fit?)));
-    let law = asked.law.to_string();
+    let law = requested.law.to_string();
     let mut columns = vec![
         ("curve".to_owned(), Column::column(0..fits.len())),
         ("law".to_owned(), Column::column(fits.iter().map(|_| law.as_str()))),
     ];
-    for parameter in &parameters_of(asked)? {
+    for parameter in &parameters_of(requested)? {
         let name = parameter.name.to_string();
         let known = |fit: &Fit| fit.parameter(parameter.name)?.determined(fit.termination).copied();
         columns.push((name.clone(), floats(&|fit| Some(known(fit)?.value))));

@@ -40,7 +40,7 @@ struct Sample {
 }
 
 impl Calibration {
-    /// Calibrates laws on a record, and warns where the one that is asked for leaves a parameter open.
+    /// Calibrates laws on a record, and warns where the one that is requested leaves a parameter open.
     pub(crate) fn of(py: Python<'_>, measured: Measurement, options: Calibrate) -> PyResult<Self> {
         let done = job(py, move |watch| options.run(measured, watch))?.result;
         let (record, file) = (&done.record, done.material());
@@ -64,8 +64,8 @@ impl Calibration {
         })
     }
 
-    /// The law that was asked for.
-    fn asked(&self) -> &CalibratedLawDocument {
+    /// The law that was requested.
+    fn requested(&self) -> &CalibratedLawDocument {
         // There is one: without it there is no calibration.
         &self.document.laws[0]
     }
@@ -90,21 +90,21 @@ shown! {
         residual_n: self.series(|sample| sample.force - sample.simulated),
     }
     values {
-        /// The body with the parameters of the law that was asked for.
+        /// The body with the parameters of the law that was requested.
         material: Material = self.material.clone(),
         /// Which law predicts best, or has the lowest BIC, in a sentence; None without alternatives.
         sentence: Option<&str> = self.sentence.as_deref(),
         /// What the parameters alone do not tell, in sentences.
         remarks: Vec<String> = self.document.remarks.clone(),
         /// Why the search ended: "converged", or what kept it from that.
-        termination: &str = self.asked().termination.as_deref().unwrap_or_default(),
+        termination: &str = self.requested().termination.as_deref().unwrap_or_default(),
         /// Whether it ended at an optimum inside the range that was searched.
         is_good: bool = self.termination() == "converged",
         /// Root mean square residual over the fitted samples, N.
-        rmse_n: f64 = self.asked().rmse_n.unwrap_or(f64::NAN),
+        rmse_n: f64 = self.requested().rmse_n.unwrap_or(f64::NAN),
         /// How many samples, from the first on, were fitted; the rest was held out.
         fitted: usize = self.document.fitted,
-        /// The laws, a row each, the one that was asked for first: ``free_parameters``, root mean square residual ``rmse_n``, the same as a
+        /// The laws, a row each, the one that was requested first: ``free_parameters``, root mean square residual ``rmse_n``, the same as a
         /// share of the largest force (``relative``), BIC less the lowest (``delta_bic``), with ``fit_until_s`` the errors of what was
         /// predicted, ``termination``, and why there is no calibration (``error``).
         laws: PyResult<Table> = {
@@ -120,10 +120,10 @@ shown! {
             columns.extend(columns!(laws, law => termination, error));
             Table::of(columns)
         },
-        /// The parameters of the law that was asked for, by name and unit as in `to_dict`: ``value``, ``standard_error``, ``low`` and ``high`` of
-        /// the interval and, where profiles were asked for, ``profile_low`` and ``profile_high``, NaN where the record leaves them open.
+        /// The parameters of the law that was requested, by name and unit as in `to_dict`: ``value``, ``standard_error``, ``low`` and ``high`` of
+        /// the interval and, where profiles were requested, ``profile_low`` and ``profile_high``, NaN where the record leaves them open.
         parameter_table: PyResult<Table> = {
-            let parameters = &self.asked().parameters;
+            let parameters = &self.requested().parameters;
             let mut columns = columns!(parameters, parameter =>
                 name, value = parameter.parameter.value, standard_error = parameter.parameter.standard_error,
                 low = parameter.parameter.interval.and_then(|interval| interval[0]),

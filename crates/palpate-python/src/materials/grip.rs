@@ -38,7 +38,7 @@ pub(crate) struct Grip {
 
 impl Grip {
     fn made(body: &GrippedBody<'_>) -> Result<Self, JobError> {
-        // All of them are text but for pictures, which are not asked for.
+        // All of them are text but for pictures, which are not requested.
         let files = grip_bundle(body, Pictures::default())?.files.into_iter();
         let courses = body.grips().map(|made| made?.ok().cloned());
         let [squeeze, back_off, force_held, schedule] = courses;
@@ -64,15 +64,15 @@ impl Grip {
         Ok(made)
     }
 
-    fn of_squeeze<T>(&self, told: impl Fn(&HoldingDocument) -> T) -> Option<T> {
-        self.document.squeeze.as_ref().map(told)
+    fn of_squeeze<T>(&self, reported: impl Fn(&HoldingDocument) -> T) -> Option<T> {
+        self.document.squeeze.as_ref().map(reported)
     }
 }
 
 shown! {
     Grip: self
     values {
-        /// Whether the grip that is asked about holds as long as was asked; without a time whether it does at all.
+        /// Whether the grip that is in question holds as long as was requested; without a time whether it does at all.
         holds: bool = self.document.holds,
         /// The answer in a sentence.
         verdict: &str = &self.document.verdict,
@@ -84,7 +84,7 @@ shown! {
         extrapolations: Vec<String> = self.document.extrapolations.clone(),
         /// Coverage of the intervals.
         confidence: f64 = self.document.confidence,
-        /// The squeeze with the displacement held: the one that was asked about, or the least; None if there is none.
+        /// The squeeze with the displacement held: the one that is in question, or the least; None if there is none.
         squeeze: Option<PositionHold> = self.of_squeeze(|found| PositionHold::new(found.clone(), self.squeeze.clone())),
         /// Displacement of that squeeze, m.
         squeeze_m: Option<f64> = self.of_squeeze(|found| found.displacement_m),
@@ -96,7 +96,7 @@ shown! {
         back_off: Option<BackOff> = Some(BackOff::new(self.document.back_off.clone()?, self.back_off.clone()?)),
         /// The force held; None if there is none.
         force_held: Option<ForceHold> = Some(ForceHold::new(self.document.force_held.clone()?, self.force_held.clone()?)),
-        /// Squeezes that keep the force in a band; None if none was asked for, or none does.
+        /// Squeezes that keep the force in a band; None if none was requested, or none does.
         schedule: Option<Schedule> = Some(Schedule::new(self.document.schedule.clone()?, self.schedule.clone()?)),
         /// How long squeezes a little less and more deep hold: ``displacement_m`` and ``time_to_slip_s``.
         neighbours: PyResult<Table> =

@@ -115,7 +115,7 @@ part! {
 part! {
     /// Overshoot and back off (a preconditioning squeeze), beside the plain squeeze to the same position; SI units.
     BackOff(BackOffDocument, Predicted): self {
-        /// Time over which drifts are told, s.
+        /// Time over which drifts are given, s.
         duration_s: f64,
         /// Change of the force over that time after the retreat, N.
         drift_n: f64,

@@ -17,15 +17,15 @@ use crate::arrays::doubles;
 use crate::errors::{
     ModelError, OptionError, choice, failed, of_mapping, refused, refused_plainly, undescribed, unwritten, warn,
 };
-use crate::files::said;
-use crate::fits::fit::{PyEstimate, square, told};
+use crate::files::stated;
+use crate::fits::fit::{PyEstimate, reported, square};
 use crate::materials::grip::Grip;
 use crate::materials::prediction::Prediction;
 use crate::shown::shown;
 use crate::table::{Table, columns};
 use crate::work::{Made, job};
 
-/// Said where intervals know nothing of the parameters.
+/// Stated where intervals know nothing of the parameters.
 const OPEN: &str = "the calibration left a parameter open: the intervals hold noise alone";
 
 /// A calibrated body: shape, law and parameters with their covariance, the range of its test, and where they come from.
@@ -62,17 +62,17 @@ impl Material {
         })
     }
 
-    /// What the observer is told of it.
+    /// What the observer is given of it.
     pub(crate) fn body(&self) -> Body {
         self.source.file.material.clone()
     }
 
     fn warn_of_open(&self, py: Python<'_>) -> PyResult<()> {
-        if self.source.file.material.uncertainty.is_none() { warn(py, OPEN) } else { Ok(()) }
+        if self.source.file.material.uncertainty().is_none() { warn(py, OPEN) } else { Ok(()) }
     }
 
     fn estimated(&self) -> &[MaterialParameter] {
-        &self.source.file.material.parameters
+        self.source.file.material.parameters()
     }
 }
 
@@ -105,9 +105,9 @@ shown! {
     Material: self
     getters {
         /// Name of the law as it was fitted, such as "latency", "latency:5" or "prony:2".
-        law: String = self.source.file.material.candidate.to_string(),
+        law: String = self.source.file.material.candidate().to_string(),
         /// Law of the force once relaxation is over: "uniform-strain", "hertz" or "table".
-        equilibrium: &'static str = match self.source.file.material.candidate.equilibrium {
+        equilibrium: &'static str = match self.source.file.material.candidate().equilibrium {
             EquilibriumLaw::UniformStrain => "uniform-strain",
             EquilibriumLaw::Hertz { .. } => "hertz",
             EquilibriumLaw::Table => "table",
@@ -131,18 +131,18 @@ shown! {
             self.estimated().iter().map(|parameter| (&parameter.name, parameter.estimate.value)).into_py_dict(py),
         /// Covariance of the natural logarithms of the parameters, in their order; None where the record leaves one open.
         log_covariance<'py>(py): PyResult<Option<Bound<'py, PyArray2<f64>>>> = {
-            let uncertainty = self.source.file.material.uncertainty.as_ref();
+            let uncertainty = self.source.file.material.uncertainty();
             uncertainty.map(|found| square(py, &found.covariance)).transpose()
         },
         /// Coverage of the intervals of the parameters; None where they have none.
         confidence: Option<f64> =
-            self.source.file.material.uncertainty.as_ref().map(|uncertainty| uncertainty.confidence),
+            self.source.file.material.uncertainty().map(|uncertainty| uncertainty.confidence),
         /// Standard deviation of what the law left of the measured force, N: noise of one reading.
-        noise_n: f64 = self.source.file.material.noise,
+        noise_n: f64 = self.source.file.material.noise(),
         /// The range of the test, beyond which predictions are extrapolations: ``longest_hold_s``, ``deepest_m``, ``fastest_m_per_s``,
         /// ``slowest_m_per_s``, ``largest_force_n``.
         calibration_range<'py>(py): PyResult<Bound<'py, PyDict>> = {
-            let range = &self.source.file.material.range;
+            let range = self.source.file.material.range();
             let named = [
                 ("longest_hold_s", range.longest_hold),
                 ("deepest_m", range.deepest),
@@ -255,7 +255,7 @@ shown! {
             self.warn_of_open(py)?;
             return Ok(predicted.cast::<Prediction>()?.get().clone());
         }
-        let (path, text) = said("_driven", protocol)?;
+        let (path, text) = stated("_driven", protocol)?;
         let place = path.clone().unwrap_or_else(|| PathBuf::from("protocol"));
         let protocol = match path {
             Some(path) => read_protocol_of(&path, &self.source.file),
@@ -302,9 +302,9 @@ shown! {
     /// control : str
     ///     What the gripper holds once it has closed: "position" (the force relaxes) or "force" (the body creeps).
     /// squeeze_m : float, optional
-    ///     Squeeze that is asked about, m; the least that holds is sought if left out.
+    ///     Squeeze that is in question, m; the least that holds is sought if left out.
     /// force_n : float, optional
-    ///     Force that is asked about with ``control="force"``, N; the least that is enough if left out.
+    ///     Force that is in question with ``control="force"``, N; the least that is enough if left out.
     /// hold_s : float, optional
     ///     How long it is to hold, s; ``math.inf`` for always. 60 s if neither this nor a squeeze is given.
     /// objective : str, optional
@@ -322,7 +322,7 @@ shown! {
     /// Returns
     /// -------
     /// Grip
-    ///     The squeeze that is asked about, overshoot and back off, the force held and the schedule, beside one another. That none holds is an
+    ///     The squeeze that is in question, overshoot and back off, the force held and the schedule, beside one another. That none holds is an
     ///     answer: ``holds`` is false, ``refused`` says why.
     ///
     /// Raises
@@ -440,7 +440,7 @@ shown! {
 
     fn __repr__(&self) -> String {
         let parameter = |parameter: &MaterialParameter| {
-            let (value, unit) = (told(&parameter.estimate, 4), si_unit(parameter.unit));
+            let (value, unit) = (reported(&parameter.estimate, 4), si_unit(parameter.unit));
             let unit = if unit == "1" { String::new() } else { format!(" {unit}") };
             format!("{}={value}{unit}", parameter.name)
         };

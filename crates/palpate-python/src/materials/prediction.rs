@@ -49,7 +49,7 @@ shown! {
         time_s: self.predicted.trajectory.time.clone(),
         /// Displacement of the jaw, m.
         displacement_m: self.predicted.trajectory.displacement.clone(),
-        /// Lower end of the interval of the displacement, m: the displacement itself where that is asked for.
+        /// Lower end of the interval of the displacement, m: the displacement itself where that is requested.
         displacement_low_m: self.ends(Predicted::displacement_interval).0,
         /// Its upper end, m.
         displacement_high_m: self.ends(Predicted::displacement_interval).1,
@@ -71,7 +71,7 @@ shown! {
         noise_n: f64 = self.predicted.noise,
         /// Coverage of the intervals.
         confidence: f64 = self.predicted.confidence,
-        /// What was asked beyond the test, a sentence each.
+        /// What was requested beyond the test, a sentence each.
         extrapolations: Vec<String> = self.predicted.extrapolations.iter().map(ToString::to_string).collect(),
         /// The course with the best parameters, with strains and contacts lost and regained.
         trajectory: Trajectory = Trajectory { series: self.predicted.trajectory.clone() },

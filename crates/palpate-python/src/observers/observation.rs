@@ -3,7 +3,7 @@
 use palpate::fit::Estimate;
 use palpate::grip::TimeToSlip;
 use palpate::number::significant;
-use palpate::observe::{Observation as Seen, Slip, SlipForecast};
+use palpate::observe::{Observation as Observed, Slip, SlipForecast};
 
 use palpate_report::result::{slips_word, word};
 use pyo3::prelude::*;
@@ -19,7 +19,7 @@ use crate::table::{Table, columns};
 #[derive(PartialEq, Serialize, Deserialize)]
 #[serde(transparent)]
 pub(crate) struct Observation {
-    pub(crate) seen: Seen,
+    pub(crate) observed: Observed,
 }
 
 /// Best value and ends of the interval, s; infinite for never.
@@ -41,12 +41,12 @@ fn deviation(number: Option<Estimate>) -> Option<f64> {
 
 /// Attributes of an observation, which are the columns of observations.
 macro_rules! attributes {
-    ($seen:ident { $($(#[$doc:meta])* $name:ident: $of:ty = $value:expr,)* } $($methods:tt)*) => {
+    ($observed:ident { $($(#[$doc:meta])* $name:ident: $of:ty = $value:expr,)* } $($methods:tt)*) => {
         shown! {
             Observation: self
             values {
                 $($(#[$doc])* $name: $of = {
-                    let $seen = &self.seen;
+                    let $observed = &self.observed;
                     $value
                 },)*
             }
@@ -55,60 +55,60 @@ macro_rules! attributes {
         }
 
         /// Observations as a table: a column for each attribute of `Observation`, numbers that are not known missing.
-        pub(crate) fn columns(all: &[Seen]) -> PyResult<Table> {
-            Table::of(columns!(all, $seen => $($name = $value),*))
+        pub(crate) fn columns(all: &[Observed]) -> PyResult<Table> {
+            Table::of(columns!(all, $observed => $($name = $value),*))
         }
     };
 }
 
 attributes! {
-    seen {
+    observed {
         /// When, s.
-        time_s: f64 = seen.time,
+        time_s: f64 = observed.time,
         /// What happens: "free", "loading", "holding" or "unloading".
-        phase: String = word(seen.phase),
+        phase: String = word(observed.phase),
         /// What is held, "displacement" or "force"; None outside a hold.
-        held: Option<String> = seen.held.map(word),
+        held: Option<String> = observed.held.map(word),
         /// When the hold began, s.
-        held_since_s: Option<f64> = seen.held_since,
+        held_since_s: Option<f64> = observed.held_since,
         /// True on the one tick that says that a hold began.
-        began: bool = seen.began,
+        began: bool = observed.began,
         /// The force without its noise, N: the fitted curve inside a hold, a filter's elsewhere.
-        force_n: f64 = seen.force,
+        force_n: f64 = observed.force,
         /// The force that a hold of the displacement tends to, N; None until its interval is narrower than the force itself.
-        equilibrium_force_n: Option<f64> = value(seen.equilibrium_force),
+        equilibrium_force_n: Option<f64> = value(observed.equilibrium_force),
         /// Its standard deviation, N.
-        equilibrium_force_standard_error_n: Option<f64> = deviation(seen.equilibrium_force),
+        equilibrium_force_standard_error_n: Option<f64> = deviation(observed.equilibrium_force),
         /// Force in excess of equilibrium, N.
-        excess_force_n: Option<f64> = value(seen.excess_force),
+        excess_force_n: Option<f64> = value(observed.excess_force),
         /// Its standard deviation, N.
-        excess_force_standard_error_n: Option<f64> = deviation(seen.excess_force),
+        excess_force_standard_error_n: Option<f64> = deviation(observed.excess_force),
         /// Strain in excess of equilibrium; only a material tells it.
-        excess_strain: Option<f64> = value(seen.excess_strain),
+        excess_strain: Option<f64> = value(observed.excess_strain),
         /// Its standard deviation.
-        excess_strain_standard_error: Option<f64> = deviation(seen.excess_strain),
+        excess_strain_standard_error: Option<f64> = deviation(observed.excess_strain),
         /// Rate at which the excess falls now, in shares of itself, 1/s.
-        relative_rate_per_s: Option<f64> = seen.relative_rate,
+        relative_rate_per_s: Option<f64> = observed.relative_rate,
         /// Speed of the creep while the force is held, m/s.
-        creep_rate_m_per_s: Option<f64> = value(seen.creep_rate),
+        creep_rate_m_per_s: Option<f64> = value(observed.creep_rate),
         /// Its standard deviation, m/s.
-        creep_rate_standard_error_m_per_s: Option<f64> = deviation(seen.creep_rate),
+        creep_rate_standard_error_m_per_s: Option<f64> = deviation(observed.creep_rate),
         /// Whether it slips: "not_known_yet", "never" (by relaxation), "perhaps_never" or "after"; None where no force of slip was given.
-        slips: Option<&'static str> = seen.time_to_slip.map(slips_word),
+        slips: Option<&'static str> = observed.time_to_slip.map(slips_word),
         /// How long until the force has fallen to that of slip, s; infinite for never, None where that is not known.
-        time_to_slip_s: Option<f64> = times(seen.time_to_slip).map(|times| times.0),
+        time_to_slip_s: Option<f64> = times(observed.time_to_slip).map(|times| times.0),
         /// Lower end of its interval, s.
-        time_to_slip_low_s: Option<f64> = times(seen.time_to_slip).map(|times| times.1),
+        time_to_slip_low_s: Option<f64> = times(observed.time_to_slip).map(|times| times.1),
         /// Upper end of its interval, s; infinite where never lies inside.
-        time_to_slip_high_s: Option<f64> = times(seen.time_to_slip).map(|times| times.2),
+        time_to_slip_high_s: Option<f64> = times(observed.time_to_slip).map(|times| times.2),
         /// "none", "soon" (slip within the time to warn cannot be excluded) or "slipping".
-        warning: String = word(seen.slip),
+        warning: String = word(observed.slip),
     }
 
     fn __repr__(&self) -> String {
-        let seen = &self.seen;
-        let held = seen.held.map_or_else(String::new, |what| format!(" the {}", word(what)));
-        let slip = match (seen.slip, seen.time_to_slip) {
+        let observed = &self.observed;
+        let held = observed.held.map_or_else(String::new, |what| format!(" the {}", word(what)));
+        let slip = match (observed.slip, observed.time_to_slip) {
             (Slip::Slipping, _) => ", slipping".to_owned(),
             (
                 _,
@@ -119,7 +119,7 @@ attributes! {
             ) => format!(", slips in {} s", significant(time, 3)),
             _ => String::new(),
         };
-        let (time, force) = (significant(seen.time, 6), significant(seen.force, 4));
-        format!("<palpate.Observation at {time} s: {}{held}, {force} N{slip}>", word(seen.phase))
+        let (time, force) = (significant(observed.time, 6), significant(observed.force, 4));
+        format!("<palpate.Observation at {time} s: {}{held}, {force} N{slip}>", word(observed.phase))
     }
 }

@@ -52,13 +52,13 @@ use crate::work::{Made, at_length, unpickled};
 /// >>> import numpy as np, palpate
 /// >>> t = np.arange(60_001) * 1e-3
 /// >>> hold = palpate.laws.latency(np.maximum(t - 0.5, 0.0), 1.2, 1.7, 6.0, 5.0)
-/// >>> force, place = np.where(t < 0.5, 5.8 * t, hold), np.minimum(0.01 * t, 0.005)
+/// >>> force, displacement = np.where(t < 0.5, 5.8 * t, hold), np.minimum(0.01 * t, 0.005)
 /// >>> observer = palpate.Observer(slip_force_n=2.0, warn_before_s=0.5)
-/// >>> seen = observer.feed_many(t[:1000], force[:1000], place[:1000])
-/// >>> round(float(seen["time_to_slip_s"][-1]), 2), round(float(hold[1310]), 2)
+/// >>> observed = observer.feed_many(t[:1000], force[:1000], displacement[:1000])
+/// >>> round(float(observed["time_to_slip_s"][-1]), 2), round(float(hold[1310]), 2)
 /// (0.31, 2.0)
 /// >>> for i in range(1000, len(t)):
-/// ...     now = observer.feed(t[i], force[i], place[i])
+/// ...     now = observer.feed(t[i], force[i], displacement[i])
 /// >>> now.phase, now.held, now.warning, round(now.equilibrium_force_n, 3)
 /// ('holding', 'displacement', 'slipping', 1.2)
 #[pyclass(name = "Observer", module = "palpate")]
@@ -80,7 +80,7 @@ fn refused_at(at: &str, error: &ObserveError) -> PyErr {
         }
         ObserveError::NotFinite { .. } | ObserveError::TimeNotRising { .. } => refused::<RecordError>(message, hint),
         ObserveError::Displacement { .. } => refused::<ModelError>(message, hint),
-        ObserveError::Bytes => refused::<PalpateError>(message, hint),
+        _ => refused::<PalpateError>(message, hint),
     }
 }
 
@@ -188,8 +188,8 @@ shown! {
     ///     A displacement that the body of the material cannot take; the observer stays as it was.
     #[pyo3(signature = (time_s, force_n, displacement_m=None))]
     fn feed(&mut self, time_s: f64, force_n: f64, displacement_m: Option<f64>) -> PyResult<Observation> {
-        let seen = self.watcher.feed(time_s, displacement_m, force_n);
-        seen.map(|seen| Observation { seen }).map_err(|error| refused_at("", &error))
+        let observed = self.watcher.feed(time_s, displacement_m, force_n);
+        observed.map(|observed| Observation { observed }).map_err(|error| refused_at("", &error))
     }
 
     /// Takes the readings of many ticks, one after the other; all of them, or none if one cannot be taken.

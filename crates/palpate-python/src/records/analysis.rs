@@ -54,8 +54,8 @@ shown! {
         code: &str = &self.found.code,
         /// "info", "caution" or "warning".
         severity: String = word(self.found.severity),
-        /// What was seen.
-        seen: &str = &self.found.seen,
+        /// What was observed.
+        observation: &str = &self.found.observation,
         /// What it may mean.
         meaning: &str = &self.found.meaning,
         /// What helps.
@@ -66,7 +66,7 @@ shown! {
 
     fn __repr__(&self) -> String {
         let place = self.hold.map_or(String::new(), |hold| format!(", hold {hold}"));
-        format!("<palpate.Finding {} ({}{place}): {}>", self.code(), self.severity(), self.seen())
+        format!("<palpate.Finding {} ({}{place}): {}>", self.code(), self.severity(), self.observation())
     }
 }
 
@@ -75,10 +75,10 @@ shown! {
 /// ``print(analysis)`` shows what ``palpate analyze`` does.
 ///
 /// What its document says is kept as that; the study behind it is made anew, from the same record and the same options, where a
-/// report is asked of an analysis that came from elsewhere.
+/// report is requested of an analysis that came from elsewhere.
 #[pyclass(name = "Analysis", module = "palpate", frozen, eq)]
 pub(crate) struct Analysis {
-    asked: Arc<Asked>,
+    requested: Arc<Requested>,
     done: OnceLock<Arc<Outcome<Analyzed>>>,
     document: AnalysisDocument,
 }
@@ -89,8 +89,8 @@ impl PartialEq for Analysis {
     }
 }
 
-/// A record, and what was asked of it.
-struct Asked {
+/// A record, and what was required of it.
+struct Requested {
     measured: Measurement,
     job: Analyze,
 }
@@ -108,14 +108,14 @@ struct Parts {
 impl Analysis {
     /// Analyses a record, and warns of what its numbers must not be used for.
     pub(crate) fn of(py: Python<'_>, measured: Measurement, job: Analyze) -> PyResult<Self> {
-        let asked = Arc::new(Asked { measured, job });
-        let done = run(py, &asked)?;
+        let requested = Arc::new(Requested { measured, job });
+        let done = run(py, &requested)?;
         let analysis = &done.result.analysis;
         let of_holds = analysis.holds.iter().flat_map(|hold| &hold.findings);
         let all = analysis.findings.iter().chain(of_holds);
         warn_of(py, all.filter(|finding| finding.severity() == Severity::Warning))?;
         Ok(Self {
-            asked,
+            requested,
             document: done.result.document(),
             done: OnceLock::from(Arc::new(done)),
         })
@@ -126,14 +126,14 @@ impl Analysis {
         if let Some(done) = self.done.get() {
             return Ok(Arc::clone(done));
         }
-        let done = Arc::new(run(py, &self.asked)?);
+        let done = Arc::new(run(py, &self.requested)?);
         Ok(Arc::clone(self.done.get_or_init(|| done)))
     }
 }
 
-fn run(py: Python<'_>, asked: &Arc<Asked>) -> PyResult<Outcome<Analyzed>> {
-    let asked = Arc::clone(asked);
-    job(py, move |watch| asked.job.run(asked.measured.clone(), None, watch))
+fn run(py: Python<'_>, requested: &Arc<Requested>) -> PyResult<Outcome<Analyzed>> {
+    let requested = Arc::clone(requested);
+    job(py, move |watch| requested.job.run(requested.measured.clone(), None, watch))
 }
 
 /// Parameters as a tidy table.
@@ -268,21 +268,21 @@ shown! {
             options,
             notes: Vec::new(),
         };
-        let asked = Arc::new(Asked { measured, job });
+        let requested = Arc::new(Requested { measured, job });
         // A number that is none has no form in JSON: the document is made anew then.
         let document = match serde_json::from_value(document) {
             Ok(document) => document,
-            Err(_) => run(class.py(), &asked)?.result.document(),
+            Err(_) => run(class.py(), &requested)?.result.document(),
         };
         Ok(Self {
-            asked,
+            requested,
             done: OnceLock::new(),
             document,
         })
     }
 
     fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Made<'py, (String,)>> {
-        let Asked { measured, job } = &*self.asked;
+        let Requested { measured, job } = &*self.requested;
         let parts = Parts {
             measured: Kept::of(&measured.record),
             options: measured.options.clone(),

@@ -123,9 +123,9 @@ pub(crate) fn read_all(py: Python<'_>, path: PathBuf, test: Given<'_, '_>) -> Py
 
 /// The records in a file, `only` one of them or all.
 fn read_parts(py: Python<'_>, path: PathBuf, described: &Described, only: bool) -> PyResult<Vec<Record>> {
-    let said = described.clone();
+    let stated = described.clone();
     let read = job(py, move |watch| {
-        let opened = OpenedFile::open(&path, &said)?;
+        let opened = OpenedFile::open(&path, &stated)?;
         if only {
             opened.only()?;
         }
@@ -200,9 +200,9 @@ impl Record {
         let options = match test {
             None => self.described.options(),
             test => {
-                let (said, path) = described(test, None)?;
+                let (stated, path) = described(test, None)?;
                 input.test = path.map(|path| path.display().to_string());
-                said.options()
+                stated.options()
             }
         };
         Ok(Measurement {
@@ -309,7 +309,7 @@ shown! {
             measured: Kept::of(&self.record),
             input: self.input.clone(),
             test: self.described.text.clone(),
-            part: self.described.test.as_ref().and_then(|said| said.reading.part.clone()),
+            part: self.described.test.as_ref().and_then(|stated| stated.reading.part.clone()),
         };
         made_again::<Self>(py, &parts)
     }

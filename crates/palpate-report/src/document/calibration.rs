@@ -51,7 +51,7 @@ documents! {
         let good = made.as_ref().ok();
         let parameters =
             good.iter().flat_map(|made| parameters_of_material(&made.material, made.termination.is_good()));
-        let uncertainty = good.and_then(|made| made.material.uncertainty.as_ref());
+        let uncertainty = good.and_then(|made| made.material.uncertainty());
     } {
         /// Name of the law.
         law: String = candidate.to_string(),

@@ -92,7 +92,7 @@ documents! {
         /// `clear`, `likely` or `open`.
         certainty: String = word(verdict.certainty),
         /// All laws that are not distinguishable from the best, this one included.
-        alike: Vec<String> = verdict.alike.iter().map(ToString::to_string).collect(),
+        indistinguishable: Vec<String> = verdict.indistinguishable.iter().map(ToString::to_string).collect(),
         /// Number of cut points at which no law predicts distinguishably better.
         cuts_won: usize = verdict.cuts_won,
         /// Cost of each other law: the ratio of its error to that of the chosen one (`forward`), or its excess of BIC (`information`).

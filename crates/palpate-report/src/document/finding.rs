@@ -10,7 +10,7 @@ impl From<&analysis::Finding> for Finding {
         Self {
             code: finding.code().to_owned(),
             severity: finding.severity(),
-            seen: finding.seen(),
+            observation: finding.observation(),
             meaning: finding.meaning().to_owned(),
             remedy: with_flags(finding.remedy()),
         }

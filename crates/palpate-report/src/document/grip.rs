@@ -221,7 +221,7 @@ documents! {
         /// SHA-256 of its bytes.
         material_sha256: String = body.sha256.clone(),
         /// The calibrated law.
-        law: String = body.grip.material().candidate.to_string(),
+        law: String = body.grip.material().candidate().to_string(),
         /// Coverage of the intervals.
         confidence: f64 = body.grip.confidence(),
         /// The load.

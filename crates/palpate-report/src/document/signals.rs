@@ -86,7 +86,7 @@ documents! {
         /// Stable code.
         code: String = code,
         /// In words.
-        said: String = done.to_string(),
+        stated: String = done.to_string(),
         /// Its values, with their units in their names.
         numbers: Map<String, Value> = numbers,
     }

@@ -73,19 +73,19 @@ documents! {
     }
 
     /// Report of an observer after a tick.
-    ObservationDocument(event: &str, seen: &Observation) with {
-        let (creep, creep_standard_error) = parted(seen.creep_rate);
-        let (equilibrium, equilibrium_standard_error) = parted(seen.equilibrium_force);
-        let (excess, excess_standard_error) = parted(seen.excess_force);
-        let (strain, strain_standard_error) = parted(seen.excess_strain);
-        let hold = seen.held.zip(seen.held_since);
-        let times = match seen.time_to_slip {
+    ObservationDocument(event: &str, observed: &Observation) with {
+        let (creep, creep_standard_error) = parted(observed.creep_rate);
+        let (equilibrium, equilibrium_standard_error) = parted(observed.equilibrium_force);
+        let (excess, excess_standard_error) = parted(observed.excess_force);
+        let (strain, strain_standard_error) = parted(observed.excess_strain);
+        let hold = observed.held.zip(observed.held_since);
+        let times = match observed.time_to_slip {
             Some(SlipForecast::Known { best, low: TimeToSlip::After(low), high }) => {
                 Some((best.seconds(), low, high.seconds()))
             }
             _ => None,
         };
-        let warns = seen.time_to_slip.is_some() || seen.slip != Slip::None;
+        let warns = observed.time_to_slip.is_some() || observed.slip != Slip::None;
     } {
         /// Standard error of the creep speed, m/s.
         creep_rate_standard_error_m_per_s?: Option<f64> = creep_standard_error,
@@ -106,19 +106,19 @@ documents! {
         /// Standard error of the excess strain.
         excess_strain_standard_error?: Option<f64> = strain_standard_error,
         /// Filtered force, N.
-        force_n: f64 = seen.force,
+        force_n: f64 = observed.force,
         /// What is held: `displacement` or `force`.
         held?: Option<String> = hold.map(|(held, _)| word(held)),
         /// Start of the hold, s.
         held_since_s?: Option<f64> = hold.map(|(_, since)| since),
         /// `free`, `loading`, `holding` or `unloading`.
-        phase: String = word(seen.phase),
+        phase: String = word(observed.phase),
         /// Current relative rate at which the excess falls, 1/s.
-        relative_rate_per_s?: Option<f64> = seen.relative_rate,
+        relative_rate_per_s?: Option<f64> = observed.relative_rate,
         /// `not_known_yet`, `never`, `perhaps_never` or `after`; omitted without a slip force.
-        slips?: Option<String> = seen.time_to_slip.map(|time| slips_word(time).to_owned()),
+        slips?: Option<String> = observed.time_to_slip.map(|time| slips_word(time).to_owned()),
         /// Time of the report, s.
-        time_s: f64 = seen.time,
+        time_s: f64 = observed.time,
         /// Upper end of the interval of the time to slip, s; `null` where the interval is unbounded.
         time_to_slip_high_s?: Option<Option<f64>> = times.map(|(_, _, high)| high),
         /// Its lower end, s.
@@ -126,7 +126,7 @@ documents! {
         /// Time until the force has fallen to the slip force, s; `null` for never.
         time_to_slip_s?: Option<Option<f64>> = times.map(|(value, _, _)| value),
         /// `none`, `soon` or `slipping`; omitted without a slip force.
-        warning?: Option<String> = warns.then(|| word(seen.slip)),
+        warning?: Option<String> = warns.then(|| word(observed.slip)),
     }
 }
 

@@ -45,8 +45,8 @@ pub struct Finding {
     /// `info`, `caution` or `warning`.
     #[schemars(with = "String")]
     pub severity: Severity,
-    /// What was seen.
-    pub seen: String,
+    /// What was observed.
+    pub observation: String,
     /// What it may mean.
     pub meaning: String,
     /// What helps.

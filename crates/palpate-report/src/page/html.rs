@@ -146,7 +146,7 @@ fn finding_written(finding: &Finding) -> String {
         "<div class=\"finding {word}\">\n<p class=\"head\"><span class=\"word\">{word}</span> \
          <code>{}</code></p>\n<p>{}</p>\n{advice}</div>\n",
         escape(&finding.code),
-        finding.seen.lines().map(rich).collect::<Vec<_>>().join("<br>\n")
+        finding.observation.lines().map(rich).collect::<Vec<_>>().join("<br>\n")
     )
 }
 

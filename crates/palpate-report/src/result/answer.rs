@@ -92,7 +92,12 @@ impl HoldAnswer {
             parameters: fit.map(|fit| parameters_of(fit, hold.quantity)).unwrap_or_default(),
             termination: fit.map_or_else(|| "converged".to_owned(), |fit| word(fit.termination)),
             holdout_error: row.forward.score.filter(|_| comparison.ranking == Ranking::Forward),
-            indistinguishable: verdict.alike.iter().filter(|law| **law != verdict.law).map(Law::to_string).collect(),
+            indistinguishable: verdict
+                .indistinguishable
+                .iter()
+                .filter(|law| **law != verdict.law)
+                .map(Law::to_string)
+                .collect(),
             findings: most_severe(&hold.findings),
         })
     }
@@ -126,7 +131,7 @@ pub fn formula(fit: &Fit, quantity: Quantity) -> String {
 
 /// The laws that are not distinguishable from the best on a hold.
 fn alike(comparison: &Comparison) -> &[Law] {
-    comparison.verdict.as_ref().map_or(&[], |verdict| &verdict.alike)
+    comparison.verdict.as_ref().map_or(&[], |verdict| &verdict.indistinguishable)
 }
 
 /// The law that is not distinguishable from the best on the most holds; of several the one with the fewest parameters, then the one
@@ -173,6 +178,6 @@ fn most_severe(findings: &[Finding]) -> Vec<String> {
     severe
         .iter()
         .take(MOST_FINDINGS)
-        .map(|finding| format!("{}: {}", word(finding.severity()), finding.seen()))
+        .map(|finding| format!("{}: {}", word(finding.severity()), finding.observation()))
         .collect()
 }

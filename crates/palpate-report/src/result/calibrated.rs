@@ -10,7 +10,7 @@ use palpate::units::quantity;
 use super::input::Input;
 use crate::word::word;
 
-/// Candidates calibrated on one record; the first is the one that is asked for, the others are its alternatives.
+/// Candidates calibrated on one record; the first is the one that is requested, the others are its alternatives.
 #[derive(Debug)]
 pub struct CalibratedRecord {
     /// The record.
@@ -19,7 +19,7 @@ pub struct CalibratedRecord {
     pub data: CalibrationData,
     /// Each candidate with what was found, or why nothing was.
     pub rows: Vec<(Candidate, Result<Calibration, CalibrateError>)>,
-    /// Profile intervals of what is asked for; none if they were not.
+    /// Profile intervals of what is requested; none if they were not.
     pub profiles: Vec<ParameterProfile>,
 }
 
@@ -29,7 +29,7 @@ impl CalibratedRecord {
         self.rows.iter().filter_map(|(_, made)| made.as_ref().ok())
     }
 
-    /// What was asked for, if it could be made.
+    /// What was requested, if it could be made.
     #[must_use]
     pub fn chosen(&self) -> Option<&Calibration> {
         self.rows.first().and_then(|(_, made)| made.as_ref().ok())
@@ -48,7 +48,7 @@ impl CalibratedRecord {
         // A law that found no optimum is none to recommend.
         let sound = |made: &&Calibration| made.termination.is_good() || std::ptr::eq(*made, chosen);
         let best = self.made().filter(sound).min_by(|a, b| self.score(a).total_cmp(&self.score(b)))?;
-        let (law, other) = (chosen.material.candidate, best.material.candidate);
+        let (law, other) = (chosen.material.candidate(), best.material.candidate());
         let by = if chosen.holdout.is_some() { "predicts the rest of the record best" } else { "has the lowest BIC" };
         Some(if law == other {
             format!("Of the laws tried, {law} {by}.")
@@ -68,7 +68,7 @@ impl CalibratedRecord {
         let Some(chosen) = self.chosen() else {
             return vec!["The law could not be calibrated on this record.".to_owned()];
         };
-        let mut lines = vec![format!("Law calibrated on this record: {}.", chosen.material.candidate)];
+        let mut lines = vec![format!("Law calibrated on this record: {}.", chosen.material.candidate())];
         lines.extend(formula_of_material(&chosen.material));
         let percent = |share: f64| significant(100.0 * share, 2);
         let fitted = format!("Root mean square residual: {}", quantity(chosen.rmse, "N", 3));
@@ -89,7 +89,7 @@ impl CalibratedRecord {
     pub fn remarks(&self) -> Vec<String> {
         let mut remarks: Vec<String> = self.sentence().into_iter().collect();
         if let Some(chosen) = self.chosen() {
-            if chosen.material.candidate.rate == RateLaw::ByStrain && self.data.depths_held() < 2 {
+            if chosen.material.candidate().rate == RateLaw::ByStrain && self.data.depths_held() < 2 {
                 remarks.push("The record holds one displacement: only the ramps determine the dependence of v on strain, so that an error of the law there biases it. Holds at several displacements would determine it.".to_owned());
             }
             remarks.extend(remarks_of(chosen));
@@ -119,11 +119,11 @@ fn remarks_of(made: &Calibration) -> Vec<String> {
         remarks.push(format!("{how} The parameters have no intervals."));
     } else if let Some(open) = made
         .material
-        .parameters
+        .parameters()
         .iter()
-        .filter(|parameter| !Material::is_given(made.material.candidate, &parameter.name))
+        .filter(|parameter| !Material::is_given(made.material.candidate(), &parameter.name))
         .find(|parameter| parameter.estimate.interval.is_none_or(|(low, high)| high > 100.0 * low))
-        && made.material.uncertainty.is_some()
+        && made.material.uncertainty().is_some()
     {
         let name = &open.name;
         let how = match open.estimate.interval {
@@ -144,7 +144,7 @@ fn remarks_of(made: &Calibration) -> Vec<String> {
             significant(100.0 * made.relative, 2)
         ));
     }
-    let range = &made.material.range;
+    let range = made.material.range();
     remarks.push(format!(
         "Calibration range: holds of up to {}, displacements of up to {}, ramps of {} to {}, forces of up to {}. Predictions beyond this range are marked as extrapolations.",
         quantity(range.longest_hold, "s", 3),

@@ -13,7 +13,7 @@ use super::words::percent;
 const MINUTE: f64 = 60.0;
 
 impl GrippedBody<'_> {
-    /// What was asked, in a sentence.
+    /// What was requested, in a sentence.
     #[must_use]
     pub fn question(&self) -> String {
         let question = &self.answer.question;
@@ -44,17 +44,17 @@ impl GrippedBody<'_> {
     /// The verdict in a sentence.
     #[must_use]
     pub fn verdict(&self) -> String {
-        self.told().unwrap_or_else(|error| format!("No: {error}."))
+        self.stated().unwrap_or_else(|error| format!("No: {error}."))
     }
 
-    fn told(&self) -> Result<String, &GripError> {
+    fn stated(&self) -> Result<String, &GripError> {
         let answer = &self.answer;
         let holds = answer.holds() == Ok(true);
-        let told = match answer.question.control {
+        let stated = match answer.question.control {
             Control::Position => of_squeeze(self, &answer.squeeze.as_ref()?.found, holds),
             Control::Force => of_pressed(&answer.force_hold.as_ref()?.found, holds),
         };
-        Ok(format!("{}: {told}", if holds { "Yes" } else { "No" }))
+        Ok(format!("{}: {stated}", if holds { "Yes" } else { "No" }))
     }
 
     /// What the tables mean, in sentences: the advice of both ways of control beside each other, retreat, schedule, limits of the test.
@@ -62,7 +62,7 @@ impl GrippedBody<'_> {
     pub fn remarks(&self) -> Vec<String> {
         let answer = &self.answer;
         let mut remarks = Vec::new();
-        if self.grip.material().uncertainty.is_none() {
+        if self.grip.material().uncertainty().is_none() {
             remarks.push("The calibration left a parameter open: there are no intervals.".to_owned());
         }
         if let Ok(squeeze) = &answer.squeeze {
@@ -79,11 +79,12 @@ impl GrippedBody<'_> {
         if let Some(Ok(schedule)) = &answer.schedule {
             remarks.push(on_schedule(&schedule.found));
         }
-        let refused = self.refused().into_iter().filter(|(name, _)| *name != self.asked());
+        let refused = self.refused().into_iter().filter(|(name, _)| *name != self.requested());
         remarks.extend(refused.map(|(name, error)| format!("No {name}: {error}.")));
-        if self.grip.material().body.sides == Sides::One {
+        if self.grip.material().body().sides == Sides::One {
             remarks.push(
-                "The material was tested from one side: each of the two jaws moves as far as is said here, towards the other.".to_owned(),
+                "The material was tested from one side: each of the two jaws moves this distance, towards the other."
+                    .to_owned(),
             );
         }
         remarks.extend(self.extrapolations().iter().map(|beyond| format!("Beyond the test: {beyond}.")));
@@ -157,8 +158,8 @@ fn of_squeeze(body: &GrippedBody<'_>, found: &PositionHold, holds: bool) -> Stri
     let interval = found
         .interval
         .map_or_else(String::new, |(low, high)| format!(" ({share}: {} to {})", lasts(low), lasts(high)));
-    if let Some(told) = with_confidence(body, found, &what, holds) {
-        return told;
+    if let Some(stated) = with_confidence(body, found, &what, holds) {
+        return stated;
     }
     match found.lasts {
         TimeToSlip::After(0.0) => format!(

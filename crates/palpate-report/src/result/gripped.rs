@@ -17,7 +17,7 @@ pub struct GrippedBody<'a> {
 }
 
 impl GrippedBody<'_> {
-    /// How the grip that is asked about goes beyond what the test has shown.
+    /// How the grip that is in question goes beyond what the test has shown.
     #[must_use]
     pub fn extrapolations(&self) -> &[Extrapolation] {
         self.answer.course().map_or(&[], |course| &course.extrapolations)
@@ -30,7 +30,7 @@ impl GrippedBody<'_> {
         names.into_iter().zip(self.grips()).filter_map(|(name, made)| Some((name, made?.err()?))).collect()
     }
 
-    /// Squeeze, overshoot and back off, force held and schedule: the course of each, or why there is none; a schedule only if one was asked for.
+    /// Squeeze, overshoot and back off, force held and schedule: the course of each, or why there is none; a schedule only if one was requested.
     #[must_use]
     pub fn grips(&self) -> [Option<Result<&Prediction, &GripError>>; 4] {
         let answer = &self.answer;
@@ -42,9 +42,9 @@ impl GrippedBody<'_> {
         ]
     }
 
-    /// The grip that is asked about, by name.
+    /// The grip that is in question, by name.
     #[must_use]
-    pub fn asked(&self) -> &'static str {
+    pub fn requested(&self) -> &'static str {
         match self.answer.question.control {
             Control::Position => "squeeze",
             Control::Force => "force held",

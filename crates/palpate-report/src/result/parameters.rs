@@ -90,7 +90,7 @@ pub fn parameters_of(fit: &Fit, quantity: Quantity) -> Parameters {
 #[must_use]
 pub fn parameters_of_material(material: &Material, is_good: bool) -> Vec<(String, ParameterDocument)> {
     let document = |parameter: &MaterialParameter| {
-        let role = if Material::is_given(material.candidate, &parameter.name) {
+        let role = if Material::is_given(material.candidate(), &parameter.name) {
             ParameterRole::Given
         } else {
             ParameterRole::Estimated
@@ -98,7 +98,7 @@ pub fn parameters_of_material(material: &Material, is_good: bool) -> Vec<(String
         let known = Some(&parameter.estimate).filter(|_| is_good || role == ParameterRole::Given);
         (parameter.name.clone(), ParameterDocument::new(known, si_unit(parameter.unit).to_owned(), role))
     };
-    material.parameters.iter().map(document).collect()
+    material.parameters().iter().map(document).collect()
 }
 
 /// The SI unit of a parameter of a material.

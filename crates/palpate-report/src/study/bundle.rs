@@ -15,6 +15,7 @@ pub struct Pictures {
 
 /// Why a study could not be put together.
 #[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum StudyError {
     /// A figure.
     #[error(transparent)]

@@ -22,7 +22,7 @@ pub(super) struct Gathered {
     pub severity: Severity,
     /// Its code.
     pub code: &'static str,
-    /// Where it was seen and what: one line for each different text.
+    /// Where it was observed and what: one line for each different text.
     pub lines: Vec<(String, String)>,
     meaning: &'static str,
     remedy: &'static str,
@@ -31,22 +31,23 @@ pub(super) struct Gathered {
 impl Gathered {
     /// In a sentence, with the first place where it was observed.
     pub(super) fn briefly(&self) -> String {
-        let (place, seen) = self.lines.first().map_or(("", ""), |(place, seen)| (place.as_str(), seen.as_str()));
+        let (place, observed) =
+            self.lines.first().map_or(("", ""), |(place, observed)| (place.as_str(), observed.as_str()));
         let severity = word(self.severity);
         let place = if place.is_empty() { String::new() } else { format!(", {}", place.to_lowercase()) };
-        format!("{}{}{place}: {seen}.", severity[..1].to_uppercase(), &severity[1..])
+        format!("{}{}{place}: {observed}.", severity[..1].to_uppercase(), &severity[1..])
     }
 
     /// As a page shows it.
-    pub(super) fn told(&self) -> Finding {
-        let line = |(place, seen): &(String, String)| {
-            if place.is_empty() { sentence(seen) } else { format!("{place}: {seen}.") }
+    pub(super) fn reported(&self) -> Finding {
+        let line = |(place, observed): &(String, String)| {
+            if place.is_empty() { sentence(observed) } else { format!("{place}: {observed}.") }
         };
         let lines: Vec<String> = self.lines.iter().map(line).collect();
         Finding {
             severity: self.severity,
             code: self.code.to_owned(),
-            seen: lines.join("\n"),
+            observation: lines.join("\n"),
             meaning: sentence(self.meaning),
             remedy: sentence(&with_flags(self.remedy)),
         }
@@ -55,46 +56,46 @@ impl Gathered {
 
 /// All findings of a record and of its holds.
 pub(super) fn gathered(analysis: &Analysis, most: usize) -> Vec<Gathered> {
-    let mut seen: Vec<Seen<'_>> = analysis.findings.iter().map(|finding| Seen::of(finding, None)).collect();
+    let mut observed: Vec<Observed<'_>> = analysis.findings.iter().map(|finding| Observed::of(finding, None)).collect();
     for hold in &analysis.holds {
         let without_area = hold.findings.iter().any(|finding| matches!(finding, RecordFinding::NoContactArea));
         for finding in &hold.findings {
             // That an open contact does not relax goes without saying.
             if !(without_area && matches!(finding, RecordFinding::NoRelaxation { .. })) {
-                let mut one = Seen::of(finding, Some(hold.number));
+                let mut one = Observed::of(finding, Some(hold.number));
                 if matches!(finding, RecordFinding::NoContactArea) && open(analysis, hold) {
                     one.severity = Severity::Info;
                 }
-                seen.push(one);
+                observed.push(one);
             }
         }
     }
-    merged(seen, most)
+    merged(observed, most)
 }
 
 /// One entry for each code, the most severe first.
-fn merged(mut seen: Vec<Seen<'_>>, most: usize) -> Vec<Gathered> {
+fn merged(mut observed: Vec<Observed<'_>>, most: usize) -> Vec<Gathered> {
     let mut list = Vec::new();
-    while let Some(first) = seen.first() {
+    while let Some(first) = observed.first() {
         let (severity, finding) = (first.severity, first.finding);
-        let (alike, rest) = seen
+        let (alike, rest) = observed
             .into_iter()
             .partition(|other| other.severity == severity && other.finding.code() == finding.code());
         list.push(gather(severity, finding, alike, most));
-        seen = rest;
+        observed = rest;
     }
     list.sort_by_key(|finding| std::cmp::Reverse(finding.severity));
     list
 }
 
-/// A finding and where it was seen.
-struct Seen<'a> {
+/// A finding and where it was observed.
+struct Observed<'a> {
     severity: Severity,
     finding: &'a RecordFinding,
     hold: Option<usize>,
 }
 
-impl<'a> Seen<'a> {
+impl<'a> Observed<'a> {
     fn of(finding: &'a RecordFinding, hold: Option<usize>) -> Self {
         Self {
             severity: finding.severity(),
@@ -111,7 +112,7 @@ fn open(analysis: &Analysis, hold: &HoldAnalysis) -> bool {
 }
 
 /// All that say the same as `finding`, with that severity, as one.
-fn gather(severity: Severity, finding: &RecordFinding, alike: Vec<Seen<'_>>, most: usize) -> Gathered {
+fn gather(severity: Severity, finding: &RecordFinding, alike: Vec<Observed<'_>>, most: usize) -> Gathered {
     let (meaning, remedy) = if severity == Severity::Info && matches!(finding, RecordFinding::NoContactArea) {
         (
             "the jaw is back at first touch and the contact is open; such a hold is not fitted",
@@ -121,8 +122,8 @@ fn gather(severity: Severity, finding: &RecordFinding, alike: Vec<Seen<'_>>, mos
         (finding.meaning(), finding.remedy())
     };
     let mut groups: Vec<(String, Vec<usize>)> = Vec::new();
-    for Seen { hold, finding, .. } in alike {
-        entry(&mut groups, finding.seen()).extend(hold);
+    for Observed { hold, finding, .. } in alike {
+        entry(&mut groups, finding.observation()).extend(hold);
     }
     // A last line that counts the rest is worth it only if it stands for several.
     let cut = if groups.len() > most + 1 { most } else { groups.len() };
@@ -184,23 +185,23 @@ fn sentence(text: &str) -> String {
 
 /// All findings of a compared record and of its holds.
 pub(super) fn gathered_of(record: &ComparedRecord, most: usize) -> Vec<Gathered> {
-    let whole = record.findings.iter().map(|finding| Seen::of(finding, None));
+    let whole = record.findings.iter().map(|finding| Observed::of(finding, None));
     let of_holds = record
         .holds
         .iter()
-        .flat_map(|hold| hold.findings.iter().map(|finding| Seen::of(finding, Some(hold.number))));
+        .flat_map(|hold| hold.findings.iter().map(|finding| Observed::of(finding, Some(hold.number))));
     merged(whole.chain(of_holds).collect(), most)
 }
 
-/// Findings for a terminal: severity and code, then what was seen where.
+/// Findings for a terminal: severity and code, then what was observed where.
 pub(super) fn plain(findings: &[Gathered]) -> String {
     let mut text = String::new();
     for finding in findings {
         let mut head = format!("{:<9}{}  ", word(finding.severity), finding.code);
-        for (place, seen) in &finding.lines {
+        for (place, observed) in &finding.lines {
             let place = place.replacen("Hold", "hold", 1);
-            let told = if place.is_empty() { seen.clone() } else { format!("{place}: {seen}") };
-            text.push_str(&indented(&head, INDENT, width(), &told));
+            let reported = if place.is_empty() { observed.clone() } else { format!("{place}: {observed}") };
+            text.push_str(&indented(&head, INDENT, width(), &reported));
             head = " ".repeat(INDENT);
         }
     }
@@ -211,8 +212,8 @@ pub(super) fn plain(findings: &[Gathered]) -> String {
 mod tests {
     use super::*;
 
-    fn seen(finding: &RecordFinding, hold: usize) -> Seen<'_> {
-        Seen {
+    fn observed(finding: &RecordFinding, hold: usize) -> Observed<'_> {
+        Observed {
             severity: Severity::Info,
             finding,
             hold: Some(hold),
@@ -220,15 +221,15 @@ mod tests {
     }
 
     #[test]
-    fn holds_that_differ_are_told_apart() {
-        let of = |exponents: &[f64]| RecordFinding::ExponentsAlike {
+    fn holds_that_differ_are_reported_apart() {
+        let of = |exponents: &[f64]| RecordFinding::ExponentsIndistinguishable {
             exponents: exponents.to_vec(),
         };
         let (low, high) = (of(&[2.0, 3.0]), of(&[5.0, 7.0]));
-        let all = vec![seen(&low, 2), seen(&high, 6), seen(&low, 3), seen(&high, 10)];
-        let told = gather(Severity::Info, &low, all, MOST_LINES).told();
+        let all = vec![observed(&low, 2), observed(&high, 6), observed(&low, 3), observed(&high, 10)];
+        let reported = gather(Severity::Info, &low, all, MOST_LINES).reported();
         assert_eq!(
-            told.seen,
+            reported.observation,
             "Holds 2, 3: the exponents 2, 3 are not distinguishable.\nHolds 6, 10: the exponents 5, 7 are not distinguishable."
         );
     }
@@ -240,10 +241,10 @@ mod tests {
                 beyond: 0.2 + 0.05 * f64::from(i),
             })
             .collect();
-        let all = findings.iter().enumerate().map(|(i, finding)| seen(finding, i + 1)).collect();
-        let told = gather(Severity::Caution, &findings[0], all, MOST_LINES).told();
-        assert_eq!(told.seen.lines().count(), MOST_LINES + 1);
-        assert!(told.seen.lines().last().is_some_and(|last| last.starts_with("Holds 7–12: likewise")));
+        let all = findings.iter().enumerate().map(|(i, finding)| observed(finding, i + 1)).collect();
+        let reported = gather(Severity::Caution, &findings[0], all, MOST_LINES).reported();
+        assert_eq!(reported.observation.lines().count(), MOST_LINES + 1);
+        assert!(reported.observation.lines().last().is_some_and(|last| last.starts_with("Holds 7–12: likewise")));
     }
 
     #[test]

@@ -1,4 +1,4 @@
-//! Figures seen from outside: well-formed, the same every time, and calm about odd data.
+//! Figures observed from outside: well-formed, the same every time, and calm about odd data.
 
 use palpate_report::figure::{Arrangement, Axis, Figure, FigureError, Layer, Map, Panel, Role};
 

@@ -1,4 +1,4 @@
-//! Pages seen from outside: complete, escaped, and without anything fetched.
+//! Pages observed from outside: complete, escaped, and without anything fetched.
 
 use palpate_report::figure::{Axis, Figure, Layer, Panel, Role};
 use palpate_report::page::{Block, Check, Finding, Page, Section, Severity};
@@ -20,7 +20,7 @@ fn page() -> String {
     let finding = Finding {
         severity: Severity::Caution,
         code: text(),
-        seen: text(),
+        observation: text(),
         meaning: text(),
         remedy: text(),
     };

@@ -7,6 +7,7 @@ use crate::watch::Cancelled;
 
 /// Why a record could not be analysed.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum AnalysisError {
     /// The watch ended the work.
     #[error(transparent)]
@@ -37,10 +38,10 @@ pub enum AnalysisError {
         limit_name: &'static str,
     },
     /// A first touch that the jaw does not reach.
-    #[error("first touch is given at {:.4} mm; the largest displacement of the jaw is {:.4} mm", 1e3 * asked, 1e3 * farthest)]
+    #[error("first touch is given at {:.4} mm; the largest displacement of the jaw is {:.4} mm", 1e3 * requested, 1e3 * farthest)]
     TouchBeyond {
         /// What was given, m.
-        asked: f64,
+        requested: f64,
         /// The largest displacement of the record, m.
         farthest: f64,
     },

@@ -1,6 +1,6 @@
-//! Findings of an analysis; `told.rs` has their texts, one row each.
+//! Findings of an analysis; `text.rs` has their texts, one row each.
 
-mod told;
+mod text;
 
 use serde::{Deserialize, Serialize};
 
@@ -24,6 +24,7 @@ pub enum Severity {
 /// An observation that affects the use of the results. Each has a stable code; the text may change.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(tag = "code", rename_all = "snake_case")]
+#[non_exhaustive]
 pub enum Finding {
     /// The fitted equilibrium lies well beyond the end of the hold.
     EquilibriumExtrapolated {
@@ -36,9 +37,20 @@ pub enum Finding {
         interval: Option<(f64, f64)>,
     },
     /// Several listed exponents are not distinguishable.
-    ExponentsAlike {
+    ExponentsIndistinguishable {
         /// Those exponents.
         exponents: Vec<f64>,
+    },
+    /// The criterion was lowest at an end of the list of exponents, and the list was extended.
+    ExponentListExtended {
+        /// The requested exponents.
+        listed: Vec<f64>,
+        /// The exponents that were added.
+        added: Vec<f64>,
+        /// Numbers of the holds whose criterion was lowest at an end of the list.
+        holds: Vec<usize>,
+        /// Whether the criterion is still lowest at the largest exponent that a fit allows.
+        open: bool,
     },
     /// The relative rate of a fit is at its bound.
     RateAtBound {
@@ -293,30 +305,30 @@ impl Finding {
     /// The stable code.
     #[must_use]
     pub fn code(&self) -> &'static str {
-        self.told().0
+        self.text().0
     }
 
     /// Severity.
     #[must_use]
     pub fn severity(&self) -> Severity {
-        self.told().1
+        self.text().1
     }
 
     /// The observation.
     #[must_use]
-    pub fn seen(&self) -> String {
-        self.told().2
+    pub fn observation(&self) -> String {
+        self.text().2
     }
 
     /// Its possible meaning.
     #[must_use]
     pub fn meaning(&self) -> &'static str {
-        self.told().3
+        self.text().3
     }
 
     /// The remedy; options stand between `⟨` and `⟩`, for each interface to spell.
     #[must_use]
     pub fn remedy(&self) -> &'static str {
-        self.told().4
+        self.text().4
     }
 }

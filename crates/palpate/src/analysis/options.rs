@@ -62,7 +62,7 @@ pub struct AnalysisOptions {
     pub separation: Separation,
     /// Layers of the overlay; fitted to the ramps if not given.
     pub layers: Option<LayersChoice>,
-    /// Exponents that are tried as given.
+    /// Exponents that are fitted as given; a list of two or more is extended while its last or first has the lowest criterion.
     pub exponents: Vec<f64>,
     /// Whether n is also estimated.
     pub free_exponent: bool,
@@ -79,7 +79,7 @@ pub struct AnalysisOptions {
 }
 
 impl AnalysisOptions {
-    /// The exponents to fit: the listed ones, then the free one.
+    /// The listed exponents, then the free one.
     pub(super) fn choices(&self) -> impl Iterator<Item = ExponentChoice> {
         let listed = self.exponents.iter().map(|n| ExponentChoice::Fixed(*n));
         listed.chain(self.free_exponent.then_some(ExponentChoice::Free))

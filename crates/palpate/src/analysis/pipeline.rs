@@ -1,6 +1,6 @@
 //! The order of the steps.
 
-use super::holds::{HoldAnalysis, analyze_hold};
+use super::holds::{HoldAnalysis, complete_hold, fit_exponents, prepare_hold};
 use super::prepare::{ClockSkew, Prepared, corrected, signal_findings};
 use super::together::{Across, ModulusSource, Overlay, across, changing_rate, implied_modulus, overlay};
 use super::{AnalysisError, AnalysisOptions, Finding};
@@ -12,6 +12,7 @@ use crate::watch::{Unwatched, Watch};
 
 /// The study of one record.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct Analysis {
     /// The record after repair and tare; it knows what was done to it.
     pub record: Record,
@@ -84,15 +85,20 @@ pub fn examine(record: &Record, options: &AnalysisOptions, watch: &mut dyn Watch
     let (specimen, modulus_source) = specimen(&record, &segmentation, options, &mut findings)?;
     let segments = &segmentation.segments;
     let held = (0..segments.len()).filter(|index| segments[*index].phase == Phase::Hold);
-    let holds: Vec<HoldAnalysis> = held
+    let (mut holds, ramps): (Vec<HoldAnalysis>, Vec<Option<usize>>) = held
         .zip(1..)
         .map(|(index, number)| {
             let ramp = ramps_before(segments, index).last().map(|ramp| ramp.start);
-            analyze_hold(&record, (&segments[index], ramp), number, specimen.as_ref(), options, watch)
+            (prepare_hold(&record, &segments[index], number, specimen.as_ref(), options), ramp)
         })
-        .collect::<Result<_, _>>()?;
+        .unzip();
+    let (exponents, extension) = fit_exponents(&mut holds, options, watch)?;
+    findings.extend(extension);
+    for (hold, ramp) in holds.iter_mut().zip(ramps) {
+        complete_hold(hold, &record, ramp, options, watch)?;
+    }
     findings.extend(specimen.as_ref().and_then(|specimen| uncertain_touch(&contact, specimen, &holds)));
-    let across = across(&holds, options, 4.0 * segmentation.settings.tolerance, watch)?;
+    let across = across(&holds, &exponents, options, 4.0 * segmentation.settings.tolerance, watch)?;
     findings.extend(changing_rate(&across.joint));
     let overlay = specimen.as_ref().and_then(|specimen| {
         let result = overlay(&record, &segmentation, specimen, &holds, across.common_exponent, options);
@@ -147,7 +153,7 @@ fn specimen(
             let specimen = Specimen::new(geometry.shape.clone(), implied.value, geometry.sides)?;
             Ok((Some(specimen), Some(ModulusSource::Estimated)))
         }
-        // Validates the geometry even where no modulus can be told.
+        // Validates the geometry even where no modulus can be determined.
         (None, None) => Specimen::new(geometry.shape.clone(), 1.0, geometry.sides).map(|_| (None, None)),
     }
 }
@@ -205,27 +211,30 @@ fn nothing_to_fit(holds: &[HoldAnalysis]) -> Result<(), AnalysisError> {
         )
     } else if let Some((_, held)) = with("feedback_controlled") {
         let hint = "fit the displacement as creep: ⟨compare/creep⟩";
-        (format!("the machine held the force; {}", held.seen()), hint)
+        (format!("the machine held the force; {}", held.observation()), hint)
     } else if let Some((hold, few)) = with("too_few_samples") {
         let needed = if let Finding::TooFewSamples { needed, .. } = few { *needed } else { 0 };
-        let seen = few.seen();
+        let observed = few.observation();
         if hold.fitted < hold.times.len() && hold.times.len() >= needed {
-            (format!("{seen} (up to the time set with until)"), "raise until (⟨fit_until⟩)")
+            (format!("{observed} (up to the time set with until)"), "raise until (⟨fit_until⟩)")
         } else {
-            (seen, "hold longer or sample faster; `palpate inspect` shows the detected phases")
+            (observed, "hold longer or sample faster; `palpate inspect` shows the detected phases")
         }
     } else if let Some((_, area)) = with("no_contact_area") {
-        (area.seen(), "check first touch (touch), the radius, and the unit and sign of the displacement")
+        (
+            area.observation(),
+            "check first touch (touch), the radius, and the unit and sign of the displacement",
+        )
     } else if let Some(force) = constant_force(holds) {
         let reason = format!("the force is {} N throughout: there is no relaxation", significant(force, 4));
         let hint = "check the force column and that the load cell was connected; for creep use `⟨compare/creep⟩`";
         (reason, hint)
     } else if let Some((_, still)) = with("no_relaxation") {
-        let reason = format!("the force does not change in any hold ({} in the first)", still.seen());
+        let reason = format!("the force does not change in any hold ({} in the first)", still.observation());
         (reason, "check the force column and its unit; without relaxation there is no law to fit")
     } else {
-        let seen = findings().next().map(|(_, finding)| finding.seen());
-        let reason = seen.unwrap_or_else(|| "no fit converged".to_owned());
+        let observed = findings().next().map(|(_, finding)| finding.observation());
+        let reason = observed.unwrap_or_else(|| "no fit converged".to_owned());
         (reason, "`palpate inspect` shows the detected phases")
     };
     Err(AnalysisError::NothingToFit {

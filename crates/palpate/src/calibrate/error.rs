@@ -6,8 +6,52 @@ use crate::laws::Law;
 use crate::simulate::{MotionError, SimulateError};
 use crate::watch::Cancelled;
 
+/// Why parts make no [`Material`](super::Material).
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum MaterialError {
+    /// Other parameters than the law has, or another order or unit.
+    #[error("the parameters of this law are {}, found {}", expected.join(", "), found.join(", "))]
+    Names {
+        /// Names of the parameters of the law.
+        expected: Vec<String>,
+        /// Names that were given.
+        found: Vec<String>,
+    },
+    /// A value that is not above zero, a negative error, or an interval whose ends are exchanged.
+    #[error("expected a finite {name} above 0 with errors of 0 or more and a rising interval, found {value}")]
+    Estimate {
+        /// Name of the parameter.
+        name: String,
+        /// Its value.
+        value: f64,
+    },
+    /// A covariance of another size or not finite, a confidence outside 0…1, or degrees of freedom that are not above 0.
+    #[error(
+        "the uncertainty of {parameters} parameters is a finite covariance of {parameters} rows and columns, a confidence between 0 and 1, and degrees of freedom above 0"
+    )]
+    Uncertainty {
+        /// Number of parameters.
+        parameters: usize,
+    },
+    /// A noise or an end of the range that is negative or not finite.
+    #[error("{name} must be finite and 0 or more, found {value}")]
+    Number {
+        /// Which.
+        name: &'static str,
+        /// What was given.
+        value: f64,
+    },
+    /// Parameters within their ranges that make no contact together.
+    #[error(
+        "the parameters make no contact: a layer is thicker than the body, or the equilibrium forces do not rise with the displacement"
+    )]
+    NoContact,
+}
+
 /// Why a calibration could not be made.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum CalibrateError {
     /// Columns of different lengths.
     #[error("a calibration needs a force for every time, found {times} times and {forces} forces")]
@@ -45,6 +89,9 @@ pub enum CalibrateError {
         /// Samples after it.
         after: usize,
     },
+    /// Parameters that make no material.
+    #[error(transparent)]
+    Material(#[from] MaterialError),
     /// No body.
     #[error("a calibration needs the geometry of the body, which is not described")]
     NoGeometry,

@@ -5,7 +5,8 @@ use super::prepared::Prepared;
 use super::problem::Problem;
 use super::search::search;
 use super::{
-    CalibrateError, CalibrationData, CalibrationRange, Candidate, Material, MaterialParameter, MaterialUncertainty,
+    CalibrateError, CalibrationData, CalibrationRange, Candidate, Material, MaterialParameter, MaterialParts,
+    MaterialUncertainty,
 };
 use crate::analysis::HoldoutError;
 use crate::fit::{Assessed, Estimate, NoiseModel, Scale, Termination};
@@ -19,6 +20,7 @@ pub(super) const FARTHEST: f64 = 14.0;
 
 /// A candidate fitted to the whole of a record, ramps and holds alike.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct Calibration {
     /// The body with its parameters.
     pub material: Material,
@@ -110,12 +112,14 @@ pub fn calibrate(
         let columns: Vec<Vec<f64>> = open.iter().map(|i| jacobian[*i].clone()).collect();
         Assessed::of_columns(columns, found.residuals.clone(), confidence)
     });
-    let is_told = assessed.as_ref().is_some_and(|assessed| assessed.uncertainty.is_some());
+    let is_reported = assessed.as_ref().is_some_and(|assessed| assessed.uncertainty.is_some());
     let termination = match found.termination {
-        Termination::Converged if !is_told && prepared.searched.iter().any(|searched| searched.name == "rate_2") => {
+        Termination::Converged
+            if !is_reported && prepared.searched.iter().any(|searched| searched.name == "rate_2") =>
+        {
             Termination::TermsMerged
         }
-        Termination::Converged if !is_told => Termination::Singular,
+        Termination::Converged if !is_reported => Termination::Singular,
         other => other,
     };
     let gradients = gradients(&prepared, &found.theta, &open);
@@ -163,14 +167,14 @@ pub fn calibrate(
     let rmse = (found.square / data.fitted() as f64).sqrt();
     stages.finish()?;
     Ok(Calibration {
-        material: Material {
+        material: Material::new(MaterialParts {
             body: prepared.body.clone(),
             candidate,
             parameters,
             uncertainty,
             noise: (found.square / (data.fitted() - free) as f64).sqrt(),
             range: range(data),
-        },
+        })?,
         simulated,
         free_parameters: free,
         rmse,

@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::{Candidate, EquilibriumLaw};
+use super::{Candidate, EquilibriumLaw, MaterialError};
 use crate::contact::{Equilibrium, Layers, Shape, Sides, Specimen};
 use crate::fit::Estimate;
 use crate::latency::LatencyLaw;
@@ -78,14 +78,14 @@ pub struct CalibrationRange {
     pub largest_force: f64,
 }
 
-/// A body with calibrated parameters.
+/// Content of a [`Material`], not yet checked.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct Material {
-    /// What is known of it without a test.
+pub struct MaterialParts {
+    /// What is known of the body without a test.
     pub body: Body,
     /// The laws whose parameters these are.
     pub candidate: Candidate,
-    /// The parameters.
+    /// The parameters, in the order of [`Material::names`].
     pub parameters: Vec<MaterialParameter>,
     /// Their uncertainty; `None` where the test does not determine one of them.
     pub uncertainty: Option<MaterialUncertainty>,
@@ -93,6 +93,28 @@ pub struct Material {
     pub noise: f64,
     /// The calibration range.
     pub range: CalibrationRange,
+}
+
+/// A body with calibrated parameters that make a contact.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(try_from = "MaterialParts", into = "MaterialParts")]
+pub struct Material {
+    parts: MaterialParts,
+    contact: Contact,
+}
+
+impl TryFrom<MaterialParts> for Material {
+    type Error = MaterialError;
+
+    fn try_from(parts: MaterialParts) -> Result<Self, MaterialError> {
+        Self::new(parts)
+    }
+}
+
+impl From<Material> for MaterialParts {
+    fn from(material: Material) -> Self {
+        material.parts
+    }
 }
 
 impl Body {
@@ -183,49 +205,153 @@ pub(super) fn names(candidate: Candidate, rows: usize) -> Vec<(String, MaterialU
     names
 }
 
+impl MaterialParts {
+    fn check(&self) -> Result<(), MaterialError> {
+        let expected = names(self.candidate, self.body.levels.len());
+        let is_named = expected.len() == self.parameters.len()
+            && expected
+                .iter()
+                .zip(&self.parameters)
+                .all(|((name, unit), parameter)| (name, unit) == (&parameter.name, &parameter.unit));
+        if !is_named {
+            return Err(MaterialError::Names {
+                expected: expected.into_iter().map(|(name, _)| name).collect(),
+                found: self.parameters.iter().map(|parameter| parameter.name.clone()).collect(),
+            });
+        }
+        for MaterialParameter { name, estimate, .. } in &self.parameters {
+            let errors = [estimate.standard_error, estimate.white_standard_error];
+            let is_sound = estimate.value.is_finite()
+                && estimate.value > 0.0
+                && errors.into_iter().flatten().all(|error| error >= 0.0)
+                && estimate.interval.is_none_or(|(low, high)| low <= high);
+            if !is_sound {
+                return Err(MaterialError::Estimate {
+                    name: name.clone(),
+                    value: estimate.value,
+                });
+            }
+        }
+        if let Some(uncertainty) = &self.uncertainty {
+            let size = expected.len();
+            let covariance = &uncertainty.covariance;
+            let is_square = covariance.len() == size && covariance.iter().all(|row| row.len() == size);
+            let is_sound = is_square
+                && covariance.iter().flatten().all(|entry| entry.is_finite())
+                && (0..size).all(|index| covariance[index][index] >= 0.0)
+                && uncertainty.confidence > 0.0
+                && uncertainty.confidence < 1.0
+                && uncertainty.freedom > 0.0;
+            if !is_sound {
+                return Err(MaterialError::Uncertainty { parameters: size });
+            }
+        }
+        let range = &self.range;
+        for (name, value) in [
+            ("noise", self.noise),
+            ("longest_hold", range.longest_hold),
+            ("deepest", range.deepest),
+            ("fastest", range.fastest),
+            ("slowest", range.slowest),
+            ("largest_force", range.largest_force),
+        ] {
+            if !(value.is_finite() && value >= 0.0) {
+                return Err(MaterialError::Number { name, value });
+            }
+        }
+        Ok(())
+    }
+}
+
 impl Material {
-    /// Checks that the parameters make a contact; needed of what was read from a file.
+    /// Checks that names, values and uncertainty belong together and that the parameters make a contact.
+    ///
+    /// # Errors
+    /// [`MaterialError`] names the first part that is wrong.
+    pub fn new(parts: MaterialParts) -> Result<Self, MaterialError> {
+        parts.check()?;
+        let values: Vec<f64> = parts.parameters.iter().map(|parameter| parameter.estimate.value).collect();
+        match parts.body.contact(parts.candidate, &values) {
+            Some(contact) => Ok(Self { parts, contact }),
+            None => Err(MaterialError::NoContact),
+        }
+    }
+
+    /// Names and units of the parameters of a candidate, in their order; `rows` is the number of rows of a table of equilibrium
+    /// forces, 0 for other laws of it.
     #[must_use]
-    pub fn is_valid(&self) -> bool {
-        let names = names(self.candidate, self.body.levels.len());
-        let named = names.len() == self.parameters.len()
-            && names.iter().zip(&self.parameters).all(|((name, _), parameter)| *name == parameter.name);
-        let covered = self.uncertainty.as_ref().is_none_or(|uncertainty| {
-            uncertainty.covariance.len() == names.len()
-                && uncertainty.covariance.iter().all(|row| row.len() == names.len())
-        });
-        named && covered && self.body.contact(self.candidate, &self.values()).is_some()
+    pub fn names(candidate: Candidate, rows: usize) -> Vec<(String, MaterialUnit)> {
+        names(candidate, rows)
+    }
+
+    /// The content, to be changed and checked again.
+    #[must_use]
+    pub fn into_parts(self) -> MaterialParts {
+        self.parts
+    }
+
+    /// What is known of the body without a test.
+    #[must_use]
+    pub const fn body(&self) -> &Body {
+        &self.parts.body
+    }
+
+    /// The laws whose parameters these are.
+    #[must_use]
+    pub const fn candidate(&self) -> Candidate {
+        self.parts.candidate
+    }
+
+    /// The parameters, in the order of [`names`](Self::names).
+    #[must_use]
+    pub fn parameters(&self) -> &[MaterialParameter] {
+        &self.parts.parameters
+    }
+
+    /// Their uncertainty; `None` where the test does not determine one of them.
+    #[must_use]
+    pub const fn uncertainty(&self) -> Option<&MaterialUncertainty> {
+        self.parts.uncertainty.as_ref()
+    }
+
+    /// Standard deviation of the force residuals, N: noise and misfit of the law.
+    #[must_use]
+    pub const fn noise(&self) -> f64 {
+        self.parts.noise
+    }
+
+    /// The calibration range.
+    #[must_use]
+    pub const fn range(&self) -> &CalibrationRange {
+        &self.parts.range
     }
 
     /// The contact with the best parameters.
-    ///
-    /// # Panics
-    /// If the parameters make no contact, which [`is_valid`](Self::is_valid) checks.
     #[must_use]
-    #[expect(clippy::expect_used, reason = "a material that exists is whole")]
-    pub fn contact(&self) -> Contact {
-        self.body
-            .contact(self.candidate, &self.values())
-            .expect("the parameters of a material make a contact")
+    pub const fn contact(&self) -> &Contact {
+        &self.contact
     }
 
     /// The contact with each parameter times a factor; `None` where that makes none.
     #[must_use]
     pub fn contact_off(&self, factors: &[f64]) -> Option<Contact> {
         let values: Vec<f64> = self.values().iter().zip(factors).map(|(value, factor)| value * factor).collect();
-        self.body.contact(self.candidate, &values)
+        (values.len() == self.parameters().len()).then(|| self.body().contact(self.candidate(), &values))?
     }
 
     /// The values of the parameters.
     #[must_use]
     pub fn values(&self) -> Vec<f64> {
-        self.parameters.iter().map(|parameter| parameter.estimate.value).collect()
+        self.parameters().iter().map(|parameter| parameter.estimate.value).collect()
     }
 
     /// A parameter by its name.
     #[must_use]
     pub fn estimate(&self, name: &str) -> Option<&Estimate> {
-        self.parameters.iter().find(|parameter| parameter.name == name).map(|parameter| &parameter.estimate)
+        self.parameters()
+            .iter()
+            .find(|parameter| parameter.name == name)
+            .map(|parameter| &parameter.estimate)
     }
 
     /// Whether a parameter is given by the candidate, not estimated.

@@ -27,8 +27,10 @@ mod search;
 
 pub use candidate::{Candidate, EquilibriumLaw, RateLaw};
 pub use data::CalibrationData;
-pub use error::CalibrateError;
+pub use error::{CalibrateError, MaterialError};
 pub use fit::{Calibration, calibrate};
-pub use material::{Body, CalibrationRange, Material, MaterialParameter, MaterialUncertainty, MaterialUnit};
+pub use material::{
+    Body, CalibrationRange, Material, MaterialParameter, MaterialParts, MaterialUncertainty, MaterialUnit,
+};
 pub use predict::{Extrapolation, Prediction};
 pub use profile::{ParameterProfile, profile};

@@ -88,6 +88,7 @@ impl std::fmt::Display for Extrapolation {
 
 /// A predicted course with its uncertainty; SI units.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[non_exhaustive]
 pub struct Prediction {
     /// The course with the best parameters.
     pub trajectory: Trajectory,
@@ -177,11 +178,11 @@ impl Material {
     ) -> Result<Prediction, CalibrateError> {
         let options = AnalysisOptions {
             geometry: Some(Geometry {
-                shape: self.body.shape.clone(),
-                sides: self.body.sides,
+                shape: self.body().shape.clone(),
+                sides: self.body().sides,
                 modulus: None,
             }),
-            separation: self.body.separation,
+            separation: self.body().separation,
             ..options.clone()
         };
         let data = CalibrationData::of_record(record, &options)?;
@@ -202,7 +203,7 @@ impl Material {
         let share = 1.0 / (1.0 + 2.0 * directions.len() as f64);
         let mut stages = Stages::new("predicting".to_owned(), watch);
         stages.enter(share);
-        let trajectory = simulate_watched(drive, &best, sampling, &mut stages)?;
+        let trajectory = simulate_watched(drive, best, sampling, &mut stages)?;
         let count = trajectory.len();
         let (mut force, mut displacement) = (vec![0.0; count], vec![0.0; count]);
         let times = Sampling::Times(trajectory.time.clone());
@@ -226,14 +227,14 @@ impl Material {
                 *sum += ((high - low) / width).powi(2);
             }
         }
-        let freedom = self.uncertainty.as_ref().map_or(f64::INFINITY, |uncertainty| uncertainty.freedom);
+        let freedom = self.uncertainty().map_or(f64::INFINITY, |uncertainty| uncertainty.freedom);
         stages.finish()?;
         Ok(Prediction {
             extrapolations: self.extrapolations(drive, &trajectory),
             trajectory,
             force_standard_error: force.into_iter().map(f64::sqrt).collect(),
             displacement_standard_error: displacement.into_iter().map(f64::sqrt).collect(),
-            noise: self.noise,
+            noise: self.noise(),
             confidence,
             factor: coverage_factor(confidence, freedom),
         })
@@ -242,13 +243,13 @@ impl Material {
     /// Columns of a root of the covariance of the logarithms of the parameters: independent directions, each one standard deviation long.
     #[must_use]
     pub fn directions(&self) -> Vec<Vec<f64>> {
-        self.uncertainty.as_ref().map_or_else(Vec::new, |uncertainty| root(&uncertainty.covariance))
+        self.uncertainty().map_or_else(Vec::new, |uncertainty| root(&uncertainty.covariance))
     }
 
     fn extrapolations(&self, drive: Drive<'_>, course: &Trajectory) -> Vec<Extrapolation> {
         /// By how much more than was tested a question may ask.
         const MORE: f64 = 1.05;
-        let tested = self.range;
+        let tested = self.range();
         let most = |values: &[f64]| values.iter().copied().fold(0.0, f64::max);
         let (mut longest, mut fastest, mut held) = (0.0f64, 0.0f64, false);
         match drive {
@@ -277,8 +278,8 @@ impl Material {
                 }
             }
         }
-        type Asked = (f64, f64, fn(f64, f64) -> Extrapolation);
-        let kinds: [Asked; 4] = [
+        type Requested = (f64, f64, fn(f64, f64) -> Extrapolation);
+        let kinds: [Requested; 4] = [
             (longest, tested.longest_hold, |requested, tested| Extrapolation::LongerHold { requested, tested }),
             (most(&course.displacement), tested.deepest, |requested, tested| Extrapolation::DeeperSqueeze {
                 requested,

@@ -85,7 +85,7 @@ impl Prepared {
                 })
                 .collect(),
         };
-        // At an excess that no ramp leaves, a law of high order is that much faster than anything seen.
+        // At an excess that no ramp leaves, a law of high order is that much faster than anything observed.
         let (slowest, fastest) = (1e-5 / scales.duration, 1e9 / scales.ramp);
         match candidate.law {
             Law::Latency { exponent } => {

@@ -21,6 +21,7 @@ use crate::watch::{Cancelled, Stages, Watch};
 
 /// The profile interval of a parameter of a material.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[non_exhaustive]
 pub struct ParameterProfile {
     /// Name of the parameter.
     pub name: String,
@@ -65,13 +66,13 @@ pub fn profile(
     watch: &mut dyn Watch,
 ) -> Result<Vec<ParameterProfile>, CalibrateError> {
     let material = &calibration.material;
-    let prepared = Prepared::new(material.candidate, data)?;
+    let prepared = Prepared::new(material.candidate(), data)?;
     let best = &calibration.theta;
     let problem = Problem::of(&prepared, data);
     let least = sum_of_squares(&problem.residuals(best).ok_or(CalibrateError::NoStiffness)?);
     let freedom = (data.fitted() - calibration.free_parameters) as f64;
     let mut stages = Stages::new("following the profiles".to_owned(), watch);
-    let ends = 2.0 * material.parameters.len() as f64;
+    let ends = 2.0 * material.parameters().len() as f64;
     let of = |(parameter, known): (usize, &MaterialParameter)| {
         let (Some(error), Some((_, high))) = (known.estimate.white_standard_error, known.estimate.interval) else {
             return Ok(None);
@@ -102,7 +103,7 @@ pub fn profile(
         }))
     };
     let found: Vec<ParameterProfile> = material
-        .parameters
+        .parameters()
         .iter()
         .enumerate()
         .map(of)
@@ -114,7 +115,7 @@ pub fn profile(
 
 /// The searched parameter that follows when a parameter of the material is held.
 fn follower(prepared: &Prepared, material: &Material, theta: &[f64], parameter: usize) -> Option<usize> {
-    let name = material.parameters[parameter].name.as_str();
+    let name = material.parameters()[parameter].name.as_str();
     let named = |wanted: &str| prepared.searched.iter().position(|searched| searched.name == wanted);
     match name {
         "rate_coefficient_per_s" => named("reference_rate"),
@@ -122,7 +123,7 @@ fn follower(prepared: &Prepared, material: &Material, theta: &[f64], parameter: 
         _ if name.starts_with("equilibrium_force") => Some(0),
         _ if name.starts_with("time_constant_") || name.starts_with("overshoot_") => {
             // Terms stand in the order of their times; those that are searched in any.
-            let value = material.parameters[parameter].estimate.value;
+            let value = material.parameters()[parameter].estimate.value;
             let is_time = name.starts_with("time_constant_");
             let log = if is_time { -value.ln() } else { value.ln() };
             let kind = if is_time { "rate_" } else { "overshoot_" };

@@ -55,7 +55,7 @@ pub(super) fn search(
     if starts.is_empty() {
         return Err(refusal(prepared, &coarse));
     }
-    // Valleys are told apart on the simple motion; every knot of a measured one takes its own share of a simulation.
+    // Valleys are distinguished on the simple motion; every knot of a measured one takes its own share of a simulation.
     let mut descended = |problem: &Problem<'_>, starts: &[Vec<f64>], share: f64, stages: &mut Stages<'_>| {
         let mut found: Vec<Found> = Vec::new();
         for start in starts {

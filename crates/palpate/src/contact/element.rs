@@ -166,7 +166,7 @@ impl Ramps {
 #[derive(Debug, Clone)]
 struct Way {
     /// Exponent, z at its start and reach, to the last bit.
-    asked: [u64; 3],
+    requested: [u64; 3],
     steps: Vec<Step>,
     /// Time and z at its end.
     end: (f64, f64),
@@ -182,8 +182,8 @@ thread_local! {
 
 impl Way {
     /// The way that this thread followed last, if a piece that lasts `until` has the same to the last bit.
-    fn followed(asked: [u64; 3], until: f64) -> Option<Self> {
-        let is_same = |way: &&Self| way.asked == asked && way.latest < until * (1.0 - 1e-9);
+    fn followed(requested: [u64; 3], until: f64) -> Option<Self> {
+        let is_same = |way: &&Self| way.requested == requested && way.latest < until * (1.0 - 1e-9);
         LAST_WAY.with_borrow(|last| last.as_ref().filter(is_same).cloned())
     }
 }
@@ -215,8 +215,8 @@ impl Element {
         let near = if n == 1.0 { f64::INFINITY } else { NEAR / n.max(1.0) };
         // What is not a number is near: nothing is left to follow.
         let is_far = |z: f64| (1.0 - z).abs() > near && !(n == 2.0 && z >= 0.0);
-        let (is_first, asked) = (ramps.steps.is_empty(), [n, start, reach].map(f64::to_bits));
-        let followed = is_first.then(|| Way::followed(asked, until)).flatten();
+        let (is_first, requested) = (ramps.steps.is_empty(), [n, start, reach].map(f64::to_bits));
+        let followed = is_first.then(|| Way::followed(requested, until)).flatten();
         let is_new = followed.is_none();
         let way = followed.unwrap_or_else(|| {
             let first = until.min(0.5 * ((1.0 - start) / speed(start)));
@@ -236,7 +236,7 @@ impl Element {
                 end = (solver.time, solver.state);
             }
             Way {
-                asked,
+                requested,
                 steps,
                 end,
                 latest: solver.latest,

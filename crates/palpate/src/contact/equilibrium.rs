@@ -35,6 +35,7 @@ pub enum Equilibrium {
 
 /// A law of the equilibrium force that does not go with a body.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum EquilibriumError {
     /// A Poisson's ratio beyond what solids have.
     #[error("Poisson's ratio must be from 0 to 0.5, found {found}")]

@@ -13,6 +13,7 @@ pub struct Layers(f64);
 
 /// An invalid number or thickness of layers.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum LayersError {
     /// Fewer than one layer.
     #[error("the number of layers must be 1 or more, found {found}")]

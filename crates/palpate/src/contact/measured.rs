@@ -21,7 +21,7 @@ impl Equilibrium {
     /// # Errors
     /// [`EquilibriumError`] for rows that do not begin at first touch, do not rise, or whose force per displacement falls.
     pub fn measured(rows: &[(f64, f64)]) -> Result<Self, EquilibriumError> {
-        // Rows that make no curve are told by it.
+        // Rows that make no curve are recognised by it.
         Curve::named(rows, "forces")?;
         if rows[0].1 != 0.0 {
             return Err(EquilibriumError::Touch { found: rows[0].1 });

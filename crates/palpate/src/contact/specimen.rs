@@ -19,6 +19,7 @@ pub struct Specimen {
 
 /// An invalid specimen, or a displacement beyond its range.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum SpecimenError {
     /// A length, area or modulus that is not a finite number above zero.
     #[error("{name} must be above 0 {unit}, found {found} {unit}")]
@@ -45,13 +46,13 @@ pub enum SpecimenError {
         limit_name: &'static str,
         /// The limit in m.
         limit: f64,
-        /// The contact displacement asked for, in m.
+        /// The contact displacement requested, in m.
         found: f64,
     },
     /// A body whose contact grows, pulled away beyond the first touch while bonded to the jaw.
     #[error("contact displacement must be 0 m or more where the contact area grows with it, found {found} m")]
     PulledOff {
-        /// The contact displacement asked for, in m.
+        /// The contact displacement requested, in m.
         found: f64,
     },
 }

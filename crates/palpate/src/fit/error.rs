@@ -5,6 +5,7 @@ use crate::watch::Cancelled;
 
 /// Why a fit could not be made at all.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum FitError {
     /// Columns of different lengths.
     #[error("a fit needs as many values as abscissas, found {abscissas} and {values}")]

@@ -10,6 +10,7 @@ use crate::optimise::{Ending, Work, polished, refine};
 
 /// How well the first part of a hold predicts the rest.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[non_exhaustive]
 pub struct Forecast {
     /// Time since the first sample up to which was fitted, s.
     pub cut: f64,

@@ -164,11 +164,12 @@ pub struct Candidate {
     /// Bayesian information criterion less the lowest of all candidates, at the effective number of samples.
     pub delta_bic: f64,
     /// Whether the fit is not distinguishable from the best one.
-    pub as_good_as_best: bool,
+    pub indistinguishable: bool,
 }
 
 /// What [`select_order`] found.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[non_exhaustive]
 pub struct OrderSelection {
     /// All candidates in the order given.
     pub candidates: Vec<Candidate>,
@@ -211,11 +212,11 @@ pub fn select_order(fits: &[LatencyFit]) -> OrderSelection {
             free: !listed(fit),
             rmse: fit.rmse,
             delta_bic: criterion(fit) - lowest,
-            as_good_as_best: criterion(fit) - lowest_listed <= EVIDENCE,
+            indistinguishable: criterion(fit) - lowest_listed <= EVIDENCE,
         })
         .collect();
     let order = |a: &usize, b: &usize| candidates[*a].exponent.total_cmp(&candidates[*b].exponent);
-    let lowest_order = (0..fits.len()).filter(|&i| listed(&fits[i]) && candidates[i].as_good_as_best).min_by(order);
+    let lowest_order = (0..fits.len()).filter(|&i| listed(&fits[i]) && candidates[i].indistinguishable).min_by(order);
     // A fit that ended at the edge of its range has no errors to go with its parameters.
     let any_good = fits.iter().any(|fit| fit.termination.is_good());
     let preferred = (0..fits.len())

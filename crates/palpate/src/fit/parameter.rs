@@ -249,17 +249,17 @@ mod tests {
             Law::Burgers,
             Law::Maxwell,
         ];
-        let mut seen = 0;
+        let mut observed = 0;
         for form in laws.iter().flat_map(|law| [Response::Relaxation, Response::Creep].map(|r| law.form(r))).flatten() {
             let parameters =
                 form.parameters().into_iter().filter(|(_, _, kind)| *kind != ShapeParameterKind::Reference);
             let names = parameters.map(|(_, name, _)| name).chain(form.amplitude_names());
             for name in names.chain([form.constant_name().to_owned()]) {
                 assert_eq!(name.parse::<ParameterName>().unwrap().to_string(), name);
-                seen += 1;
+                observed += 1;
             }
         }
-        assert!(seen > 60, "{seen}");
+        assert!(observed > 60, "{observed}");
         assert!("quickness".parse::<ParameterName>().is_err());
     }
 }

@@ -57,6 +57,7 @@ pub enum ParameterRole {
 
 /// One parameter of a law.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[non_exhaustive]
 pub struct Parameter {
     /// Which it is, such as `equilibrium`, `time_1`, `exponent`.
     pub name: ParameterName,
@@ -70,6 +71,7 @@ pub struct Parameter {
 
 /// A fitted law: its parameters, their uncertainty, and why the search ended.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[non_exhaustive]
 pub struct Fit {
     /// The law.
     pub law: Law,

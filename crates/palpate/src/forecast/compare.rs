@@ -68,10 +68,10 @@ pub fn compare_laws_watched(
     };
     forecast_from(&mut rows, &cuts)?;
     // A first part that no law can be fitted to (a force that has not changed by a digit yet) is no cut.
-    let told: Vec<bool> =
+    let reported: Vec<bool> =
         (0..cuts.len()).map(|cut| rows.iter().any(|row| row.forward.forecasts[cut].is_some())).collect();
-    if told.contains(&false) {
-        cuts = cuts.into_iter().zip(told).filter(|(_, told)| *told).map(|(cut, _)| cut).collect();
+    if reported.contains(&false) {
+        cuts = cuts.into_iter().zip(reported).filter(|(_, reported)| *reported).map(|(cut, _)| cut).collect();
         forecast_from(&mut rows, &cuts)?;
     }
     let closest = rows
@@ -153,7 +153,7 @@ fn cuts(samples: &Samples<'_>, options: &CompareOptions, duration: f64, noise: f
     /// Least samples in the first part.
     const FEWEST: usize = 30;
     /// Least change after the cut, in standard deviations of the noise of the means that show it.
-    const SEEN: f64 = 5.0;
+    const OBSERVED: f64 = 5.0;
     let (times, values) = (samples.times, samples.values);
     let tells = |cut: &f64| {
         let first = times.partition_point(|t| t - times[0] <= *cut);
@@ -163,7 +163,7 @@ fn cuts(samples: &Samples<'_>, options: &CompareOptions, duration: f64, noise: f
         }
         let part = (rest.len() / 10).max(1);
         let moved = (mean(&rest[..part]) - mean(&rest[rest.len() - part..])).abs();
-        moved > SEEN * noise * (2.0 / part as f64).sqrt()
+        moved > OBSERVED * noise * (2.0 / part as f64).sqrt()
     };
     options
         .cuts

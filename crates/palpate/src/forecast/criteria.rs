@@ -7,6 +7,7 @@ use crate::laws::Law;
 
 /// Information criteria of a least-squares fit; only differences between laws on the same samples mean anything.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[non_exhaustive]
 pub struct Criteria {
     /// Akaike's, N ln(RSS/N) + 2p.
     pub aic: f64,
@@ -42,6 +43,7 @@ pub fn criteria(residual_square: f64, samples: f64, parameters: f64) -> Criteria
 
 /// How well a law predicts a hold.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+#[non_exhaustive]
 pub struct ForwardScore {
     /// One forecast a cut point; `None` where the first part could not be fitted.
     pub forecasts: Vec<Option<Forecast>>,

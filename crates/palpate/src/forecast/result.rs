@@ -18,6 +18,7 @@ pub enum Ranking {
 
 /// One law on one hold.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct Row {
     /// The law.
     pub law: Law,
@@ -47,6 +48,7 @@ impl Row {
 
 /// Laws compared on one hold.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct Comparison {
     /// One row a law, best first.
     pub rows: Vec<Row>,
@@ -82,11 +84,12 @@ pub enum Certainty {
 
 /// Which law to use.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[non_exhaustive]
 pub struct Verdict {
     /// The law with the fewest parameters among those that are not distinguishable from the best; the spectrum only if it is the only one.
     pub law: Law,
     /// All laws that are not distinguishable from the best, this one included, best first.
-    pub alike: Vec<Law>,
+    pub indistinguishable: Vec<Law>,
     /// Certainty of the verdict.
     pub certainty: Certainty,
     /// Cut points at which it was best or alike.

@@ -3,10 +3,10 @@
 use super::result::{Certainty, Comparison, Ranking, Verdict};
 use crate::laws::{ExponentChoice, Law};
 
-/// Beyond this many times a cost is no longer told exactly.
+/// Beyond this many times a cost is no longer reported exactly.
 const MOST_TIMES: f64 = 1000.0;
 
-/// Said before a choice that rests on no prediction.
+/// Stated before a choice that rests on no prediction.
 const NOTHING_HELD_OUT: &str = "The hold is too short, or changes too little, for a part of it to be held out, so that nothing tells what a law \
     predicts: laws are ranked by how closely they fit for their parameters (BIC). ";
 
@@ -40,8 +40,12 @@ impl Comparison {
         if self.ranking == Ranking::Forward {
             text.push_str(&self.predicted(verdict));
         }
-        let rest: Vec<String> =
-            verdict.alike.iter().filter(|law| **law != verdict.law).map(|law| name_in_words(*law)).collect();
+        let rest: Vec<String> = verdict
+            .indistinguishable
+            .iter()
+            .filter(|law| **law != verdict.law)
+            .map(|law| name_in_words(*law))
+            .collect();
         if !rest.is_empty() {
             let verb = if rest.len() == 1 { "is" } else { "are" };
             text.push_str(&format!("; {} {verb} not distinguishable from the best", listed(&rest)));
@@ -84,15 +88,15 @@ impl Comparison {
             .costs
             .iter()
             .copied()
-            .filter(|(law, cost)| !verdict.alike.contains(law) && *cost > least && self.counts(*law))
+            .filter(|(law, cost)| !verdict.indistinguishable.contains(law) && *cost > least && self.counts(*law))
             .collect();
         let Some(next) = others.first().copied() else {
             return String::new();
         };
         let familiar = others.iter().find(|(law, _)| *law == Law::StandardLinearSolid).or(others.last());
-        let mut told = vec![next];
-        told.extend(familiar.copied().filter(|(law, _)| *law != next.0));
-        let told: Vec<String> = told
+        let mut reported = vec![next];
+        reported.extend(familiar.copied().filter(|(law, _)| *law != next.0));
+        let reported: Vec<String> = reported
             .into_iter()
             .map(|(law, cost)| match self.ranking {
                 Ranking::Forward => format!("{} is {} times", name_in_words(law), times(cost)),
@@ -100,7 +104,7 @@ impl Comparison {
             })
             .collect();
         let unit = if self.ranking == Ranking::Forward { " as far off" } else { "" };
-        format!("; {}{unit}", told.join(", ").replacen(", ", " and ", 1))
+        format!("; {}{unit}", reported.join(", ").replacen(", ", " and ", 1))
     }
 }
 
@@ -201,15 +205,15 @@ mod tests {
     fn a_short_hold_is_ranked_by_information_and_says_so() {
         let text = sentence(20, &["latency:5", "sls", "diffusion"]);
         assert!(text.contains("BIC") && !text.contains("predicts the rest"), "{text}");
-        // It was said behind the choice, as if that rested on a prediction all the same.
+        // It was stated behind the choice, as if that rested on a prediction all the same.
         let (reason, choice) = (text.find("too short, or").unwrap(), text.find("Use ").unwrap());
         assert!(reason < choice, "{text}");
     }
 
     #[test]
     fn numbers_are_rounded_for_people() {
-        let told: Vec<String> = [0.001_54, 0.15, 2.94, 52.3, 467.0, 1e3].into_iter().map(rounded).collect();
-        assert_eq!(told, ["0.0015", "0.15", "2.9", "52", "470", "1000"]);
+        let reported: Vec<String> = [0.001_54, 0.15, 2.94, 52.3, 467.0, 1e3].into_iter().map(rounded).collect();
+        assert_eq!(reported, ["0.0015", "0.15", "2.9", "52", "470", "1000"]);
         assert_eq!((times(2.0), times(1e7)), ("2".to_owned(), "more than 1000".to_owned()));
         assert_eq!((percent(0.0015), percent(1e-9)), ("0.15 %".to_owned(), "less than 0.001 %".to_owned()));
         assert_eq!((part_in_words(0.332), part_in_words(0.2)), ("third".to_owned(), "20 %".to_owned()));

@@ -23,7 +23,7 @@ impl Comparison {
     }
 
     /// Whether a figure is as good as another, smaller one.
-    fn as_good(&self, figure: f64, best: f64) -> bool {
+    fn indistinguishable(&self, figure: f64, best: f64) -> bool {
         match self.ranking {
             Ranking::Forward => figure <= ALIKE * best || figure - best <= SHARE_OF_NOISE * self.noise / self.change,
             Ranking::Information => figure - best <= EVIDENCE,
@@ -37,7 +37,7 @@ pub(super) fn judge(comparison: &Comparison) -> Option<Verdict> {
     let any_good = figures().any(|(row, _)| row.is_good());
     let usable = || figures().filter(move |(row, _)| row.is_good() || !any_good);
     let best = usable().next()?.1;
-    let alike: Vec<(&Row, f64)> = usable().filter(|(_, figure)| comparison.as_good(*figure, best)).collect();
+    let alike: Vec<(&Row, f64)> = usable().filter(|(_, figure)| comparison.indistinguishable(*figure, best)).collect();
     // A spectrum has no parameters to carry to another test, so a law that is not distinguishable from it goes first.
     let (chosen, figure) = *alike.iter().min_by(|(a, one), (b, other)| {
         let spectrum = |row: &Row| row.law == Law::Spectrum;
@@ -50,7 +50,7 @@ pub(super) fn judge(comparison: &Comparison) -> Option<Verdict> {
         Ranking::Information => (row.law, other - figure),
     });
     let cuts_won = (0..comparison.cuts.len()).filter(|&cut| wins(comparison, chosen, cut)).count();
-    let next = usable().map(|(_, figure)| figure).find(|figure| !comparison.as_good(*figure, best));
+    let next = usable().map(|(_, figure)| figure).find(|figure| !comparison.indistinguishable(*figure, best));
     let apart = next.is_some_and(|next| match comparison.ranking {
         Ranking::Forward => next >= 2.0 * figure,
         Ranking::Information => next - figure >= 10.0,
@@ -68,7 +68,7 @@ pub(super) fn judge(comparison: &Comparison) -> Option<Verdict> {
     };
     Some(Verdict {
         law: chosen.law,
-        alike: alike.iter().map(|(row, _)| row.law).collect(),
+        indistinguishable: alike.iter().map(|(row, _)| row.law).collect(),
         certainty,
         cuts_won,
         costs: costs.collect(),
@@ -79,5 +79,5 @@ pub(super) fn judge(comparison: &Comparison) -> Option<Verdict> {
 fn wins(comparison: &Comparison, row: &Row, cut: usize) -> bool {
     let at = |row: &Row| row.forward.relative(cut, comparison.change);
     let best = comparison.rows.iter().filter(|row| row.is_good()).filter_map(at).fold(f64::INFINITY, f64::min);
-    at(row).is_some_and(|error| comparison.as_good(error, best))
+    at(row).is_some_and(|error| comparison.indistinguishable(error, best))
 }

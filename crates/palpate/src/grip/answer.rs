@@ -20,16 +20,16 @@ pub enum Control {
     Force,
 }
 
-/// What is asked of a grip; by default, of the least squeeze that holds for a minute.
+/// What is required of a grip; by default, of the least squeeze that holds for a minute.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Question {
     /// What is held, and which of the grips the verdict is on.
     pub control: Control,
-    /// Squeeze that is asked about, m; the least by `objective` if not given.
+    /// Squeeze that is in question, m; the least by `objective` if not given.
     pub squeeze: Option<f64>,
-    /// Force that is asked about where the force is held, N; the least that is enough if not given.
+    /// Force that is in question where the force is held, N; the least that is enough if not given.
     pub force: Option<f64>,
-    /// How long it is to hold, s, infinite for always. If not given, a squeeze or force is asked how long it does, and the least is sought for a
+    /// How long it is to hold, s, infinite for always. If not given, a squeeze or force is requested how long it does, and the least is sought for a
     /// minute.
     pub duration: Option<f64>,
     /// What the squeeze should have least of.
@@ -44,6 +44,7 @@ pub struct Question {
 
 /// A grip with its course over time.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct WithPrediction<T> {
     /// The grip.
     pub found: T,
@@ -53,6 +54,7 @@ pub struct WithPrediction<T> {
 
 /// All that answers a question: the grips beside one another, each or why there is none.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct Answer {
     /// The question.
     pub question: Question,
@@ -66,11 +68,11 @@ pub struct Answer {
     pub back_off: Result<WithPrediction<BackOff>, GripError>,
     /// The force held.
     pub force_hold: Result<WithPrediction<ForceHold>, GripError>,
-    /// Squeezes that keep the force in the band, if one was asked for.
+    /// Squeezes that keep the force in the band, if one was requested.
     pub schedule: Option<Result<WithPrediction<Schedule>, GripError>>,
 }
 
-/// How long the least squeeze holds if nothing is said, s.
+/// How long the least squeeze holds if nothing is stated, s.
 const MINUTE: f64 = 60.0;
 
 /// Samples of a course, a step.
@@ -80,7 +82,7 @@ impl Grip<'_> {
     /// Answers a question: the squeeze with its neighbours, overshoot and back off, the force held, and the schedule, beside one another.
     ///
     /// # Errors
-    /// Of numbers that make no question ([`GripError::Number`]); what cannot be had is told in its place in the answer.
+    /// Of numbers that make no question ([`GripError::Number`]); what cannot be had is given in its place in the answer.
     pub fn answer(&self, question: &Question) -> Result<Answer, GripError> {
         self.answer_watched(question, &mut Unwatched)
     }
@@ -157,12 +159,12 @@ impl Grip<'_> {
 }
 
 impl Answer {
-    /// Whether the grip that is asked about holds as long as was asked; without a time whether it does at all.
+    /// Whether the grip that is in question holds as long as was requested; without a time whether it does at all.
     ///
     /// # Errors
     /// Why there is no such grip.
     pub fn holds(&self) -> Result<bool, GripError> {
-        /// Of the time: a least squeeze holds exactly as long as was asked.
+        /// Of the time: a least squeeze holds exactly as long as was requested.
         const ROUNDING: f64 = 1.0 - 1e-6;
         match self.question.control {
             Control::Position => {
@@ -185,7 +187,7 @@ impl Answer {
         }
     }
 
-    /// The course of the grip that is asked about, if there is one.
+    /// The course of the grip that is in question, if there is one.
     #[must_use]
     pub fn course(&self) -> Option<&Prediction> {
         match self.question.control {
@@ -200,7 +202,7 @@ fn followed<T>(found: T, course: impl Fn(&T) -> Result<Prediction, GripError>) -
     Ok(WithPrediction { found, course })
 }
 
-/// How long courses are: the time that is asked for, beyond the slip if none is, an hour for always.
+/// How long courses are: the time that is requested, beyond the slip if none is, an hour for always.
 fn shown(question: &Question, squeeze: Option<&PositionHold>) -> f64 {
     const HOUR: f64 = 3600.0;
     match (question.duration, squeeze.map(|found| found.lasts)) {

@@ -8,6 +8,7 @@ use crate::simulate::step_ends;
 
 /// What a parameter of the material does to a squeeze that is to begin relaxed.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[non_exhaustive]
 pub struct Sensitivity {
     /// Name of the parameter.
     pub name: String,
@@ -21,6 +22,7 @@ pub struct Sensitivity {
 
 /// A squeeze with a retreat beside the plain one to the same place.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct BackOff {
     /// The retreat.
     pub backed: PositionHold,
@@ -28,7 +30,7 @@ pub struct BackOff {
     pub plain: PositionHold,
     /// How far the jaw goes before it turns, m.
     pub over: f64,
-    /// Time over which drifts are told, s.
+    /// Time over which drifts are given, s.
     pub duration: f64,
     /// Change of the force over that time after the retreat, N.
     pub drift: f64,
@@ -44,7 +46,7 @@ impl Grip<'_> {
     /// least at which the lower end of the interval of the force of that level is, at the start of the hold and after `duration`.
     ///
     /// The turning point is found to the last bits as the one from which the force at the end of the retreat is F_e: farther, and it rises
-    /// during the hold; nearer, and it falls. `duration` (s) is the time over which drifts are told. A linear law of several terms has
+    /// during the hold; nearer, and it falls. `duration` (s) is the time over which drifts are given. A linear law of several terms has
     /// one excess a term; their sum is zero then, and a small drift is left.
     ///
     /// # Errors
@@ -181,11 +183,11 @@ impl Grip<'_> {
         Some(body.force(body.equilibrium_strain(u), u))
     }
 
-    /// Central differences, a thousandth to either side, told per hundredth.
+    /// Central differences, a thousandth to either side, reported per hundredth.
     fn sensitivities(&self, displacement: f64, over: f64) -> Vec<Sensitivity> {
         const STEP: f64 = 1e-3;
         let (deepest, _) = self.limits.deepest(self.contact.specimen());
-        let parameters = &self.material.parameters;
+        let parameters = self.material.parameters();
         let of = |index: usize| -> Option<Sensitivity> {
             let factors = |by: f64| -> Vec<f64> {
                 (0..parameters.len()).map(|i| if i == index { 1.0 + by } else { 1.0 }).collect()
@@ -200,7 +202,7 @@ impl Grip<'_> {
             let turned = |by: f64| self.turned(displacement, deepest, Some(&factors(by)));
             let per_cent = |high: f64, low: f64| (high - low) / (2.0 * STEP) / 100.0;
             let parameter = &parameters[index];
-            let variance = self.material.uncertainty.as_ref().map(|uncertainty| uncertainty.covariance[index][index]);
+            let variance = self.material.uncertainty().map(|uncertainty| uncertainty.covariance[index][index]);
             let error = variance.map(f64::sqrt).filter(|_| parameter.estimate.standard_error.is_some());
             Some(Sensitivity {
                 name: parameter.name.clone(),

@@ -6,6 +6,7 @@ use crate::watch::Cancelled;
 
 /// Why there is no grip.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum GripError {
     /// A number that describes no load, no gripper and no question.
     #[error("{name} must be {expected}, found {found}{unit}")]
@@ -25,11 +26,11 @@ pub enum GripError {
     )]
     Bonded,
     /// A squeeze that is beyond what the gripper may do.
-    #[error("a {name} of {found} is beyond the limit of {limit}", found = told(*found, unit), limit = told(*limit, unit))]
+    #[error("a {name} of {found} is beyond the limit of {limit}", found = reported(*found, unit), limit = reported(*limit, unit))]
     BeyondLimit {
         /// What goes too far.
         name: &'static str,
-        /// What was asked for or is met.
+        /// What was requested or is met.
         found: f64,
         /// The limit.
         limit: f64,
@@ -54,8 +55,8 @@ pub enum GripError {
     /// A retreat that no squeeze within the limits prepares.
     #[error(
         "to begin the hold at {displacement} relaxed, the jaw would have to go beyond {limit} ({by})",
-        displacement = told(*displacement, " m"),
-        limit = told(*limit, " m")
+        displacement = reported(*displacement, " m"),
+        limit = reported(*limit, " m")
     )]
     NoBackOff {
         /// Where the jaw is to hold, m.
@@ -133,7 +134,7 @@ impl GripError {
 }
 
 /// A number with its unit, lengths in mm.
-fn told(number: f64, unit: &str) -> String {
+fn reported(number: f64, unit: &str) -> String {
     let (number, unit) = if unit == " m" { (1e3 * number, " mm") } else { (number, unit) };
     format!("{}{unit}", significant(number, 4))
 }

@@ -7,6 +7,7 @@ use crate::simulate::{ProgramStep, SimulateError};
 
 /// A grasp whose force is held: it does not relax, the body creeps.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct ForceHold {
     /// The steps, its hold among them.
     pub steps: Vec<ProgramStep>,

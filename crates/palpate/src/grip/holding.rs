@@ -18,7 +18,7 @@ use crate::watch::{Cancelled, Progress, Stages};
 ///
 /// // The paper's ball, its parameters without errors.
 /// let parameter = |name: &str, unit, value| MaterialParameter { name: name.to_owned(), unit, estimate: Estimate::fixed(value) };
-/// let ball = Material {
+/// let ball = Material::new(MaterialParts {
 ///     body: Body { shape: Shape::Ball { radius: 0.035 }, sides: Sides::Two, separation: Separation::Unilateral, levels: vec![] },
 ///     candidate: Candidate::new("latency".parse()?, EquilibriumLaw::UniformStrain),
 ///     parameters: vec![
@@ -30,7 +30,7 @@ use crate::watch::{Cancelled, Progress, Stages};
 ///     uncertainty: None,
 ///     noise: 0.0,
 ///     range: CalibrationRange { longest_hold: 20.0, deepest: 0.015, fastest: 0.5 / 60.0, slowest: 0.5 / 60.0, largest_force: 14.3 },
-/// };
+/// })?;
 /// // 0.25 kg with μ = 0.6 need 2.04 N; 5 mm at 500 mm/min start with 3.04 N and relax to 1.06 N.
 /// let grip = Grip::new(&ball, Grasp::new(0.25, 0.6)?, Limits::new(0.5 / 60.0)?, 0.95)?;
 /// let holding = grip.holding(&Plan::squeeze(0.005, 0.5 / 60.0))?;
@@ -52,6 +52,7 @@ pub struct Grip<'a> {
 
 /// What becomes of a plan whose end is held in displacement; SI units.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct PositionHold {
     /// The plan.
     pub plan: Plan,
@@ -94,12 +95,12 @@ impl<'a> Grip<'a> {
         grasp.check()?;
         limits.check()?;
         check_confidence(confidence)?;
-        if material.body.separation == Separation::Bonded {
+        if material.body().separation == Separation::Bonded {
             return Err(GripError::Bonded);
         }
         Ok(Self {
             material,
-            contact: material.contact(),
+            contact: material.contact().clone(),
             grasp,
             limits,
             confidence,
@@ -272,7 +273,7 @@ impl<'a> Grip<'a> {
         needed: f64,
     ) -> Result<(TimeToSlip, Option<(TimeToSlip, TimeToSlip)>), GripError> {
         let lasts = self.lasts(plan)?;
-        if self.material.uncertainty.is_none() {
+        if self.material.uncertainty().is_none() {
             return Ok((lasts, None));
         }
         let program = plan.held(ALWAYS);

@@ -165,7 +165,7 @@ impl Grip<'_> {
             return Ok(self.clone());
         };
         check_confidence(confidence)?;
-        if self.material.uncertainty.is_none() {
+        if self.material.uncertainty().is_none() {
             return Err(GripError::NoIntervals);
         }
         Ok(Self {

@@ -56,8 +56,8 @@ impl Limits {
         let (deepest, by) = self.deepest(body);
         match self.closing {
             Some(closing) if self.speed * closing < deepest => {
-                let told = [closing, 1e3 * self.speed].map(|number| crate::number::significant(number, 3));
-                (self.speed * closing, format!("closed within {} s at {} mm/s", told[0], told[1]))
+                let reported = [closing, 1e3 * self.speed].map(|number| crate::number::significant(number, 3));
+                (self.speed * closing, format!("closed within {} s at {} mm/s", reported[0], reported[1]))
             }
             _ => (deepest, by),
         }

@@ -46,6 +46,7 @@ pub struct Move {
 
 /// Squeezes with pauses between them.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct Schedule {
     /// What it has least of.
     pub objective: Regrip,
@@ -77,7 +78,7 @@ impl Grip<'_> {
     ///
     /// The higher a move goes, the longer the pause behind it, for the force falls from farther up and the squeeze is deeper: with all moves up to the
     /// upper edge there are fewest of them. Each move lower costs less work and is needed more often; of [`Regrip::LeastWork`] the best of 16 equal
-    /// targets between the edges is taken whose pauses, but for the last, are as long as is asked for.
+    /// targets between the edges is taken whose pauses, but for the last, are as long as is requested.
     ///
     /// # Errors
     /// [`GripError::Number`] for edges that are none, [`GripError::BeyondLimit`] where band or squeeze go beyond the limits,

@@ -39,6 +39,7 @@ pub fn decay(scaled_time: f64, exponent: f64) -> f64 {
 
 /// Invalid parameters of a law.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum LawError {
     /// The exponent must be a finite number above zero.
     #[error("exponent n must be a number above 0, found {found}")]

@@ -38,7 +38,7 @@ pub struct LawCurve {
 }
 
 impl LawCurve {
-    /// A curve given as a relaxation, `equilibrium` + Σ amplitude · shape, told as `response`: y₀ − Σ amplitude (1 − shape) is the
+    /// A curve given as a relaxation, `equilibrium` + Σ amplitude · shape, reported as `response`: y₀ − Σ amplitude (1 − shape) is the
     /// same in the words of creep.
     pub(crate) fn relaxing(response: Response, equilibrium: f64, mut terms: Vec<Term>) -> Self {
         let mut constant = equilibrium;

@@ -68,6 +68,7 @@ pub const MOST_TERMS: usize = 5;
 /// A text that names no law.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[error("no law is called {found:?}; {}", nearest(found))]
+#[non_exhaustive]
 pub struct UnknownLaw {
     /// What was given.
     pub found: String,

@@ -37,6 +37,7 @@ struct Columns {
 
 /// A record that shows no loading.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum LoadingError {
     /// Columns of different lengths.
     #[error("a loading needs as many values as times, found {times} and {values}")]
@@ -78,7 +79,7 @@ pub enum LoadingError {
     },
 }
 
-/// A straight piece of a loading, seen from the start of the hold.
+/// A straight piece of a loading, observed from the start of the hold.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Piece {
     /// How long before the hold it begins, s.

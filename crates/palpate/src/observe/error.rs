@@ -2,6 +2,7 @@
 
 /// Why an observer cannot be made, or a tick not be taken; a tick that is refused leaves the observer as it was.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum ObserveError {
     /// An option out of its range.
     #[error("{option} must be {expected}, found {found}")]

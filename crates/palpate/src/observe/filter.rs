@@ -2,7 +2,7 @@
 //!
 //! The model with its best parameters is stepped with every reading of the displacement, and beside it one pair of models a direction that the
 //! calibration leaves open: each column of a root of its covariance, the stiffness of this body as against the one that was calibrated, and
-//! first touch. Halves of the differences of a pair are the derivatives of all that is asked by one standard deviation of its direction, so
+//! first touch. Halves of the differences of a pair are the derivatives of all that is requested by one standard deviation of its direction, so
 //! that the standings z of the directions, N(0, 1) before the first reading, follow from the forces by a Kalman filter of a state that does
 //! not move (recursive least squares with a prior, Kalman 1960).
 
@@ -104,7 +104,7 @@ pub(super) struct ModelFilter {
 
 impl ModelFilter {
     pub(super) fn new(material: &Material, options: &ObserverOptions) -> Result<Self, ObserveError> {
-        let best = Member::new(material.contact(), 0.0).ok_or(ObserveError::LinearMaterial)?;
+        let best = Member::new(material.contact().clone(), 0.0).ok_or(ObserveError::LinearMaterial)?;
         let off = |direction: &[f64], by: f64| {
             let factors: Vec<f64> = direction.iter().map(|log| (by * log).exp()).collect();
             Member::new(material.contact_off(&factors)?, 0.0)
@@ -113,7 +113,7 @@ impl ModelFilter {
         let stiffer = |name: &str| if is_stiffness(name) { options.stiffness_standard_error } else { 0.0 };
         let mut directions = material.directions();
         directions.truncate(MOST - 2);
-        directions.push(material.parameters.iter().map(|parameter| stiffer(&parameter.name)).collect());
+        directions.push(material.parameters().iter().map(|parameter| stiffer(&parameter.name)).collect());
         let mut pairs = Vec::new();
         for direction in &directions {
             // Closer by where a full deviation makes no body.
@@ -129,8 +129,8 @@ impl ModelFilter {
         let count = pairs.len();
         let mut covariance = vec![0.0; count * count];
         covariance.iter_mut().step_by(count + 1).for_each(|variance| *variance = 1.0);
-        let exponent = material.parameters.iter().find(|parameter| parameter.name == "exponent");
-        let noise = options.noise.map_or(material.noise, |noise| noise.1.max(material.noise));
+        let exponent = material.parameters().iter().find(|parameter| parameter.name == "exponent");
+        let noise = options.noise.map_or(material.noise(), |noise| noise.1.max(material.noise()));
         Ok(Self {
             best,
             pairs,
@@ -143,7 +143,7 @@ impl ModelFilter {
             last: None,
             displacement: 0.0,
             exponent_standard_error: exponent.and_then(|parameter| parameter.estimate.standard_error).unwrap_or(0.0),
-            freedom: material.uncertainty.as_ref().map_or(f64::INFINITY, |uncertainty| uncertainty.freedom),
+            freedom: material.uncertainty().map_or(f64::INFINITY, |uncertainty| uncertainty.freedom),
         })
     }
 

@@ -36,16 +36,16 @@
 //!     let time = f64::from(tick) * 1e-3;
 //!     let (displacement, force) =
 //!         if time < 0.5 { (0.01 * time, 5.8 * time) } else { (0.005, 1.2 + 1.7 * decay(6.0 * (time - 0.5), 5.0)) };
-//!     let seen = observer.feed(time, Some(displacement), force)?;
-//!     if seen.slip == Slip::Soon {
+//!     let observed = observer.feed(time, Some(displacement), force)?;
+//!     if observed.slip == Slip::Soon {
 //!         warned = warned.or(Some(time));
 //!     }
 //! }
 //! assert!(warned.is_some_and(|time| time < 0.5 + 0.81));
-//! let seen = observer.feed(60.0, Some(0.005), 1.2 + 1.7 * decay(6.0 * 59.5, 5.0))?;
-//! assert_eq!(seen.phase, ContactPhase::Holding);
-//! assert!((seen.held_since.unwrap() - 0.5).abs() < 2e-3);
-//! assert!((seen.equilibrium_force.unwrap().value - 1.2).abs() < 1e-3);
+//! let observed = observer.feed(60.0, Some(0.005), 1.2 + 1.7 * decay(6.0 * 59.5, 5.0))?;
+//! assert_eq!(observed.phase, ContactPhase::Holding);
+//! assert!((observed.held_since.unwrap() - 0.5).abs() < 2e-3);
+//! assert!((observed.equilibrium_force.unwrap().value - 1.2).abs() < 1e-3);
 //! # Ok::<(), palpate::observe::ObserveError>(())
 //! ```
 

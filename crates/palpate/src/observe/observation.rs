@@ -90,6 +90,7 @@ impl Kept for Slip {
 
 /// Report of an observer after a tick, in SI units.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+#[non_exhaustive]
 pub struct Observation {
     /// When, s.
     pub time: f64,

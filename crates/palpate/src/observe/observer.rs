@@ -57,13 +57,13 @@ impl Hold {
 #[derive(Debug, Clone)]
 pub struct Observer {
     pub(super) options: ObserverOptions,
-    pub(super) seen: Seen,
+    pub(super) observed: Observed,
     pub(super) filter: Option<ModelFilter>,
 }
 
 /// All that readings have changed, but for what a material makes of them.
 #[derive(Debug, Clone, Default)]
-pub(super) struct Seen {
+pub(super) struct Observed {
     pub(super) last: Option<f64>,
     pub(super) displacement_noise: NoiseMeter,
     pub(super) force_noise: NoiseMeter,
@@ -77,15 +77,15 @@ pub(super) struct Seen {
     pub(super) relaxes_from: f64,
     /// The displacement since the force stands.
     pub(super) creep: Bins,
-    pub(super) displacement_seen: bool,
+    pub(super) displacement_observed: bool,
     pub(super) alone: Alone,
     pub(super) hold: Option<Hold>,
     /// Readings off a place that the jaw has perhaps not left, kept from the material until the next tells: time (s), and displacement (m) and force (N).
     pub(super) doubted: Option<(f64, (f64, f64))>,
 }
 kept!(
-    Seen: last, displacement_noise, force_noise, smooth, jaw, grip, reached, relaxation, relaxes_from, creep,
-    displacement_seen, alone, hold, doubted
+    Observed: last, displacement_noise, force_noise, smooth, jaw, grip, reached, relaxation, relaxes_from, creep,
+    displacement_observed, alone, hold, doubted
 );
 
 impl Observer {
@@ -97,13 +97,17 @@ impl Observer {
         options.check()?;
         let noise = options.noise;
         let filter = options.material.as_ref().map(|material| ModelFilter::new(material, &options)).transpose()?;
-        let seen = Seen {
+        let observed = Observed {
             displacement_noise: NoiseMeter::new(noise.map(|noise| noise.0)),
             force_noise: NoiseMeter::new(noise.map(|noise| noise.1)),
             reached: [(f64::INFINITY, f64::NEG_INFINITY); 2],
-            ..Seen::default()
+            ..Observed::default()
         };
-        Ok(Self { options, seen, filter })
+        Ok(Self {
+            options,
+            observed,
+            filter,
+        })
     }
 
     /// Takes the readings at `time` (s): the displacement of the jaw (m, growing as it closes; `None` where there is no reading) and the
@@ -117,49 +121,49 @@ impl Observer {
     /// as before.
     pub fn feed(&mut self, time: f64, displacement: Option<f64>, force: f64) -> Result<Observation, ObserveError> {
         self.check(time, displacement, force)?;
-        let dt = self.seen.last.map_or(0.0, |last| time - last);
-        self.seen.last = Some(time);
-        self.seen.force_noise.feed(time, force);
-        self.seen.smooth.feed(dt, force, self.seen.force_noise.deviation());
-        reach(&mut self.seen.reached[1], force);
+        let dt = self.observed.last.map_or(0.0, |last| time - last);
+        self.observed.last = Some(time);
+        self.observed.force_noise.feed(time, force);
+        self.observed.smooth.feed(dt, force, self.observed.force_noise.deviation());
+        reach(&mut self.observed.reached[1], force);
         if let Some(displacement) = displacement {
-            self.seen.displacement_noise.feed(time, displacement);
-            reach(&mut self.seen.reached[0], displacement);
-            self.seen.displacement_seen = true;
+            self.observed.displacement_noise.feed(time, displacement);
+            reach(&mut self.observed.reached[0], displacement);
+            self.observed.displacement_observed = true;
         }
         let began = self.follow(time, displacement, force);
         if let Some(displacement) = displacement {
             self.believe(time, displacement, force);
         }
-        if !self.seen.jaw.is_doubtful() {
+        if !self.observed.jaw.is_doubtful() {
             self.fit(time);
         }
-        let said = self.say(time, began);
-        if let Some(hold) = &mut self.seen.hold {
-            hold.slip = said.slip;
+        let stated = self.say(time, began);
+        if let Some(hold) = &mut self.observed.hold {
+            hold.slip = stated.slip;
         }
-        Ok(said)
+        Ok(stated)
     }
 
-    /// What a material says of readings, but for one that is off the place where the jaw stands: the hold is told of from there until the next
+    /// What a material says of readings, but for one that is off the place where the jaw stands: the hold is given of from there until the next
     /// reading says whether it was left.
     fn believe(&mut self, time: f64, displacement: f64, force: f64) {
         let Some(filter) = &mut self.filter else { return };
-        if self.seen.jaw.is_doubtful() {
-            self.seen.doubted = Some((time, (displacement, force)));
+        if self.observed.jaw.is_doubtful() {
+            self.observed.doubted = Some((time, (displacement, force)));
             return;
         }
-        if let Some((time, (displacement, force))) = self.seen.doubted.take()
-            && !self.seen.jaw.stands
+        if let Some((time, (displacement, force))) = self.observed.doubted.take()
+            && !self.observed.jaw.stands
         {
             filter.feed(time, displacement, force);
         }
         filter.feed(time, displacement, force);
     }
 
-    /// The material, once it has seen where the jaw is.
+    /// The material, once it has observed where the jaw is.
     pub(super) fn informed(&self) -> Option<&ModelFilter> {
-        self.filter.as_ref().filter(|filter| self.seen.displacement_seen && filter.is_met())
+        self.filter.as_ref().filter(|filter| self.observed.displacement_observed && filter.is_met())
     }
 
     /// Its options.
@@ -172,7 +176,7 @@ impl Observer {
     #[must_use]
     pub fn to_bytes(&self) -> Vec<u8> {
         let mut bytes = FORMAT.to_vec();
-        self.seen.keep(&mut bytes);
+        self.observed.keep(&mut bytes);
         if let Some(filter) = &self.filter {
             filter.keep(&mut bytes);
         }
@@ -191,12 +195,12 @@ impl Observer {
     }
 
     fn read(&mut self, from: &mut &[u8]) -> Option<()> {
-        self.seen = Kept::read(from)?;
+        self.observed = Kept::read(from)?;
         self.filter.as_mut().map_or(Some(()), |filter| filter.read(from))
     }
 
     fn check(&self, time: f64, displacement: Option<f64>, force: f64) -> Result<(), ObserveError> {
-        let place = self.seen.last.unwrap_or(0.0);
+        let place = self.observed.last.unwrap_or(0.0);
         let readings =
             [("time", place, time), ("displacement", time, displacement.unwrap_or(0.0)), ("force", time, force)];
         for (what, at, found) in readings {
@@ -204,7 +208,7 @@ impl Observer {
                 return Err(ObserveError::NotFinite { what, time: at, found });
             }
         }
-        match self.seen.last {
+        match self.observed.last {
             Some(last) if time <= last => return Err(ObserveError::TimeNotRising { last, found: time }),
             _ => {}
         }
@@ -224,45 +228,48 @@ impl Observer {
                     .max(1.01 * meter.quantum().min(reached.1 - reached.0)),
             )
         };
-        let force_tolerance = tolerance(&self.seen.force_noise, self.seen.reached[1], CONTROLLER);
-        let grip = self.seen.grip.feed(time, force, force_tolerance, PATIENCE.1);
+        let force_tolerance = tolerance(&self.observed.force_noise, self.observed.reached[1], CONTROLLER);
+        let grip = self.observed.grip.feed(time, force, force_tolerance, PATIENCE.1);
         if matches!(grip, Change::Moved | Change::Left | Change::Crept) {
-            self.seen.creep.clear();
+            self.observed.creep.clear();
         } else if let Some(displacement) = displacement {
-            self.seen.creep.push(time - self.seen.grip.start, displacement);
+            self.observed.creep.push(time - self.observed.grip.start, displacement);
         }
         let jaw = match displacement {
             Some(displacement) => {
-                let tolerance = tolerance(&self.seen.displacement_noise, self.seen.reached[0], SERVO);
-                self.seen.jaw.feed(time, displacement, tolerance, PATIENCE.0)
+                let tolerance = tolerance(&self.observed.displacement_noise, self.observed.reached[0], SERVO);
+                self.observed.jaw.feed(time, displacement, tolerance, PATIENCE.0)
             }
-            None if self.seen.displacement_seen => Change::Same,
+            None if self.observed.displacement_observed => Change::Same,
             None => {
-                let tolerance = self.seen.force_noise.deviation().map(|noise| NOISE * noise * Smooth::kept());
-                let predicted =
-                    self.seen.hold.and_then(|hold| hold.fit).map(|fit| fit.force(time - self.seen.relaxes_from));
-                self.seen.alone.feed(time, self.seen.smooth.level, tolerance, predicted)
+                let tolerance = self.observed.force_noise.deviation().map(|noise| NOISE * noise * Smooth::kept());
+                let predicted = self
+                    .observed
+                    .hold
+                    .and_then(|hold| hold.fit)
+                    .map(|fit| fit.force(time - self.observed.relaxes_from));
+                self.observed.alone.feed(time, self.observed.smooth.level, tolerance, predicted)
             }
         };
         if matches!(jaw, Change::Moved | Change::Left | Change::Crept) || self.is_open() {
             // The first reading at a place may still belong to the way there.
-            self.seen.relaxation.clear();
-            self.seen.relaxes_from = time;
-        } else if !self.seen.jaw.is_doubtful() {
-            self.seen.relaxation.push(time - self.seen.relaxes_from, force);
+            self.observed.relaxation.clear();
+            self.observed.relaxes_from = time;
+        } else if !self.observed.jaw.is_doubtful() {
+            self.observed.relaxation.push(time - self.observed.relaxes_from, force);
         }
-        let told = force_tolerance.is_some_and(|tolerance| self.seen.smooth.level.abs() > PLAIN * tolerance);
-        self.begin_or_end(jaw, grip, told)
+        let reported = force_tolerance.is_some_and(|tolerance| self.observed.smooth.level.abs() > PLAIN * tolerance);
+        self.begin_or_end(jaw, grip, reported)
     }
 
-    /// `told` is whether the force is large enough for its standing still to mean anything.
-    fn begin_or_end(&mut self, jaw: Change, grip: Change, told: bool) -> bool {
-        let jaw_stands = self.seen.displacement_seen && self.seen.jaw.stands;
-        let stands = jaw_stands || (!self.seen.displacement_seen && self.seen.alone.stands && told);
-        if let Some(hold) = &mut self.seen.hold {
+    /// `reported` is whether the force is large enough for its standing still to mean anything.
+    fn begin_or_end(&mut self, jaw: Change, grip: Change, reported: bool) -> bool {
+        let jaw_stands = self.observed.displacement_observed && self.observed.jaw.stands;
+        let stands = jaw_stands || (!self.observed.displacement_observed && self.observed.alone.stands && reported);
+        if let Some(hold) = &mut self.observed.hold {
             hold.readings = hold.readings.saturating_add(1);
             let goes_on = match hold.held {
-                Held::Displacement if jaw == Change::Crept && self.seen.grip.stands => {
+                Held::Displacement if jaw == Change::Crept && self.observed.grip.stands => {
                     *hold = Hold::new(Held::Force, hold.since);
                     true
                 }
@@ -276,46 +283,50 @@ impl Observer {
                 Held::Force => false,
             };
             if !goes_on || self.is_open() {
-                self.seen.hold = None;
+                self.observed.hold = None;
             }
             return false;
         }
         if self.is_open() {
             return false;
         }
-        self.seen.hold = if stands {
-            Some(Hold::new(Held::Displacement, self.seen.relaxes_from))
-        } else if self.seen.displacement_seen && self.seen.grip.stands && self.seen.jaw.slowed() && told {
-            Some(Hold::new(Held::Force, self.seen.grip.start))
+        self.observed.hold = if stands {
+            Some(Hold::new(Held::Displacement, self.observed.relaxes_from))
+        } else if self.observed.displacement_observed
+            && self.observed.grip.stands
+            && self.observed.jaw.slowed()
+            && reported
+        {
+            Some(Hold::new(Held::Force, self.observed.grip.start))
         } else {
             None
         };
-        self.seen.hold.is_some()
+        self.observed.hold.is_some()
     }
 
     /// Whether there is no contact.
     pub(super) fn is_open(&self) -> bool {
-        let Some(noise) = self.seen.force_noise.deviation() else {
+        let Some(noise) = self.observed.force_noise.deviation() else {
             return true;
         };
         let noise = noise * Smooth::kept();
-        let largest = self.seen.reached[1].1.abs().max(self.seen.reached[1].0.abs());
+        let largest = self.observed.reached[1].1.abs().max(self.observed.reached[1].0.abs());
         let edge = (OPEN.0 * largest).max(OPEN.1 * noise);
         // What is held has to fall further to be lost.
-        self.seen.smooth.level.abs() <= if self.seen.hold.is_some() { 0.5 * edge } else { edge }
+        self.observed.smooth.level.abs() <= if self.observed.hold.is_some() { 0.5 * edge } else { edge }
     }
 
     fn fit(&mut self, time: f64) {
-        let Some(mut hold) = self.seen.hold else { return };
-        let from = if hold.held == Held::Displacement { self.seen.relaxes_from } else { self.seen.grip.start };
+        let Some(mut hold) = self.observed.hold else { return };
+        let from = if hold.held == Held::Displacement { self.observed.relaxes_from } else { self.observed.grip.start };
         let elapsed = time - from;
         if elapsed < hold.due {
             return;
         }
         if hold.held == Held::Force {
-            hold.creep = self.seen.creep.late_slope();
+            hold.creep = self.observed.creep.late_slope();
             hold.due = (1.0 + AGAIN) * elapsed;
-            self.seen.hold = Some(hold);
+            self.observed.hold = Some(hold);
             return;
         }
         let slip = self.options.slip_force;
@@ -328,9 +339,9 @@ impl Observer {
             })
         });
         hold.due = (1.0 + AGAIN) * elapsed;
-        let bins = self.seen.relaxation.as_slice();
+        let bins = self.observed.relaxation.as_slice();
         let readings: f64 = bins.iter().map(|bin| bin.count).sum();
-        if let Some(noise) = self.seen.force_noise.deviation()
+        if let Some(noise) = self.observed.force_noise.deviation()
             && bins.len() > FEWEST
             && readings >= f64::from(READINGS)
         {
@@ -355,7 +366,7 @@ impl Observer {
             (Some(material), Some(itself)) if itself.width(elapsed) < material.width(elapsed) => Some(itself),
             (material, itself) => material.or(itself),
         };
-        self.seen.hold = Some(hold);
+        self.observed.hold = Some(hold);
     }
 }
 

@@ -12,83 +12,87 @@ const FALSE_ALARM: f64 = 4.0;
 const STAYS: f64 = 2.0;
 
 impl Observer {
-    /// What is said after the tick at `time` (s).
+    /// What is stated after the tick at `time` (s).
     pub(super) fn say(&self, time: f64, began: bool) -> Observation {
-        let phase = match &self.seen.hold {
+        let phase = match &self.observed.hold {
             Some(_) => ContactPhase::Holding,
             None if self.is_open() => ContactPhase::Free,
             None if self.direction() < 0.0 => ContactPhase::Unloading,
             None => ContactPhase::Loading,
         };
-        let mut said = Observation {
+        let mut stated = Observation {
             time,
             phase,
             began,
-            force: self.seen.smooth.level,
+            force: self.observed.smooth.level,
             time_to_slip: self.options.slip_force.map(|_| SlipForecast::Unknown),
             ..Observation::default()
         };
-        if let Some(hold) = &self.seen.hold {
-            said.held = Some(hold.held);
-            said.held_since = Some(hold.since);
-            said.creep_rate = hold.creep.map(Into::into);
-            let elapsed = time - self.seen.relaxes_from;
+        if let Some(hold) = &self.observed.hold {
+            stated.held = Some(hold.held);
+            stated.held_since = Some(hold.since);
+            stated.creep_rate = hold.creep.map(Into::into);
+            let elapsed = time - self.observed.relaxes_from;
             if let Some(fit) = &hold.fit {
-                said.force = fit.force(elapsed);
+                stated.force = fit.force(elapsed);
                 let equilibrium = fit.equilibrium();
-                said.equilibrium_force = equilibrium.map(Into::into);
-                said.excess_force = equilibrium
-                    .map(|equilibrium| Normal::new(said.force - equilibrium.mean, equilibrium.deviation).into());
-                said.relative_rate = fit.relaxes().then(|| fit.relative_rate(elapsed));
+                stated.equilibrium_force = equilibrium.map(Into::into);
+                stated.excess_force = equilibrium
+                    .map(|equilibrium| Normal::new(stated.force - equilibrium.mean, equilibrium.deviation).into());
+                stated.relative_rate = fit.relaxes().then(|| fit.relative_rate(elapsed));
             }
-            self.say_filtered(&mut said, hold.held);
+            self.say_filtered(&mut stated, hold.held);
             if self.options.slip_force.is_some() {
-                said.time_to_slip = Some(match (hold.held, hold.crossing) {
+                stated.time_to_slip = Some(match (hold.held, hold.crossing) {
                     (Held::Force, _) => SlipForecast::NEVER,
-                    (_, Some(crossing)) => crossing.seen(elapsed),
+                    (_, Some(crossing)) => crossing.observed(elapsed),
                     _ => SlipForecast::Unknown,
                 });
             }
         }
-        said.slip = self.warning(&said);
-        said
+        stated.slip = self.warning(&stated);
+        stated
     }
 
     /// What a material tells of a hold, where the forces are its.
-    fn say_filtered(&self, said: &mut Observation, held: Held) {
+    fn say_filtered(&self, stated: &mut Observation, held: Held) {
         let Some(filter) = self.informed() else { return };
-        said.excess_strain = Some(filter.excess_strain().into());
+        stated.excess_strain = Some(filter.excess_strain().into());
         let equilibrium = filter.equilibrium();
-        let itself = said.equilibrium_force.and_then(|itself| itself.standard_error);
+        let itself = stated.equilibrium_force.and_then(|itself| itself.standard_error);
         if itself.is_some_and(|itself| equilibrium.deviation > itself) {
             return;
         }
-        said.excess_force = Some(filter.excess_force().into());
-        said.relative_rate = Some(filter.relative_rate());
+        stated.excess_force = Some(filter.excess_force().into());
+        stated.relative_rate = Some(filter.relative_rate());
         if held == Held::Displacement {
-            said.equilibrium_force = Some(equilibrium.into());
-            said.force = filter.force_after(0.0).mean;
+            stated.equilibrium_force = Some(equilibrium.into());
+            stated.force = filter.force_after(0.0).mean;
         }
     }
 
     fn direction(&self) -> f64 {
-        if self.seen.displacement_seen { self.seen.jaw.direction } else { self.seen.grip.direction }
+        if self.observed.displacement_observed {
+            self.observed.jaw.direction
+        } else {
+            self.observed.grip.direction
+        }
     }
 
-    fn warning(&self, said: &Observation) -> Slip {
+    fn warning(&self, stated: &Observation) -> Slip {
         let Some(slip) = self.options.slip_force else {
             return Slip::None;
         };
-        if said.phase != ContactPhase::Holding {
+        if stated.phase != ContactPhase::Holding {
             return Slip::None;
         }
-        let noise = self.seen.force_noise.deviation().unwrap_or(0.0) * Smooth::kept();
-        let before = self.seen.hold.map_or(Slip::None, |hold| hold.slip);
+        let noise = self.observed.force_noise.deviation().unwrap_or(0.0) * Smooth::kept();
+        let before = self.observed.hold.map_or(Slip::None, |hold| hold.slip);
         // A warning stays until there is clearly no cause for it any more.
         let early = if before == Slip::None { 1.0 } else { STAYS };
         let margin = if before == Slip::Slipping { 3.0 * noise } else { 0.0 };
-        match said.time_to_slip {
-            _ if said.force <= slip + margin => Slip::Slipping,
+        match stated.time_to_slip {
+            _ if stated.force <= slip + margin => Slip::Slipping,
             Some(SlipForecast::Known {
                 best: TimeToSlip::After(value),
                 low: TimeToSlip::After(low),
@@ -99,7 +103,7 @@ impl Observer {
                 Slip::Soon
             }
             // Before the first fit there is the margin alone.
-            Some(SlipForecast::Unknown) if said.force - 3.0 * early * noise <= slip => Slip::Soon,
+            Some(SlipForecast::Unknown) if stated.force - 3.0 * early * noise <= slip => Slip::Soon,
             _ => Slip::None,
         }
     }

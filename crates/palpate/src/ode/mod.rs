@@ -2,7 +2,7 @@
 //!
 //! One method, Dormand–Prince 8(5,3), for the two equations that have no closed form: the contact layer in a ramp
 //! (one number) and the layers behind it (a vector). It is explicit because nothing here is stiff once a ramp hands
-//! over to its steady state (`contact::element`); it is of high order because the golden numbers are asked for to
+//! over to its steady state (`contact::element`); it is of high order because the golden numbers are required to
 //! nine digits and a reader of the strain wave should not meet the integrator in it.
 
 mod column;
@@ -14,7 +14,7 @@ use tableau::{A, C, D, E3, E5};
 
 /// Stages of one step; the last one is the derivative at the new point.
 const STAGES: usize = 13;
-/// Stages once the dense output is asked for.
+/// Stages once the dense output is requested.
 const DENSE_STAGES: usize = 16;
 
 /// Hairer's combination of the squares of both estimates, over `len` numbers.

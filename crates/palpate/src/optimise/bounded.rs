@@ -58,7 +58,7 @@ impl BoundedSolver {
         }
     }
 
-    /// Solves `problem`; `None` if numbers that nothing bounds cannot be told apart.
+    /// Solves `problem`; `None` if numbers that nothing bounds cannot be distinguished.
     ///
     /// First as if there were no bounds, which settles most problems of a few numbers; else from that answer cut to
     /// its bounds, or from the bounds nearest zero.
@@ -112,7 +112,7 @@ impl BoundedSolver {
             };
             let before = self.held[entering];
             self.held[entering] = Held::Free;
-            // A number that cannot be told from the free ones, or that wants to leave through its own bound, has a
+            // A number that cannot be determined from the free ones, or that wants to leave through its own bound, has a
             // gradient of rounding only: it stays where it was.
             let inward = self.solve_free(problem).is_some_and(|()| {
                 let at = self.free.partition_point(|i| *i < entering);
@@ -186,7 +186,7 @@ impl BoundedSolver {
         }
     }
 
-    /// The best free numbers with the others where they are, into `trial`; `None` if they cannot be told apart.
+    /// The best free numbers with the others where they are, into `trial`; `None` if they cannot be distinguished.
     fn solve_free(&mut self, problem: &BoundedProblem<'_>) -> Option<()> {
         let size = self.held.len();
         let held = &self.held;
@@ -397,7 +397,7 @@ mod tests {
     }
 
     #[test]
-    fn twins_are_told_apart_by_a_bound_or_refused() {
+    fn twins_are_reported_apart_by_a_bound_or_refused() {
         let gram = [1.0, 1.0, 1.0, 1.0];
         let both = |lower: &[f64]| {
             let mut solver = BoundedSolver::new(2);

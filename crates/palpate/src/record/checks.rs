@@ -4,6 +4,7 @@ use crate::number::significant;
 
 /// Columns that make no record. Rows count from 0.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum RecordError {
     /// Columns of different lengths.
     #[error("columns must be of equal length, found {time} times, {other} values of {column}")]

@@ -10,22 +10,22 @@
 //! | `checks.rs` | what every record must be: finite, of equal lengths, time rising |
 //! | `measured.rs` | the record itself |
 //! | `correct/` | corrections that make a new record |
-//! | `asked.rs` | options of the corrections |
+//! | `options.rs` | options of the corrections |
 //! | `correction.rs` | what was done, as a list that goes with the record |
 
-mod asked;
 mod checks;
 mod correct;
 mod correction;
 mod measured;
 mod mend;
+mod options;
 mod raw;
 mod signals;
 
-pub use asked::{CorrectionOptions, SkewChoice};
 pub use checks::RecordError;
 pub use correct::{Compliance, ComplianceError, ComplianceTable};
 pub use correction::{Baseline, Clock, Column, Correction, Tare};
 pub use measured::Record;
+pub use options::{CorrectionOptions, SkewChoice};
 pub use raw::RawColumns;
 pub use signals::{Gaps, Reversals, SampleInterval, Saturation, SignalReport, Stamps, Strays, Values, rounding_step};

@@ -5,6 +5,7 @@ use crate::number::significant;
 
 /// Why no phases were found.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum SegmentError {
     /// Too few samples to see phases.
     #[error("phases need {needed} samples or more, found {found}")]
@@ -17,8 +18,8 @@ pub enum SegmentError {
     /// The displacement (or force) never leaves its noise.
     #[error(
         "there is no motion: the {column} stays within {}, its noise is {}",
-        told(*range, unit),
-        told(*noise, unit)
+        reported(*range, unit),
+        reported(*noise, unit)
     )]
     NoMotion {
         /// Which column.
@@ -45,9 +46,9 @@ pub enum SegmentError {
     /// The jaw stands still only after the body broke.
     #[error(
         "no hold found: at {} the body ruptured under {}, and {} remain where the jaw then stops",
-        told(.0.time, "s"),
-        told(.0.before, "N"),
-        told(.0.after, "N")
+        reported(.0.time, "s"),
+        reported(.0.before, "N"),
+        reported(.0.after, "N")
     )]
     Ruptured(Rupture),
     /// A given hold that the record does not contain.
@@ -131,13 +132,13 @@ impl SegmentError {
 
 /// What is missing for a hold: time or samples, or else that the column stands still.
 fn no_hold((longest, samples): (f64, usize), (minimum, minimum_samples): (f64, usize)) -> String {
-    let slowest = format!("{} ({samples} samples)", told(longest, "s"));
+    let slowest = format!("{} ({samples} samples)", reported(longest, "s"));
     if longest == 0.0 {
         "the jaw always moves, or is at rest from the start".to_owned()
     } else if longest >= minimum && samples >= minimum_samples {
         format!("at its slowest, for {slowest}, the jaw drifts or reverses without a stop")
     } else {
-        let needed = told(minimum, "s");
+        let needed = reported(minimum, "s");
         format!(
             "the longest standstill after a ramp lasts {slowest}; a hold needs {needed} and {minimum_samples} samples"
         )
@@ -145,7 +146,7 @@ fn no_hold((longest, samples): (f64, usize), (minimum, minimum_samples): (f64, u
 }
 
 /// A quantity for people: three digits, lengths in mm.
-fn told(value: f64, unit: &str) -> String {
+fn reported(value: f64, unit: &str) -> String {
     let (value, unit) = if unit == "m" { (1e3 * value, "mm") } else { (value, unit) };
     format!("{} {unit}", significant(value, 3))
 }

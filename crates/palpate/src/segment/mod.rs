@@ -21,7 +21,7 @@ mod standstill;
 mod touch;
 
 pub use error::SegmentError;
-pub(crate) use mode::{PARTS, SEEN, change, error_of_mean, mode as held_in};
+pub(crate) use mode::{OBSERVED, PARTS, change, error_of_mean, mode as held_in};
 use mode::{mode, mode_at_large};
 pub use phases::{GivenHold, find_phases, phases_with};
 pub use relaxation::{Relaxation, RelaxationType, classify_relaxation};

@@ -6,8 +6,8 @@ use crate::statistics::{mean, noise, range};
 
 /// Parts into which a hold is cut to see where it goes.
 pub(crate) const PARTS: usize = 10;
-/// How many standard errors a change must have to be seen.
-pub(crate) const SEEN: f64 = 6.0;
+/// How many standard errors a change must have to be observed.
+pub(crate) const OBSERVED: f64 = 6.0;
 /// Way of the jaw over that to the hold, from which on it counts.
 const LEAST_SHARE: f64 = 2e-3;
 /// How many times farther than the force the jaw goes, both as shares of what they do as they come to the hold.
@@ -66,11 +66,11 @@ pub(super) fn mode_at_large(record: &Record, from: usize, until: usize) -> HoldM
 /// What is held, from jaw and force in the hold, and how far both go as they come to it.
 fn judged([jaw, force]: [&[f64]; 2], [way, rise]: [f64; 2]) -> HoldMode {
     let (travelled, changed) = (moved(jaw).abs() / way, moved(force).abs() / rise);
-    let seen = moved(jaw).abs() > SEEN * error_of_mean(jaw) && travelled > LEAST_SHARE;
-    let uncertain = SEEN * error_of_mean(force) / rise;
-    if seen && travelled > FARTHER * changed.max(uncertain) {
+    let observed = moved(jaw).abs() > OBSERVED * error_of_mean(jaw) && travelled > LEAST_SHARE;
+    let uncertain = OBSERVED * error_of_mean(force) / rise;
+    if observed && travelled > FARTHER * changed.max(uncertain) {
         HoldMode::ForceHeld
-    } else if seen && travelled > DRIFTS && changed > uncertain {
+    } else if observed && travelled > DRIFTS && changed > uncertain {
         HoldMode::Neither
     } else {
         HoldMode::DisplacementHeld

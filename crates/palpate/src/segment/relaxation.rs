@@ -20,6 +20,7 @@ pub enum RelaxationType {
 
 /// The drift of a hold and its significance.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[non_exhaustive]
 pub struct Relaxation {
     /// Which type.
     pub kind: RelaxationType,
@@ -39,7 +40,7 @@ const SIGNIFICANT: f64 = 1e-3;
 /// The first twentieth (three samples at least) is compared with the last fifth. The noise is the larger of what second
 /// differences show and of the spread about a line through the last fifth; samples count as independent as far as the
 /// correlation about that line allows, so that slow noise (filters, rounding, hunting) seldom makes a drift. Of a thousand
-/// holds of 600 samples that do not drift, some three are said to where neighbours correlate by 0.5, thirty at 0.9 and a hundred
+/// holds of 600 samples that do not drift, some three are stated to where neighbours correlate by 0.5, thirty at 0.9 and a hundred
 /// at 0.97, of which a fifth of the hold shows two correlation times.
 ///
 /// A signal that rises at first, over less than a tenth of the hold, and falls from then on is of Type I: so it goes where a
@@ -176,7 +177,7 @@ mod tests {
     }
 
     #[test]
-    fn relaxation_is_seen_through_slow_noise() {
+    fn relaxation_is_observed_through_slow_noise() {
         for (sign, kind) in [(1.0, RelaxationType::TypeI), (-1.0, RelaxationType::TypeII)] {
             let noise = slow(0.9, 600, 3);
             let value = |(i, e): (usize, &f64)| sign * 20.0 * (-(i as f64) / 100.0).exp() + 0.5 * e;

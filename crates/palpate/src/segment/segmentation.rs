@@ -33,6 +33,7 @@ pub struct SegmentOptions {
 
 /// The thresholds that a search used.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[non_exhaustive]
 pub struct SegmentSettings {
     /// Whether the phases come from the displacement (else from the force).
     pub from_displacement: bool,
@@ -90,6 +91,7 @@ pub enum HoldMode {
 
 /// A stretch of the record in one phase.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[non_exhaustive]
 pub struct Segment {
     /// What the jaw does.
     pub phase: Phase,
@@ -132,6 +134,7 @@ pub(crate) fn ramps_before(segments: &[Segment], index: usize) -> impl Iterator<
 
 /// A body that broke while it was loaded.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[non_exhaustive]
 pub struct Rupture {
     /// The sample at which the force had fallen by half.
     pub sample: usize,
@@ -145,6 +148,7 @@ pub struct Rupture {
 
 /// A regular ripple on a column.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[non_exhaustive]
 pub struct Ripple {
     /// From peak to peak, in the unit of the column.
     pub height: f64,
@@ -154,6 +158,7 @@ pub struct Ripple {
 
 /// All segments of a record in order, and the thresholds that found them.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[non_exhaustive]
 pub struct Segmentation {
     /// Segments; together they cover the record without gaps.
     pub segments: Vec<Segment>,

@@ -7,6 +7,7 @@ use crate::watch::{Stages, Unwatched, Watch};
 
 /// What the jaw did between two knots of a drive, J; both contacts of a body that is squeezed from two sides.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[non_exhaustive]
 pub struct StepWork {
     /// When the step began, s.
     pub from: f64,
@@ -26,6 +27,7 @@ pub struct StepWork {
 
 /// What a cycle of squeeze and release cost, J.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[non_exhaustive]
 pub struct Cycle {
     /// When the squeeze began, s.
     pub from: f64,

@@ -9,6 +9,7 @@ use crate::watch::{Stages, Unwatched, Watch};
 
 /// Energy of a simulated body over time, in J; both contacts of a body that is squeezed from two sides.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[non_exhaustive]
 pub struct Energy {
     /// Time, s.
     pub time: Vec<f64>,
@@ -23,6 +24,7 @@ pub struct Energy {
 
 /// Work split into what can be had back and what cannot.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[non_exhaustive]
 pub struct EnergySplit {
     /// Stored: E A u²/(2 depth) + E A depth x²/(2 (m − 1)) a contact; by a linear law E A u²/(2 depth) + E A depth Σ x_k²/(2 g_k).
     pub stored: Vec<f64>,

@@ -5,6 +5,7 @@ use crate::watch::Cancelled;
 
 /// Why a simulation could not run.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum SimulateError {
     /// The motion exceeds the displacement range of the specimen.
     #[error("at t = {time} s the jaw is at {displacement} m: {source}")]
@@ -84,7 +85,7 @@ pub enum SimulateError {
     Unreachable {
         /// Number of the step, from 1.
         step: usize,
-        /// The force asked for, N.
+        /// The force requested, N.
         target: f64,
         /// The force where the body ends, N.
         most: f64,
@@ -112,7 +113,7 @@ pub enum SimulateError {
     /// More samples than a trajectory holds.
     #[error("{found:.3e} samples exceed the limit of {limit:.0e}: reduce the sample rate")]
     TooManySamples {
-        /// How many are asked for.
+        /// How many are requested.
         found: f64,
         /// The limit.
         limit: f64,

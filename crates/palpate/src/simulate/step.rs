@@ -61,6 +61,7 @@ pub struct ContactState {
 
 /// A step that cannot be taken; the state is as before.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum StepError {
     /// A time step, displacement or force that is NaN or infinite, or a time step below zero.
     #[error("{expected}, found {found}")]

@@ -10,6 +10,7 @@ use crate::watch::{Stages, Unwatched};
 
 /// Summary of a simulation, in SI units, compression positive.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[non_exhaustive]
 pub struct Summary {
     /// When it ended, s.
     pub end_time: f64,
@@ -39,6 +40,7 @@ pub struct Summary {
 
 /// Summary of a simulation, with the ends of its steps.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct RunSummary {
     /// What the whole comes to.
     pub summary: Summary,

@@ -24,6 +24,7 @@ const MOST_SAMPLES: f64 = 1e7;
 
 /// A simulated contact over time; all series have the same length, SI units, compression positive.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+#[non_exhaustive]
 pub struct Trajectory {
     /// Time, s.
     pub time: Vec<f64>,

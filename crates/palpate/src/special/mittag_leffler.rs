@@ -6,7 +6,7 @@
 //!
 //! s stands beside nothing but z^(−α), so one contour and one set of nodes serve every s. The trapezoidal
 //! rule on the contour in `contour.rs` is E ≈ Re Σ C_j/(1 + s^α z_j^(−α)): one power and twelve complex divisions
-//! a sample, without a branch. Its error, 1e-14, has to be seen beside 1/Γ(1 − α), hence what happens near α = 1.
+//! a sample, without a branch. Its error, 1e-14, has to be observed beside 1/Γ(1 − α), hence what happens near α = 1.
 
 use super::contour::{CONTOUR, Complex, NODES};
 use crate::vector::elementary::{exp, ln};

@@ -1,7 +1,7 @@
 //! Shapes of time with their derivatives, all columns in one pass.
 //!
 //! Times t ≥ 0 and rates λ > 0 in each other's units. Derivatives are taken by ln λ, the number that fits search in.
-//! The first `N` of the columns are filled; what is not asked for is not computed.
+//! The first `N` of the columns are filled; what is not requested is not computed.
 //!
 //! # Panics
 //! All panic if the slices differ in length.

@@ -15,7 +15,7 @@ pub(crate) struct Record {
     pub(crate) hold: [Vec<f64>; 3],
 }
 
-/// The records from the fastest ramp to the slowest; `None`, said aloud, where there are none.
+/// The records from the fastest ramp to the slowest; `None`, stated aloud, where there are none.
 pub(crate) fn records() -> Option<Vec<Record>> {
     let records = ["0.1", "1", "10", "100"].map(read).into_iter().collect::<Result<Vec<_>, String>>();
     records

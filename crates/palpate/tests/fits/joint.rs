@@ -262,7 +262,7 @@ fn the_verdict_is_that_of_the_body() {
 }
 
 #[test]
-fn intervals_of_the_trend_cover_and_equal_bodies_are_told_apart_by_chance_only() {
+fn intervals_of_the_trend_cover_and_equal_bodies_are_reported_apart_by_chance_only() {
     let runs = 200;
     let (mut covered, mut rejected) = (0, 0);
     for seed in 0..runs {

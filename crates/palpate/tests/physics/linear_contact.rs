@@ -298,7 +298,7 @@ fn a_jaw_that_goes_away_first_leaves_the_body_at_rest() {
     }
 }
 
-/// However much is asked for, it is followed until the body gives way, and laws that relax nearly all of their force are followed as well.
+/// However much is requested, it is followed until the body gives way, and laws that relax nearly all of their force are followed as well.
 #[test]
 fn a_body_pressed_beyond_what_it_carries_says_when_it_gave_way() {
     let ball = Specimen::new(Shape::Ball { radius: 0.035 }, 28e3, Sides::Two).unwrap();

@@ -245,7 +245,7 @@ proptest! {
             let fall = if kind == RelaxationType::TypeI { 1.0 } else { -1.0 };
             let rounding = 1e-12 * largest(&hold);
             prop_assert!(hold.windows(2).all(|pair| fall * (pair[0] - pair[1]) >= -rounding), "{hold:?}");
-            // Enough samples that noise, which is judged by second differences, is told from the steep first fall.
+            // Enough samples that noise, which is judged by second differences, is given from the steep first fall.
             let fine: Vec<f64> = (0..=2000).map(|i| start + (end - start) * f64::from(i) / 2000.0).map(|t| t.min(end)).collect();
             let force = simulate_force(&motion, &scene.model, &fine).unwrap();
             prop_assert_eq!(classify_relaxation(&force).kind, kind);

@@ -72,7 +72,7 @@ fn a_known_skew_is_found_within_its_error() {
 }
 
 #[test]
-fn a_skew_is_reported_and_removed_when_asked() {
+fn a_skew_is_reported_and_removed_when_requested() {
     let record = stairs(200.0, 0.001, 0.035, 1);
     let analysis = analyze(&record, &AnalysisOptions::default()).unwrap();
     assert!(analysis.findings.iter().any(|finding| matches!(finding, Finding::ClocksSkewed { .. })));
@@ -94,7 +94,7 @@ fn a_skew_is_reported_and_removed_when_asked() {
         let left = skew_of(&analysis.record).unwrap();
         assert!(left.skew.abs() < 3.0 * left.standard_error, "{left:?}");
     }
-    // Without a skew nothing is said, and nothing done.
+    // Without a skew nothing is stated, and nothing done.
     let good = stairs(200.0, 0.001, 0.0, 2);
     let analysis = analyze(&good, &AnalysisOptions::default()).unwrap();
     assert!(
@@ -117,12 +117,12 @@ fn one_clock_is_not_moved_by_more_than_a_filter_delays() {
     };
     let analysis = analyze(&record, &with(SkewChoice::Auto)).unwrap();
     assert!(analysis.record.corrections().is_empty(), "{:?}", analysis.record.corrections());
-    let said = |finding: &Finding| matches!(finding, Finding::ClocksOpen { one_clock: true, .. });
-    assert!(analysis.findings.iter().any(said), "{:?}", analysis.findings);
+    let stated = |finding: &Finding| matches!(finding, Finding::ClocksOpen { one_clock: true, .. });
+    assert!(analysis.findings.iter().any(stated), "{:?}", analysis.findings);
     // Who knows it says so.
     let analysis = analyze(&record, &with(SkewChoice::Given(0.6))).unwrap();
     assert!(matches!(analysis.record.corrections(), [Correction::SkewRemoved { .. }]));
-    assert!(!analysis.findings.iter().any(said), "{:?}", analysis.findings);
+    assert!(!analysis.findings.iter().any(stated), "{:?}", analysis.findings);
 }
 
 #[test]
@@ -130,14 +130,14 @@ fn a_skew_longer_than_a_ramp_is_found_too() {
     for skew in [-0.4, 0.6, 1.5] {
         let found = skew_of(&stairs(50.0, 0.002, skew, 3)).unwrap();
         assert!(
-            (found.skew - skew).abs() < 0.01 && found.standard_error < 0.01 && found.is_seen(),
+            (found.skew - skew).abs() < 0.01 && found.standard_error < 0.01 && found.is_observed(),
             "{skew}: {found:?}"
         );
     }
 }
 
 #[test]
-fn a_skew_that_was_to_be_found_and_cannot_be_told_is_said() {
+fn a_skew_that_was_to_be_found_and_cannot_be_reported_is_stated() {
     // One ramp and one hold: two edges, of which the first is no kink of the force.
     let motion = protocol(&[ProtocolStep {
         to: 2e-3,
@@ -169,7 +169,7 @@ fn a_skew_of_less_than_a_sample_interval_is_no_finding() {
         let record = stairs(rate, 0.001, 0.035, 1);
         let analysis = analyze(&record, &AnalysisOptions::default()).unwrap();
         let skew = analysis.skew.unwrap();
-        assert!(skew.is_seen() && (skew.interval - 1.0 / rate).abs() < 0.1 / rate, "{skew:?}");
+        assert!(skew.is_observed() && (skew.interval - 1.0 / rate).abs() < 0.1 / rate, "{skew:?}");
         analysis.findings.iter().any(|finding| matches!(finding, Finding::ClocksSkewed { .. }))
     };
     assert!(found(50.0), "two samples late");
@@ -186,15 +186,15 @@ fn a_record_of_averaged_rows_says_so() {
     assert_eq!(record.corrections(), [averaged]);
     let analysis = analyze(&record, &AnalysisOptions::default()).unwrap();
     let finding = analysis.findings.iter().find(|finding| finding.code() == "rows_averaged").unwrap();
-    let seen = finding.seen();
+    let observed = finding.observation();
     assert!(
-        seen.contains("40000000 rows") && seen.contains("each 4 ") && seen.contains("10000000 samples"),
-        "{seen}"
+        observed.contains("40000000 rows") && observed.contains("each 4 ") && observed.contains("10000000 samples"),
+        "{observed}"
     );
 }
 
 #[test]
-fn a_skew_that_cannot_be_told_is_not_told() {
+fn a_skew_that_cannot_be_reported_is_not_reported() {
     // One ramp and one hold have one edge.
     let record = stairs(50.0, 0.001, 0.035, 3);
     let until = record.time().partition_point(|t| *t < 4.5);
@@ -208,7 +208,7 @@ fn a_skew_that_cannot_be_told_is_not_told() {
     let mut random = Rng::new(9);
     let force = record.time().iter().map(|_| random.normal()).collect();
     let noise = Record::new(record.time().to_vec(), record.displacement().map(<[f64]>::to_vec), force).unwrap();
-    assert!(skew_of(&noise).is_none_or(|skew| !skew.is_seen()));
+    assert!(skew_of(&noise).is_none_or(|skew| !skew.is_observed()));
 }
 
 /// The paper's ball after `air` m of air, on a load cell that drifts by `drift` N/s from `zero` N; the jaw leaves again.
@@ -259,11 +259,11 @@ fn with(corrections: CorrectionOptions) -> AnalysisOptions {
 fn a_drifting_zero_is_taken_off_by_both_ends() {
     let truth = ball(3e-3, 0.0, 0.0, 0.0, 4);
     let record = ball(3e-3, 0.4, 0.05, 5e-3, 4);
-    let asked = CorrectionOptions {
+    let requested = CorrectionOptions {
         baseline: Some(Baseline::Sloped),
         ..CorrectionOptions::default()
     };
-    let analysis = analyze(&record, &with(asked)).unwrap();
+    let analysis = analyze(&record, &with(requested)).unwrap();
     let Some(Correction::BaselineRemoved {
         level, slope, samples, ..
     }) = analysis.record.corrections().first()
@@ -277,12 +277,12 @@ fn a_drifting_zero_is_taken_off_by_both_ends() {
     let off = analysis.record.force().iter().zip(truth.force()).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
     assert!(off < 0.03, "{off}");
     // A window is taken at its word.
-    let asked = CorrectionOptions {
+    let requested = CorrectionOptions {
         baseline: Some(Baseline::Constant),
         baseline_window: Some((0.0, 0.5)),
         ..CorrectionOptions::default()
     };
-    let analysis = analyze(&record, &with(asked)).unwrap();
+    let analysis = analyze(&record, &with(requested)).unwrap();
     let Some(Correction::BaselineRemoved { level, samples: 50, .. }) = analysis.record.corrections().first() else {
         panic!("{:?}", analysis.record.corrections())
     };
@@ -303,13 +303,13 @@ fn what_the_machine_gives_way_is_not_the_body() {
     let measured: Vec<f64> =
         record.displacement().unwrap().iter().zip(record.force()).map(|(d, f)| d + compliance * f).collect();
     let measured = Record::new(record.time().to_vec(), Some(measured), record.force().to_vec()).unwrap();
-    let asked = CorrectionOptions {
+    let requested = CorrectionOptions {
         compliance: Some(Compliance::Constant(compliance)),
         ..CorrectionOptions::default()
     };
     let as_recorded = AnalysisOptions {
         touch: ContactChoice::AsRecorded,
-        ..with(asked)
+        ..with(requested)
     };
     let analysis = analyze(&measured, &as_recorded).unwrap();
     assert!(matches!(analysis.record.corrections()[0], Correction::ComplianceRemoved { largest } if largest > 1e-5));
@@ -337,7 +337,7 @@ fn every_rule_finds_the_ball_behind_the_air() {
 }
 
 #[test]
-fn rules_that_disagree_or_find_nothing_are_told() {
+fn rules_that_disagree_or_find_nothing_are_reported() {
     // A lump that is met before the body.
     let record = ball(3e-3, 0.0, 0.0, 0.0, 6);
     let lump = |d: f64| if d > 0.5e-3 { 0.05 } else { 0.0 };

@@ -2,7 +2,8 @@
 #![expect(clippy::unwrap_used, reason = "a test that cannot run has failed")]
 
 use palpate::calibrate::{
-    Body, CalibrationRange, Candidate, EquilibriumLaw, Material, MaterialParameter, MaterialUncertainty, MaterialUnit,
+    Body, CalibrationRange, Candidate, EquilibriumLaw, Material, MaterialParameter, MaterialParts, MaterialUncertainty,
+    MaterialUnit,
 };
 use palpate::contact::{Shape, Sides};
 use palpate::fit::Estimate;
@@ -33,7 +34,7 @@ fn ball(errors: Option<[f64; 4]>) -> Material {
         freedom: 1e6,
         covariance: (0..4).map(|i| (0..4).map(|j| if i == j { errors[i].powi(2) } else { 0.0 }).collect()).collect(),
     });
-    let material = Material {
+    Material::new(MaterialParts {
         body: Body {
             shape: Shape::Ball { radius: 0.035 },
             sides: Sides::Two,
@@ -51,29 +52,55 @@ fn ball(errors: Option<[f64; 4]>) -> Material {
             slowest: SPEED,
             largest_force: 14.3,
         },
-    };
-    assert!(material.is_valid());
-    material
+    })
+    .unwrap()
 }
 
 fn linear(terms: usize) -> Material {
-    let mut material = ball(None);
-    material.candidate.law = format!("prony:{terms}").parse().unwrap();
-    material.parameters.truncate(1);
+    let mut parts = ball(None).into_parts();
+    parts.candidate.law = format!("prony:{terms}").parse().unwrap();
+    parts.parameters.truncate(1);
     for term in 1..=terms {
         for (name, unit, value) in [
             (format!("overshoot_{term}"), MaterialUnit::One, 0.8),
             (format!("time_constant_{term}_s"), MaterialUnit::Second, 0.5 * 10f64.powi(term as i32 - 1)),
         ] {
-            material.parameters.push(MaterialParameter {
+            parts.parameters.push(MaterialParameter {
                 name,
                 unit,
                 estimate: Estimate::fixed(value),
             });
         }
     }
-    assert!(material.is_valid());
-    material
+    Material::new(parts).unwrap()
+}
+
+#[test]
+fn a_material_is_checked_when_it_is_made() {
+    use palpate::calibrate::MaterialError;
+    let made = |change: &dyn Fn(&mut MaterialParts)| {
+        let mut parts = ball(Some([0.01; 4])).into_parts();
+        change(&mut parts);
+        Material::new(parts)
+    };
+    assert!(made(&|_| ()).is_ok());
+    let renamed = made(&|parts| parts.parameters.swap(0, 1)).unwrap_err();
+    assert!(matches!(&renamed, MaterialError::Names { found, .. } if found[0] == "exponent"), "{renamed}");
+    for value in [0.0, -1.0, f64::NAN, f64::INFINITY] {
+        let error = made(&|parts| parts.parameters[2].estimate.value = value).unwrap_err();
+        assert!(
+            matches!(&error, MaterialError::Estimate { name, .. } if name == "rate_coefficient_per_s"),
+            "{error}"
+        );
+        let error = made(&|parts| parts.noise = value.min(-1.0)).unwrap_err();
+        assert!(matches!(error, MaterialError::Number { name: "noise", .. }), "{error}");
+    }
+    let square = made(&|parts| parts.uncertainty.as_mut().unwrap().covariance.truncate(3)).unwrap_err();
+    assert_eq!(square, MaterialError::Uncertainty { parameters: 4 });
+    let thick = made(&|parts| parts.parameters[3].estimate = Estimate::fixed(1.0)).unwrap_err();
+    assert_eq!(thick, MaterialError::NoContact);
+    // Factors of another count make no contact.
+    assert_eq!(ball(None).contact_off(&[1.0; 3]), None);
 }
 
 fn grip(material: &Material, mass: f64) -> Grip<'_> {
@@ -129,7 +156,7 @@ fn the_interval_of_the_time_is_where_the_edges_of_the_band_slip() {
 }
 
 #[test]
-fn the_least_squeeze_holds_as_long_as_was_asked_and_less_does_not() {
+fn the_least_squeeze_holds_as_long_as_was_requested_and_less_does_not() {
     for material in [ball(None), linear(1), linear(3)] {
         let grip = grip(&material, 0.25);
         for duration in [1.0, 60.0, f64::INFINITY] {
@@ -173,11 +200,11 @@ fn after_a_retreat_the_force_stays_where_it_is() {
     // Farther and it rises, nearer and it falls; by little, for an excess this small hardly relaxes where n = 5.
     for (by, sign) in [(1.02, 1.0), (0.98, -1.0)] {
         let plan = Plan::back_off(found.over * by, found.backed.displacement, SPEED);
-        let ends = step_ends(&plan.held(3600.0), &material.contact()).unwrap();
+        let ends = step_ends(&plan.held(3600.0), material.contact()).unwrap();
         assert!((ends[2].force - ends[1].force) * sign > 1e-3, "{by}: {ends:?}");
     }
     // What 1 % of a number does, done by hand.
-    for (index, said) in found.sensitivities.iter().enumerate() {
+    for (index, stated) in found.sensitivities.iter().enumerate() {
         let mut factors = [1.0; 4];
         factors[index] = 1.01;
         let contact = material.contact_off(&factors).unwrap();
@@ -185,8 +212,8 @@ fn after_a_retreat_the_force_stays_where_it_is() {
         let body = contact.specimen();
         let u = found.backed.displacement / 2.0;
         let missed = ends[1].force - body.force(body.equilibrium_strain(u), u);
-        assert!((said.missed - missed).abs() < 0.1 * missed.abs().max(1e-5), "{said:?} {missed}");
-        assert_eq!(said.error.map(|error| (1e6 * error).round()), Some([2e4, 1e4, 5e4, 1e4][index]));
+        assert!((stated.missed - missed).abs() < 0.1 * missed.abs().max(1e-5), "{stated:?} {missed}");
+        assert_eq!(stated.error.map(|error| (1e6 * error).round()), Some([2e4, 1e4, 5e4, 1e4][index]));
     }
     assert_eq!(found.sensitivities.len(), 4);
     // The modulus scales all forces alike.
@@ -238,7 +265,7 @@ fn held_forces_do_not_slip_and_creep() {
     };
     let short = Grip::new(&material, grasp, limits, 0.95).unwrap().force_hold(None, 3600.0).unwrap();
     let ends = short.stroke_ends.unwrap();
-    let there = step_ends(&[short.steps[0], ProgramStep::HoldForce { duration: ends }], &material.contact());
+    let there = step_ends(&[short.steps[0], ProgramStep::HoldForce { duration: ends }], material.contact());
     assert!((there.unwrap()[1].displacement / limits.stroke.unwrap() - 1.0).abs() < 1e-9);
     // Torsion needs more force where the contact is small: the least is where both meet.
     grasp.off_centre = 0.02;
@@ -292,8 +319,9 @@ fn impossible_grasps_are_answers_and_wrong_numbers_are_not() {
         Err(GripError::NoBackOff { .. } | GripError::BeyondLimit { .. })
     ));
     assert!(matches!(careful.holding(&Plan::squeeze(0.008, SPEED)), Err(GripError::BeyondLimit { .. })));
-    let mut bonded = ball(None);
-    bonded.body.separation = Separation::Bonded;
+    let mut parts = ball(None).into_parts();
+    parts.body.separation = Separation::Bonded;
+    let bonded = Material::new(parts).unwrap();
     let error = Grip::new(&bonded, Grasp::new(0.1, 0.5).unwrap(), Limits::new(SPEED).unwrap(), 0.95).unwrap_err();
     assert!(error == GripError::Bonded && !error.is_answer());
     for confidence in [0.0, 1.0, f64::NAN] {
@@ -345,7 +373,7 @@ fn a_material_without_errors_predicts_with_the_noise_alone() {
     assert!((high - low - 2.0 * 0.05 * found.factor).abs() < 1e-12);
 }
 
-/// A gripper that could not close in time was told to hold.
+/// A gripper that could not close in time was given to hold.
 #[test]
 fn the_time_to_close_is_a_limit_of_every_grip() {
     let material = ball(None);
@@ -397,7 +425,7 @@ fn a_band_that_begins_below_the_needed_force_is_refused() {
     assert!(refused.is_answer());
 }
 
-/// What lies beyond the body was no answer but an error of a simulation, and 0 N were said to be there at the most.
+/// What lies beyond the body was no answer but an error of a simulation, and 0 N were stated to be there at the most.
 #[test]
 fn forces_and_squeezes_beyond_the_body_are_answers() {
     let material = ball(None);
@@ -413,7 +441,7 @@ fn forces_and_squeezes_beyond_the_body_are_answers() {
     assert!(heavy.to_string().contains("when the jaws stop"), "{heavy}");
 }
 
-/// The least squeeze for ten years was said to hold for any time, and the best estimate to be certain.
+/// The least squeeze for ten years was stated to hold for any time, and the best estimate to be certain.
 #[test]
 fn more_than_ten_years_and_confidence_without_intervals_are_refused() {
     let material = ball(None);
@@ -426,7 +454,7 @@ fn more_than_ten_years_and_confidence_without_intervals_are_refused() {
 }
 
 #[test]
-fn a_search_for_grips_reports_progress_and_ends_when_it_is_told_to() {
+fn a_search_for_grips_reports_progress_and_ends_when_it_is_reported_to() {
     let material = ball(Some([0.02, 0.02, 0.05, 0.02]));
     let grip = grip(&material, 0.25);
     let question = Question {

@@ -2,6 +2,7 @@
 
 mod calibrate;
 mod corrections;
+mod exponents;
 mod grip;
 mod observe;
 mod phases;

@@ -324,7 +324,7 @@ fn near(found: &[(f64, f64, HoldMode)], expected: &[(f64, f64, HoldMode)], withi
 }
 
 #[test]
-fn a_jaw_that_hunts_holds_all_the_same_and_that_is_said() {
+fn a_jaw_that_hunts_holds_all_the_same_and_that_is_stated() {
     let place = |t: f64| match t {
         _ if t < 3.0 => 0.0,
         _ if t < 5.0 => 3.0 * (t - 3.0),
@@ -390,7 +390,7 @@ fn a_machine_that_goes_over_from_the_jaw_to_the_force_makes_two_holds() {
 }
 
 #[test]
-fn a_body_that_breaks_in_a_ramp_of_few_samples_is_seen() {
+fn a_body_that_breaks_in_a_ramp_of_few_samples_is_observed() {
     let place = |t: f64| match t {
         _ if t < 3.0 => 0.0,
         _ if t < 5.0 => 3.0 * (t - 3.0),

@@ -11,7 +11,7 @@ use palpate::test_problems::{PAPER_RATE, Rng, paper_ball};
 
 use crate::repeats::repeats;
 
-/// A test bench: what meets the body, how, and how well it is seen.
+/// A test bench: what meets the body, how, and how well it is observed.
 #[derive(Clone)]
 struct Bench {
     model: ContactModel,
@@ -335,10 +335,14 @@ fn a_first_touch_that_the_jaw_does_not_reach_is_refused() {
         ..AnalysisOptions::default()
     };
     let error = analyze(&record, &options).unwrap_err();
-    let AnalysisError::TouchBeyond { asked, farthest: found } = error else {
+    let AnalysisError::TouchBeyond {
+        requested,
+        farthest: found,
+    } = error
+    else {
         panic!("{error:?}")
     };
-    assert!((asked - found - 1e-3).abs() < 1e-15 && found == farthest);
+    assert!((requested - found - 1e-3).abs() < 1e-15 && found == farthest);
 }
 
 #[test]
@@ -396,7 +400,7 @@ fn columns_that_count_the_other_way_round_are_suspicious() {
 }
 
 #[test]
-fn touch_and_overlay_that_cannot_be_trusted_are_said() {
+fn touch_and_overlay_that_cannot_be_trusted_are_stated() {
     let noisy = Bench {
         rate: 50.0,
         ..Bench::paper(0.005, 0.05)
@@ -417,7 +421,7 @@ fn touch_and_overlay_that_cannot_be_trusted_are_said() {
 
 /// A body that loads as Hertz's does, and relaxes, behind 3 mm of air: the loading curve of palpate's own ball begins half a millimetre early.
 #[test]
-fn a_loading_curve_that_stands_alone_is_said_and_its_error_is_as_large() {
+fn a_loading_curve_that_stands_alone_is_stated_and_its_error_is_as_large() {
     let mut random = Rng::new(3);
     let time: Vec<f64> = (0..1200).map(|i| 0.05 * f64::from(i)).collect();
     let jaw = |t: f64| (1e-3 * (t - 2.0)).clamp(0.0, 9e-3);
@@ -432,11 +436,11 @@ fn a_loading_curve_that_stands_alone_is_said_and_its_error_is_as_large() {
     let found = analyze(&record, &ball(None)).unwrap();
     let touch = found.contact.tare.displacement;
     let off = (touch - 3e-3).abs();
-    let said = found.findings.iter().any(|finding| matches!(finding, Finding::TouchApart { .. }));
+    let stated = found.findings.iter().any(|finding| matches!(finding, Finding::TouchApart { .. }));
     assert!(
-        off < 0.1e-3 || (said && found.contact.displacement_error.unwrap() > 0.7 * off),
+        off < 0.1e-3 || (stated && found.contact.displacement_error.unwrap() > 0.7 * off),
         "{:?}",
         found.contact
     );
-    assert!(said, "{:?}", found.contact);
+    assert!(stated, "{:?}", found.contact);
 }

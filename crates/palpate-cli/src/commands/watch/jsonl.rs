@@ -2,7 +2,7 @@
 
 use std::io::{self, Write};
 
-use palpate_jobs::{HoldSeen, Seen};
+use palpate_jobs::{HoldObserved, Observed};
 use palpate_report::document::{WatchDocument, WatchSummaryDocument};
 
 use super::Shown;
@@ -10,12 +10,12 @@ use super::Shown;
 pub(super) struct Jsonl;
 
 impl Shown for Jsonl {
-    fn see(&mut self, out: &mut dyn Write, seen: &Seen) -> io::Result<()> {
-        seen.document().map_or(Ok(()), |document| line(out, &document))
+    fn see(&mut self, out: &mut dyn Write, observed: &Observed) -> io::Result<()> {
+        observed.document().map_or(Ok(()), |document| line(out, &document))
     }
 
-    fn end(&mut self, out: &mut dyn Write, holds: &[HoldSeen]) -> io::Result<()> {
-        let holds = holds.iter().map(HoldSeen::document).collect();
+    fn end(&mut self, out: &mut dyn Write, holds: &[HoldObserved]) -> io::Result<()> {
+        let holds = holds.iter().map(HoldObserved::document).collect();
         line(out, &WatchDocument::Summary(WatchSummaryDocument::new(holds)))
     }
 }

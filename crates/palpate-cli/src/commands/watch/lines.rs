@@ -1,9 +1,9 @@
-//! Plain lines: one an event, one each time that was asked for, and a table of holds.
+//! Plain lines: one an event, one each time that was requested, and a table of holds.
 
 use std::io::{self, Write};
 
 use palpate::observe::{Held, Observation, Slip};
-use palpate_jobs::{Event, HoldSeen, Seen};
+use palpate_jobs::{Event, HoldObserved, Observed};
 use palpate_report::number::significant;
 use palpate_report::result::word;
 use palpate_report::table::{Cell, Table};
@@ -16,35 +16,35 @@ pub(super) struct Lines {
 }
 
 impl Shown for Lines {
-    fn see(&mut self, out: &mut dyn Write, seen: &Seen) -> io::Result<()> {
-        let seen = match seen {
-            Seen::Tick(seen, true) => seen,
-            Seen::Event(event) => return happened(out, event),
-            Seen::Next(_) | Seen::Tick(_, false) => return Ok(()),
+    fn see(&mut self, out: &mut dyn Write, observed: &Observed) -> io::Result<()> {
+        let observed = match observed {
+            Observed::Tick(observed, true) => observed,
+            Observed::Event(event) => return happened(out, event),
+            Observed::Next(_) | Observed::Tick(_, false) => return Ok(()),
         };
-        write!(out, "{:>9.3} s  {:<34}  {:>8} N", seen.time, state(seen), significant(seen.force, 4))?;
-        if let Some(equilibrium) = seen.equilibrium_force {
+        write!(out, "{:>9.3} s  {:<34}  {:>8} N", observed.time, state(observed), significant(observed.force, 4))?;
+        if let Some(equilibrium) = observed.equilibrium_force {
             write!(out, "  equilibrium force {}", uncertain(equilibrium, "N"))?;
         }
-        if let Some(strain) = seen.excess_strain {
+        if let Some(strain) = observed.excess_strain {
             write!(out, "  excess strain {}", uncertain(strain, ""))?;
         }
-        if let Some(creep) = seen.creep_rate {
+        if let Some(creep) = observed.creep_rate {
             write!(out, "  creeps at {}", uncertain(scaled(creep), "µm/s"))?;
         }
-        if let (Some(words), Some(_)) = (slip(seen), seen.held) {
+        if let (Some(words), Some(_)) = (slip(observed), observed.held) {
             write!(out, "  slip: {words}")?;
         }
         writeln!(out)
     }
 
-    fn end(&mut self, out: &mut dyn Write, holds: &[HoldSeen]) -> io::Result<()> {
+    fn end(&mut self, out: &mut dyn Write, holds: &[HoldObserved]) -> io::Result<()> {
         write!(out, "\n{}", summary(holds, self.slip_force))
     }
 }
 
 fn happened(out: &mut dyn Write, event: &Event) -> io::Result<()> {
-    let (time, what) = told(event);
+    let (time, what) = reported(event);
     match event {
         Event::Ended(_, hold) => {
             writeln!(out, "{time:>9.3} s  {what} after {} s", significant(hold.until - hold.since, 4))
@@ -55,20 +55,20 @@ fn happened(out: &mut dyn Write, event: &Event) -> io::Result<()> {
 }
 
 /// When something happened, s, and what.
-pub(super) fn told(event: &Event) -> (f64, String) {
+pub(super) fn reported(event: &Event) -> (f64, String) {
     match event {
-        Event::Began(seen) => (seen.time, format!("hold: {}", state(seen))),
-        Event::Changed(seen) => (seen.time, format!("it is the {}", state(seen))),
+        Event::Began(observed) => (observed.time, format!("hold: {}", state(observed))),
+        Event::Changed(observed) => (observed.time, format!("it is the {}", state(observed))),
         Event::Ended(time, _) => (*time, "end of the hold".to_owned()),
-        Event::Warned(seen) => (seen.time, warning(seen)),
+        Event::Warned(observed) => (observed.time, warning(observed)),
     }
 }
 
 /// A warning in words.
-pub(super) fn warning(seen: &Observation) -> String {
-    match seen.slip {
-        Slip::Slipping => format!("slips, the force is {} N", significant(seen.force, 3)),
-        _ => format!("slip soon: {}", slip(seen).unwrap_or_default()),
+pub(super) fn warning(observed: &Observation) -> String {
+    match observed.slip {
+        Slip::Slipping => format!("slips, the force is {} N", significant(observed.force, 3)),
+        _ => format!("slip soon: {}", slip(observed).unwrap_or_default()),
     }
 }
 
@@ -81,11 +81,11 @@ pub(super) fn scaled(speed: palpate::fit::Estimate) -> palpate::fit::Estimate {
 }
 
 /// The holds of a log.
-pub(super) fn summary(holds: &[HoldSeen], slip_force: Option<f64>) -> String {
+pub(super) fn summary(holds: &[HoldObserved], slip_force: Option<f64>) -> String {
     if holds.is_empty() {
         return "The log has no hold.\n".to_owned();
     }
-    let unknown = |hold: &HoldSeen| if hold.held == Held::Force { "the force was held" } else { "not determined" };
+    let unknown = |hold: &HoldObserved| if hold.held == Held::Force { "the force was held" } else { "not determined" };
     let mut table = Table::of("holds", "Holds", holds)
         .column("Held", "held", "", |hold| Cell::text(word(hold.held)))
         .column("From", "start_s", "s", |hold| Cell::Number(hold.since, 5))

@@ -19,7 +19,7 @@ use palpate::record::Correction;
 use palpate::watch::Unwatched;
 use palpate_files::description::read_material;
 use palpate_jobs::input::OpenedFile;
-use palpate_jobs::{HoldSeen, JobError, Seen, Verdict};
+use palpate_jobs::{HoldObserved, JobError, Observed, Verdict};
 
 use crate::arguments::{WatchArguments, WatchFormat};
 use crate::progress::Bars;
@@ -27,10 +27,10 @@ use crate::terminal::{note, notes, print_with};
 
 /// Where observations go.
 trait Shown {
-    /// A tick, with whether it is one of those that were asked for, or something that happened.
-    fn see(&mut self, out: &mut dyn Write, seen: &Seen) -> io::Result<()>;
+    /// A tick, with whether it is one of those that were requested, or something that happened.
+    fn see(&mut self, out: &mut dyn Write, observed: &Observed) -> io::Result<()>;
     /// The holds of the log.
-    fn end(&mut self, out: &mut dyn Write, holds: &[HoldSeen]) -> io::Result<()>;
+    fn end(&mut self, out: &mut dyn Write, holds: &[HoldObserved]) -> io::Result<()>;
 }
 
 pub(crate) fn run(arguments: &WatchArguments) -> Result<Verdict, JobError> {
@@ -63,12 +63,12 @@ pub(crate) fn run(arguments: &WatchArguments) -> Result<Verdict, JobError> {
     let mut outcome = None;
     print_with(|out| {
         let (started, mut written) = (Instant::now(), Ok(()));
-        let made = job.run((record, &place), material, &mut Unwatched, |seen| {
-            written = match &seen {
-                Seen::Next(time) => {
+        let made = job.run((record, &place), material, &mut Unwatched, |observed| {
+            written = match &observed {
+                Observed::Next(time) => {
                     speed.map_or(Ok(()), |speed| out.flush().map(|()| wait(started, (time - record.time()[0]) / speed)))
                 }
-                seen => shown.see(out, seen),
+                observed => shown.see(out, observed),
             };
             written.is_ok()
         });

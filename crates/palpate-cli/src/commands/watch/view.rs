@@ -6,12 +6,12 @@ use std::time::{Duration, Instant};
 
 use anstyle::{AnsiColor, Style};
 use palpate::observe::{Observation, Slip};
-use palpate_jobs::{Event, HoldSeen, Seen};
+use palpate_jobs::{Event, HoldObserved, Observed};
 use palpate_report::number::significant;
 use palpate_report::sparkline::sparkline;
 
 use super::Shown;
-use super::lines::{scaled, summary, told, warning};
+use super::lines::{reported, scaled, summary, warning};
 use super::words::{slip, state, uncertain};
 
 /// Time between two pictures.
@@ -50,62 +50,68 @@ impl View {
         }
     }
 
-    fn remember(&mut self, seen: &Observation) {
-        let share = (seen.time - self.duration.0) / (self.duration.1 - self.duration.0).max(f64::MIN_POSITIVE);
+    fn remember(&mut self, observed: &Observation) {
+        let share = (observed.time - self.duration.0) / (self.duration.1 - self.duration.0).max(f64::MIN_POSITIVE);
         let place = (share * WIDTH as f64) as usize;
         let (times, forces, last) = &mut self.curve;
         if times.is_empty() || place > *last {
-            times.push(seen.time);
-            forces.push(seen.force);
+            times.push(observed.time);
+            forces.push(observed.force);
             *last = place;
         }
-        self.last = Some(*seen);
+        self.last = Some(*observed);
     }
 
     fn note(&mut self, event: &Event) {
-        let (time, what) = told(event);
+        let (time, what) = reported(event);
         if self.happened.len() == LAST {
             self.happened.remove(0);
         }
         self.happened.push(format!("{time:.2} s  {what}"));
     }
 
-    fn draw(&mut self, out: &mut dyn Write, seen: &Observation) -> io::Result<()> {
+    fn draw(&mut self, out: &mut dyn Write, observed: &Observation) -> io::Result<()> {
         let (first, last) = self.duration;
         let speed = self.speed.map_or("as fast as it goes".to_owned(), |speed| format!("×{}", significant(speed, 3)));
-        let share = (seen.time - first) / (last - first).max(f64::MIN_POSITIVE);
+        let share = (observed.time - first) / (last - first).max(f64::MIN_POSITIVE);
         let filled = ((share * WIDTH as f64) as usize).clamp(1, WIDTH);
         let mut rows = vec![
-            format!("{}   {:.1} s of {:.1} s, {speed}", self.name, seen.time - first, last - first),
+            format!("{}   {:.1} s of {:.1} s, {speed}", self.name, observed.time - first, last - first),
             format!(
                 "force        {:<WIDTH$}  {} N",
                 sparkline(&self.curve.0, &self.curve.1, filled),
-                significant(seen.force, 3)
+                significant(observed.force, 3)
             ),
-            format!("phase        {}", state(seen)),
+            format!("phase        {}", state(observed)),
         ];
         let known = |number: Option<palpate::fit::Estimate>, unit| {
             number.map_or("not known yet".to_owned(), |number| uncertain(number, unit))
         };
-        match seen.creep_rate {
+        match observed.creep_rate {
             Some(creep) => rows.push(format!("creeps at    {}", uncertain(scaled(creep), "µm/s"))),
-            None if seen.held.is_some() => rows.push(format!("equilibrium  {}", known(seen.equilibrium_force, "N"))),
+            None if observed.held.is_some() => {
+                rows.push(format!("equilibrium  {}", known(observed.equilibrium_force, "N")));
+            }
             None => rows.push("equilibrium  –".to_owned()),
         }
-        if let Some(strain) = seen.excess_strain {
+        if let Some(strain) = observed.excess_strain {
             rows.push(format!("excess       {} of strain", uncertain(strain, "")));
         }
         if let Some(force) = self.slip_force {
-            let words = slip(seen).unwrap_or_default();
+            let words = slip(observed).unwrap_or_default();
             rows.push(format!("slip         at {} N: {words}", significant(force, 3)));
         }
-        let color = match seen.slip {
+        let color = match observed.slip {
             Slip::None => None,
             Slip::Soon => Some(AnsiColor::Yellow),
             Slip::Slipping => Some(AnsiColor::Red),
         };
         let style = Style::new().bold().fg_color(color.map(Into::into));
-        rows.push(if seen.slip == Slip::None { String::new() } else { format!("{style}{}{style:#}", warning(seen)) });
+        rows.push(if observed.slip == Slip::None {
+            String::new()
+        } else {
+            format!("{style}{}{style:#}", warning(observed))
+        });
         rows.extend(self.happened.iter().map(|what| format!("  {what}")));
         if self.drawn > 0 {
             write!(out, "\x1b[{}A\x1b[J", self.drawn)?;
@@ -119,26 +125,26 @@ impl View {
 }
 
 impl Shown for View {
-    fn see(&mut self, out: &mut dyn Write, seen: &Seen) -> io::Result<()> {
-        let seen = match seen {
-            Seen::Tick(seen, _) => seen,
-            Seen::Event(event) => {
+    fn see(&mut self, out: &mut dyn Write, observed: &Observed) -> io::Result<()> {
+        let observed = match observed {
+            Observed::Tick(observed, _) => observed,
+            Observed::Event(event) => {
                 self.note(event);
                 return Ok(());
             }
-            Seen::Next(_) => return Ok(()),
+            Observed::Next(_) => return Ok(()),
         };
-        self.remember(seen);
+        self.remember(observed);
         if Instant::now() < self.next {
             return Ok(());
         }
         self.next = Instant::now() + FRAME;
-        self.draw(out, seen)
+        self.draw(out, observed)
     }
 
-    fn end(&mut self, out: &mut dyn Write, holds: &[HoldSeen]) -> io::Result<()> {
-        if let Some(seen) = self.last {
-            self.draw(out, &seen)?;
+    fn end(&mut self, out: &mut dyn Write, holds: &[HoldObserved]) -> io::Result<()> {
+        if let Some(observed) = self.last {
+            self.draw(out, &observed)?;
         }
         write!(out, "\n{}", summary(holds, self.slip_force))
     }

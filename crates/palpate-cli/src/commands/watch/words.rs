@@ -36,10 +36,10 @@ pub(super) fn duration(seconds: f64) -> String {
     }
 }
 
-/// What is known of slip; `None` where nobody asked.
-pub(super) fn slip(seen: &Observation) -> Option<String> {
-    Some(match seen.time_to_slip? {
-        _ if seen.slip == Slip::Slipping => "slipping".to_owned(),
+/// What is known of slip; `None` where no limit is given.
+pub(super) fn slip(observed: &Observation) -> Option<String> {
+    Some(match observed.time_to_slip? {
+        _ if observed.slip == Slip::Slipping => "slipping".to_owned(),
         SlipForecast::Unknown => "not known yet".to_owned(),
         SlipForecast::Known {
             low: TimeToSlip::Never, ..
@@ -55,11 +55,11 @@ pub(super) fn slip(seen: &Observation) -> Option<String> {
 }
 
 /// Phase and what is held.
-pub(super) fn state(seen: &Observation) -> String {
-    match (seen.held, seen.held_since) {
+pub(super) fn state(observed: &Observation) -> String {
+    match (observed.held, observed.held_since) {
         (Some(what), Some(since)) => {
             format!("{} held since {} s", word(what), significant(since, 5))
         }
-        _ => word(seen.phase),
+        _ => word(observed.phase),
     }
 }

@@ -12,7 +12,7 @@ use super::{
 };
 use crate::description::text::{error::DescriptionError, source::Source};
 
-/// Layers where nothing is said, as in the paper.
+/// Layers where nothing is stated, as in the paper.
 const USUAL_LAYERS: f64 = 8.0;
 
 /// The body of these tables.

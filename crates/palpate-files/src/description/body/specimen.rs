@@ -11,7 +11,7 @@ use super::tables::{EquilibriumName, ShapeName, SpecimenTable};
 use crate::description::text::{error::DescriptionError, quantity::QuantityText, source::Source};
 
 impl SpecimenTable {
-    /// The shape, or `None` where it is said to be unknown.
+    /// The shape, or `None` where it is stated to be unknown.
     pub(crate) fn shape(&self, source: &Source<'_>) -> Result<Option<Shape>, DescriptionError> {
         self.check_sizes(source)?;
         let size = |name: &str, size: &Option<QuantityText>, dimension| match size {
@@ -176,7 +176,7 @@ impl SpecimenTable {
     }
 }
 
-/// From how many sides a body of this shape is squeezed where nothing is said.
+/// From how many sides a body of this shape is squeezed where nothing is stated.
 pub(crate) fn usual_sides(shape: &Shape) -> Sides {
     match shape {
         Shape::Ball { .. } => Sides::Two,

@@ -7,7 +7,8 @@ use std::path::Path;
 
 use palpate::{
     calibrate::{
-        Body, CalibrationRange, Candidate, EquilibriumLaw, Material, MaterialParameter, MaterialUncertainty, RateLaw,
+        Body, CalibrationRange, Candidate, EquilibriumLaw, Material, MaterialParameter, MaterialParts,
+        MaterialUncertainty, RateLaw,
     },
     contact::{Equilibrium, RateDependence},
     fit::Estimate,
@@ -64,7 +65,7 @@ pub fn parse_material(text: &str, path: &Path) -> Result<MaterialFile, Descripti
     let parameters = parameters(source, &table.parameter)?;
     let uncertainty = uncertainty(source, table)?;
     let residual = source.si("calibration.residual", &table.residual, Dimension::Force)?;
-    let material = Material {
+    let parts = MaterialParts {
         body: Body {
             shape: model.specimen().shape().clone(),
             sides: model.specimen().sides(),
@@ -77,12 +78,12 @@ pub fn parse_material(text: &str, path: &Path) -> Result<MaterialFile, Descripti
         noise: source.number("calibration.residual", residual, "0 N or more", |noise| noise >= 0.0)?,
         range: range(source, &table.range)?,
     };
-    if !material.is_valid() {
+    let names: Vec<&str> = table.parameter.iter().map(|parameter| parameter.name.as_str()).collect();
+    let material = Material::new(parts).map_err(|error| {
         let expected = format!("the parameters of the law {law}, each above 0, and a covariance with one row each");
-        let names: Vec<&str> = table.parameter.iter().map(|parameter| parameter.name.as_str()).collect();
-        return Err(source.value("calibration.parameter", expected, &names.join(", ")));
-    }
-    if let Some((key, there, here)) = disagreement(&model, &material.contact()) {
+        source.value("calibration.parameter", format!("{expected} ({error})"), &names.join(", "))
+    })?;
+    if let Some((key, there, here)) = disagreement(&model, material.contact()) {
         let expected =
             format!("{here}, the parameter of [calibration]; a value edited by hand is no longer calibrated");
         return Err(source.value(key, expected, &there));

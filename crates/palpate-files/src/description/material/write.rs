@@ -27,16 +27,16 @@ impl MaterialFile {
             origin.palpate,
             // A text that ends no comment.
             origin.record.replace(|letter: char| letter.is_control(), " "),
-            material.candidate,
+            material.candidate(),
             origin.samples,
-            significant(material.noise, 3)
+            significant(material.noise(), 3)
         )
     }
 
     /// The interval of a parameter as a comment, in `factor` of its SI unit.
     fn interval(&self, name: &str, factor: f64, unit: &str) -> String {
         let interval = self.material.estimate(name).and_then(|estimate| estimate.interval);
-        let (Some((low, high)), Some(uncertainty)) = (interval, &self.material.uncertainty) else {
+        let (Some((low, high)), Some(uncertainty)) = (interval, self.material.uncertainty()) else {
             return String::new();
         };
         let end = |value: f64| significant(factor * value, 4);
@@ -46,7 +46,7 @@ impl MaterialFile {
     }
 
     fn body(&self) -> String {
-        let body = &self.material.body;
+        let body = self.material.body();
         let shape = match &body.shape {
             Shape::Ball { radius } => format!("\"ball\"\nradius = {}", si(*radius, "m")),
             Shape::Pad { radius, thickness } => {
@@ -96,7 +96,7 @@ impl MaterialFile {
     fn law(&self) -> String {
         let law = match self.material.contact() {
             Contact::Latency { model, rate } => {
-                let (rate_law, factor) = rate_law(rate);
+                let (rate_law, factor) = rate_law(*rate);
                 let factor = rate_law.factor_name().zip(factor).map_or_else(String::new, |(name, factor)| {
                     format!("{name} = {factor:?}{}\n", self.interval(name, 1.0, ""))
                 });
@@ -109,7 +109,7 @@ impl MaterialFile {
                 )
             }
             Contact::Linear(LinearContact { law, memory, .. }) => match law.terms() {
-                [only] if memory == Memory::Strain => format!(
+                [only] if *memory == Memory::Strain => format!(
                     "\"standard-linear-solid\"\novershoot = {:?}{}\ntime = {}{}\n",
                     only.overshoot,
                     self.interval("overshoot_1", 1.0, ""),
@@ -123,7 +123,7 @@ impl MaterialFile {
                         format!("  {{ overshoot = {overshoot:?}, time = {time} }},{interval}\n")
                     };
                     let rows: String = terms.iter().enumerate().map(row).collect();
-                    let memory = if memory == Memory::Force { "\nmemory = \"force\"" } else { "" };
+                    let memory = if *memory == Memory::Force { "\nmemory = \"force\"" } else { "" };
                     format!("\"prony\"{memory}\nterms = [\n{rows}]\n")
                 }
             },
@@ -133,7 +133,7 @@ impl MaterialFile {
 
     fn calibration(&self) -> String {
         let Self { material, origin } = self;
-        let equilibrium = CalibratedEquilibriumName::from(material.candidate.equilibrium);
+        let equilibrium = CalibratedEquilibriumName::from(material.candidate().equilibrium);
         let test = origin.test.as_ref().map_or_else(String::new, |test| format!("test = {}\n", quoted(test)));
         let mut out = format!(
             "\n# What follows is not for editing: the parameters above with their errors, and where they come from.\n[calibration]\nversion = {MATERIAL_VERSION}\nrecord = {}\nsha256 = {}\n{test}palpate = {}\nsamples = {}\nlaw = {}\nequilibrium = \"{equilibrium}\"\nresidual = {}\n",
@@ -141,17 +141,17 @@ impl MaterialFile {
             quoted(&origin.sha256),
             quoted(&origin.palpate),
             origin.samples,
-            quoted(&material.candidate.law.to_string()),
-            si(material.noise, "N")
+            quoted(&material.candidate().law.to_string()),
+            si(material.noise(), "N")
         );
-        if let Some(uncertainty) = &material.uncertainty {
+        if let Some(uncertainty) = material.uncertainty() {
             let rows: String = uncertainty.covariance.iter().map(|row| format!("  {row:?},\n")).collect();
             out += &format!(
                 "confidence = {:?}\nfreedom = {:?}\n# of the natural logarithms of the parameters, in their order\ncovariance = [\n{rows}]\n",
                 uncertainty.confidence, uncertainty.freedom
             );
         }
-        let range = &material.range;
+        let range = material.range();
         out += "\n[calibration.range]\n";
         for (name, value, unit) in [
             ("longest_hold", range.longest_hold, "s"),
@@ -162,7 +162,7 @@ impl MaterialFile {
         ] {
             out += &format!("{name} = {}\n", si(value, unit));
         }
-        for parameter in &material.parameters {
+        for parameter in material.parameters() {
             let estimate = &parameter.estimate;
             out += &format!("\n[[calibration.parameter]]\nname = {}\n", quoted(&parameter.name));
             if let Some((_, Some(unit))) = UNITS.iter().find(|(unit, _)| *unit == parameter.unit) {

@@ -23,7 +23,7 @@ use crate::description::{
     },
 };
 
-/// Samples per second where nothing is said.
+/// Samples per second where nothing is stated.
 const USUAL_SAMPLE_RATE: f64 = 100.0;
 
 /// A checked protocol, everything in SI.
@@ -138,7 +138,7 @@ pub fn parse_protocol(text: &str, path: &Path) -> Result<Protocol, DescriptionEr
     check(&source, &protocol_tables(&source)?)
 }
 
-/// Checks the tables of a protocol, all that is wrong with which is said of places in `source`.
+/// Checks the tables of a protocol, all that is wrong with which is stated of places in `source`.
 pub(crate) fn check(source: &Source<'_>, tables: &ProtocolTables) -> Result<Protocol, DescriptionError> {
     let contact = model(source, &tables.specimen, &tables.law, &tables.contact)?;
     let Steps {

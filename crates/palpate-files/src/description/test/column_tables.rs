@@ -102,7 +102,7 @@ struct DeflectionTable {
 }
 
 impl ColumnsTable {
-    /// The choices; `machine` has said what the text itself does not.
+    /// The choices; `machine` has stated what the text itself does not.
     pub(super) fn checked(self, source: &Source<'_>, machine: Option<&str>) -> Result<ColumnChoices, DescriptionError> {
         if self.force.is_some() && self.stress.is_some() {
             return Err(source.both("columns.force", "columns.stress"));

@@ -74,15 +74,15 @@ pub struct ColumnChoices {
 }
 
 impl ColumnChoices {
-    /// What is said about each column of which anything is, and what it measures.
+    /// What is stated about each column of which anything is, and what it measures.
     pub(crate) fn all(&self) -> Vec<(Quantity, &ColumnChoice)> {
-        let said = [
+        let stated = [
             (Quantity::Time, &self.time),
             (Quantity::Displacement, &self.displacement),
             (Quantity::Force, &self.force),
             (Quantity::Stress, &self.stress),
             (Quantity::Displacement, &self.deflection),
         ];
-        said.into_iter().filter_map(|(quantity, choice)| Some((quantity, choice.as_ref()?))).collect()
+        stated.into_iter().filter_map(|(quantity, choice)| Some((quantity, choice.as_ref()?))).collect()
     }
 }

@@ -14,7 +14,7 @@ use crate::{
 
 /// The machines that name the columns of a test as its file does, all of them, with units that do not contradict it.
 ///
-/// Several can: a squeeze and a stretch are told apart by nobody but the person who made the test.
+/// Several can: a squeeze and a stretch are distinguished by nobody but the person who made the test.
 #[must_use]
 pub fn machines_of(part: &Part) -> Vec<&'static Machine> {
     let fits = |machine: &&Machine| {
@@ -32,11 +32,11 @@ pub fn machines_of(part: &Part) -> Vec<&'static Machine> {
     MACHINES.iter().filter(fits).collect()
 }
 
-/// Whether the header of a column gives another unit of its quantity than is said of it.
+/// Whether the header of a column gives another unit of its quantity than is stated of it.
 pub(crate) fn contradicts(quantity: Quantity, choice: &ColumnChoice, column: &ColumnInfo) -> bool {
     let factor = |unit: Option<&str>| unit_factor(unit?, quantity.dimension());
-    let (said, written) = (factor(choice.unit.as_deref()), factor(column.unit.as_deref()));
-    said.is_some() && written.is_some() && said != written
+    let (stated, written) = (factor(choice.unit.as_deref()), factor(column.unit.as_deref()));
+    stated.is_some() && written.is_some() && stated != written
 }
 
 #[cfg(test)]

@@ -51,9 +51,9 @@ fn parsed(text: &str) -> Result<ColumnChoices, ChoiceError> {
     };
     let mut columns = ColumnChoices::default();
     for entry in entries(text) {
-        let (quantity, said) = entry.split_once('=').ok_or_else(|| error(None))?;
+        let (quantity, stated) = entry.split_once('=').ok_or_else(|| error(None))?;
         let quantity = quantity_of(quantity).ok_or_else(|| error(None))?;
-        let (name, unit) = said.rsplit_once(':').map_or((said, ""), |(name, unit)| (name.trim(), unit.trim()));
+        let (name, unit) = stated.rsplit_once(':').map_or((stated, ""), |(name, unit)| (name.trim(), unit.trim()));
         let since_1970 = quantity == Quantity::Time && unit.eq_ignore_ascii_case(EPOCH);
         if !unit.is_empty() && !since_1970 && unit_factor(unit, quantity.dimension()).is_none() {
             let (dimension, unit) = (quantity.dimension(), unit.to_owned());
@@ -112,16 +112,16 @@ impl ColumnChoices {
 
     /// Takes the columns of `upper`, and their units where it says any, in place of its own.
     pub fn lay_over(&mut self, upper: &Self) {
-        for (quantity, said) in upper.all() {
+        for (quantity, stated) in upper.all() {
             match quantity {
                 Quantity::Force => self.stress = None,
                 Quantity::Stress => self.force = None,
                 Quantity::Time | Quantity::Displacement => {}
             }
             let own = self.place(quantity).get_or_insert_default();
-            own.column.clone_from(&said.column);
-            if said.unit.is_some() {
-                own.unit.clone_from(&said.unit);
+            own.column.clone_from(&stated.column);
+            if stated.unit.is_some() {
+                own.unit.clone_from(&stated.unit);
                 (own.unit_by, own.scale, own.travel_per_unit) = (None, None, None);
             }
         }

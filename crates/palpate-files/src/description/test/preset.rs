@@ -86,16 +86,16 @@ pub(super) fn over_preset(source: &Source<'_>, own: TestTables) -> Result<TestTa
         return Err(source.value(KEY, words::any_of(&names), &format!("\"{name}\"")));
     };
     let other = |error: toml::de::Error| source.wrong(KEY, KeyProblem::Other(error.message().to_owned()));
-    let said: Table = source.text.parse().map_err(other)?;
+    let stated: Table = source.text.parse().map_err(other)?;
     let mut tables: Table = machine.text.parse().map_err(other)?;
     for (one, another) in EXCLUSIVE {
         for (kept, dropped) in [(one, another), (another, one)] {
-            if at(&said, kept).is_some() {
+            if at(&stated, kept).is_some() {
                 remove(&mut tables, dropped);
             }
         }
     }
-    lay_over(&mut tables, said);
+    lay_over(&mut tables, stated);
     TestTables::deserialize(Value::Table(tables)).map_err(other)
 }
 

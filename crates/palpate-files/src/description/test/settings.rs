@@ -39,7 +39,7 @@ pub(crate) fn segment(source: &Source<'_>, phases: &PhasesTable) -> Result<Segme
     })
 }
 
-/// The holds whose limits are given, each after itself; whether a record has them is seen when they meet.
+/// The holds whose limits are given, each after itself; whether a record has them is observed when they meet.
 pub(crate) fn given_holds(source: &Source<'_>, phases: &PhasesTable) -> Result<Vec<GivenHold>, DescriptionError> {
     let mut holds: Vec<GivenHold> = Vec::with_capacity(phases.hold.len());
     for (index, hold) in phases.hold.iter().enumerate() {

@@ -31,6 +31,7 @@ impl fmt::Display for KeyPlace {
 
 /// Why a description cannot be used. [`DescriptionError::hint`] says what would help.
 #[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum DescriptionError {
     /// The operating system does not hand the file out.
     #[error(transparent)]
@@ -87,7 +88,7 @@ pub enum DescriptionError {
     },
 }
 
-/// What can be wrong with a key of a description, as it is said behind its place.
+/// What can be wrong with a key of a description, as it is written behind its place.
 #[derive(Debug, thiserror::Error)]
 pub enum KeyProblem {
     /// It means nothing here; these would.

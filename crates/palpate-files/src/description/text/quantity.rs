@@ -10,7 +10,7 @@ use serde::{
 };
 
 /// A number and its unit, as written. A bare number is kept too, so that what is wrong with it (it lacks a
-/// unit) can be said with the right words.
+/// unit) can be stated with the right words.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(crate) struct QuantityText {
     /// Less the quotes.

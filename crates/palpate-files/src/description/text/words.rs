@@ -28,11 +28,11 @@ pub(crate) fn explain(message: &str, at: &str) -> (String, KeyProblem) {
         let expected = "a finite number, such as 1e300";
         return value(expected.to_owned(), "one beyond 1.8e308".to_owned());
     }
-    if let Some((said, expected)) = message.split_once(", expected ") {
-        if let Some(length) = said.strip_prefix("invalid length ") {
+    if let Some((stated, expected)) = message.split_once(", expected ") {
+        if let Some(length) = stated.strip_prefix("invalid length ") {
             return value(plain_expected(expected), format!("a list of {length}"));
         }
-        let found = said.strip_prefix("invalid type: ").or_else(|| said.strip_prefix("invalid value: "));
+        let found = stated.strip_prefix("invalid type: ").or_else(|| stated.strip_prefix("invalid value: "));
         if let Some(found) = found {
             return value(plain_expected(expected), plain_found(found));
         }

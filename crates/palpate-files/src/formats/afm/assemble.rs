@@ -10,7 +10,7 @@ use crate::{
     table::{ColumnInfo, ColumnKind, Label, Metadata, Part, SkippedPart},
 };
 
-/// Names of heights, the best first: what a sensor measured before what the piezo was told, as it was before smoothed.
+/// Names of heights, the best first: what a sensor measured before what the piezo was given, as it was before smoothed.
 const HEIGHTS: [&str; 11] = [
     "measuredHeight",
     "capacitiveSensorHeight",
@@ -97,7 +97,7 @@ pub(super) fn set_series_clock<'a>(drafts: impl Iterator<Item = &'a mut Draft>) 
     known
 }
 
-/// Puts the segments of a curve together; what had to be left out is said, with why.
+/// Puts the segments of a curve together; what had to be left out is stated, with why.
 ///
 /// `part` says what is known of the curve beside its segments. Nothing comes back where no segment has rows.
 pub(super) fn assemble(drafts: Vec<Draft>, mut part: Part) -> (Option<Curve>, Vec<SkippedPart>) {

@@ -100,7 +100,7 @@ impl ReadPart for Lines {
         let mut read = Columns::of(columns.len());
         let mut lines = LineReader::open(&self.input, Encoding::Utf8)?;
         let mut values = vec![0.0; columns.len()];
-        let mut told = 0;
+        let mut reported = 0;
         for segment in &self.curve.segments {
             let rows = &self.rows[segment.number];
             let chosen = segment.choose(columns);
@@ -124,9 +124,9 @@ impl ReadPart for Lines {
                 read.push(&values, number);
                 index += 1;
                 let (done, total) = lines.progress();
-                if done != told {
+                if done != reported {
                     progress(done, total);
-                    told = done;
+                    reported = done;
                 }
             }
         }

@@ -6,7 +6,7 @@ use arrow_array::RecordBatch;
 
 use crate::{error::FileError, input::Input};
 
-/// What is told of every batch: its first row, the batch, bytes or rows done, and how many there are.
+/// What is given of every batch: its first row, the batch, bytes or rows done, and how many there are.
 pub(super) type Visitor<'a> = dyn FnMut(u64, &RecordBatch, (u64, u64)) -> Result<ControlFlow<()>, FileError> + 'a;
 
 pub(super) fn damaged(input: &Input, place: &str, found: &str) -> FileError {

@@ -1,6 +1,6 @@
 //! Parquet and Arrow (IPC files, streams, Feather version 2): tables of typed columns.
 //!
-//! Without the feature `arrow` such files are told by their content and refused.
+//! Without the feature `arrow` such files are recognised by their content and refused.
 //!
 //! A file holds one test, or several one below the other where a column such as `test_id` tells them apart.
 //!

@@ -36,7 +36,7 @@ pub(crate) fn look_into(input: &Input, _options: &ReadOptions) -> Result<Found, 
     let (tests, by) = match tests::column(&source) {
         Some(column) => {
             let name = source.schema.field(column).name().clone();
-            let (tests, without) = tests::told_apart(&source, column)?;
+            let (tests, without) = tests::reported_apart(&source, column)?;
             if without > 0 {
                 skipped.push(SkippedPart::new(format!("{without} rows"), format!("nothing in column {name}")));
             }
@@ -89,15 +89,15 @@ fn written(kind: Kind, by: Option<&str>, test: &Test, passed: &[&str]) -> String
 }
 
 fn column(number: usize, field: &Field, reading: Reading, sample: String) -> ColumnInfo {
-    let said = ["unit", "units"]
+    let stated = ["unit", "units"]
         .iter()
         .find_map(|key| field.metadata().get(*key))
         .filter(|unit| !unit.trim().is_empty());
     let (name, behind) = unit::split(field.name());
-    let (name, unit) = match (reading, said) {
+    let (name, unit) = match (reading, stated) {
         (Reading::Seconds, _) => (name, Some("s".to_owned())),
-        // Where the name says another unit it stays whole, so that the contradiction is seen.
-        (_, Some(said)) => match unit::alone(said) {
+        // Where the name says another unit it stays whole, so that the contradiction is observed.
+        (_, Some(stated)) => match unit::alone(stated) {
             unit if behind.is_none() || behind == unit => (name, unit),
             unit => (Some(field.name().clone()), unit),
         },

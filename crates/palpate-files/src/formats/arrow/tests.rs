@@ -58,7 +58,7 @@ pub(super) fn column(source: &Source) -> Option<usize> {
 /// The tests that a column tells apart, in the order in which they appear. Rows without a value belong to none.
 ///
 /// The second number is how many rows have no value.
-pub(super) fn told_apart(source: &Source, column: usize) -> Result<(Vec<Test>, u64), FileError> {
+pub(super) fn reported_apart(source: &Source, column: usize) -> Result<(Vec<Test>, u64), FileError> {
     let mut tests: Vec<Test> = Vec::new();
     let mut places: HashMap<String, usize> = HashMap::new();
     let (mut stretches, mut without) = (0, 0);

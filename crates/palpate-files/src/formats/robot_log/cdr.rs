@@ -116,18 +116,18 @@ struct Walk<'a> {
     schema: &'a Schema,
     bytes: Bytes<'a>,
     fields: Fields,
-    /// Name of the structure that is walked through, where names are asked for.
+    /// Name of the structure that is walked through, where names are requested.
     path: String,
     named: bool,
 }
 
 impl Walk<'_> {
-    fn structure(&mut self, index: usize, told: bool, place: Place) -> Result<(), String> {
+    fn structure(&mut self, index: usize, reported: bool, place: Place) -> Result<(), String> {
         let schema = self.schema;
         let mut labels: Option<Vec<String>> = None;
         for field in &schema.types[index] {
             let start = self.path.len();
-            if self.named && told {
+            if self.named && reported {
                 if start > 0 {
                     self.path.push('.');
                 }
@@ -140,15 +140,15 @@ impl Walk<'_> {
                     let (seconds, nanoseconds) = (self.bytes.whole()?, self.bytes.whole()?);
                     self.fields.stamped(i64::from(seconds as i32), i64::from(nanoseconds));
                 }
-                Count::One => self.element(field.kind, told && place != Place::Header, inner)?,
-                Count::Array(count) => self.elements(field, count, told, &mut labels)?,
+                Count::One => self.element(field.kind, reported && place != Place::Header, inner)?,
+                Count::Array(count) => self.elements(field, count, reported, &mut labels)?,
                 Count::Sequence => {
                     let count = self.bytes.whole()? as usize;
-                    if told {
-                        let seen = u32::try_from(count.min(MOST_ELEMENTS + 1)).unwrap_or(u32::MAX);
-                        self.fields.signature.extend(seen.to_le_bytes());
+                    if reported {
+                        let observed = u32::try_from(count.min(MOST_ELEMENTS + 1)).unwrap_or(u32::MAX);
+                        self.fields.signature.extend(observed.to_le_bytes());
                     }
-                    self.elements(field, count, told, &mut labels)?;
+                    self.elements(field, count, reported, &mut labels)?;
                 }
             }
             self.path.truncate(start);
@@ -156,16 +156,16 @@ impl Walk<'_> {
         Ok(())
     }
 
-    fn element(&mut self, kind: Kind, told: bool, place: Place) -> Result<(), String> {
+    fn element(&mut self, kind: Kind, reported: bool, place: Place) -> Result<(), String> {
         match kind {
             Kind::Number(number) => {
                 let value = self.bytes.number(number)?;
-                if told { self.fields.push(&self.path, value) } else { Ok(()) }
+                if reported { self.fields.push(&self.path, value) } else { Ok(()) }
             }
             Kind::Text => self.bytes.text().map(drop),
             Kind::Time => self.bytes.take(2, 4).map(drop),
             Kind::Filler => self.bytes.take(1, 1).map(drop),
-            Kind::Structure(index) => self.structure(index, told, place),
+            Kind::Structure(index) => self.structure(index, reported, place),
         }
     }
 
@@ -174,28 +174,28 @@ impl Walk<'_> {
         &mut self,
         field: &Field,
         count: usize,
-        told: bool,
+        reported: bool,
         labels: &mut Option<Vec<String>>,
     ) -> Result<(), String> {
         // Single bytes are pictures and identifiers, never measurements.
         let bytes = matches!(field.kind, Kind::Number(Number::U8 | Number::I8));
-        let told = told && count <= MOST_ELEMENTS && !bytes;
+        let reported = reported && count <= MOST_ELEMENTS && !bytes;
         if let Kind::Number(number) = field.kind
-            && !told
+            && !reported
         {
             return self.bytes.take(count, number.size()).map(drop);
         }
-        if field.kind == Kind::Text && told && names_elements(&field.name) {
+        if field.kind == Kind::Text && reported && names_elements(&field.name) {
             return self.labels(count, labels);
         }
         let labels = labels.as_ref().filter(|labels| labels.len() == count);
         let start = self.path.len();
         for index in 0..count {
-            if self.named && told {
+            if self.named && reported {
                 let label = labels.map_or_else(|| index.to_string(), |labels| labels[index].clone());
                 self.path.push_str(&format!("[{label}]"));
             }
-            self.element(field.kind, told, Place::Part)?;
+            self.element(field.kind, reported, Place::Part)?;
             self.path.truncate(start);
         }
         Ok(())

@@ -20,13 +20,13 @@ use crate::{
 /// Most bytes of one record, such as a packed chunk, and of one unpacked chunk (256 MiB).
 const MOST_RECORD: usize = 256 << 20;
 
-/// Most bytes asked of the file at once, so that a length that lies costs no memory.
+/// Most bytes required of the file at once, so that a length that lies costs no memory.
 const PIECE: usize = 1 << 20;
 
 /// Bytes in front of the content of every record: its kind and its length.
 const LEAD: usize = 1 + 8;
 
-/// Told every entry, in the order of the file.
+/// Given every entry, in the order of the file.
 pub(super) type Visit<'v> = dyn FnMut(Entry<'_>) -> Result<(), FileError> + 'v;
 
 /// Goes through the data section of the log; what stands behind it only repeats and indexes.

@@ -17,7 +17,7 @@ pub(super) struct Fields {
     pub(super) values: Vec<f64>,
     /// Two messages of one topic with the same signature have the same columns.
     pub(super) signature: Vec<u8>,
-    /// Names of the numbers, where they were asked for.
+    /// Names of the numbers, where they were requested.
     pub(super) names: Option<Vec<String>>,
 }
 
@@ -51,7 +51,7 @@ impl Fields {
     }
 }
 
-/// Why a message cannot be read, as it is said behind its number: at which byte, where one is to blame, what was expected
+/// Why a message cannot be read, as it is written behind its number: at which byte, where one is to blame, what was expected
 /// and what found.
 pub(super) fn fault(at: Option<usize>, expected: &str, found: &str) -> String {
     let at = at.map_or_else(String::new, |at| format!(", byte {at}"));
@@ -65,6 +65,6 @@ pub(super) fn names_elements(field: &str) -> bool {
 
 /// Whether names tell elements apart.
 pub(super) fn distinct(names: &[String]) -> bool {
-    let mut seen = HashSet::new();
-    names.iter().all(|name| seen.insert(name))
+    let mut observed = HashSet::new();
+    names.iter().all(|name| observed.insert(name))
 }

@@ -7,7 +7,7 @@
 //!
 //! Messages in CDR with a definition in `ros2msg`, and in JSON, are read; other topics are listed as skipped, with why.
 //!
-//! Without the feature `robot-log` logs are told by their content and refused.
+//! Without the feature `robot-log` logs are recognised by their content and refused.
 //!
 //! | file | what |
 //! |---|---|

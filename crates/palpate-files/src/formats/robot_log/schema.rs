@@ -233,7 +233,7 @@ mod tests {
     }
 
     #[test]
-    fn what_cannot_be_laid_out_is_said() {
+    fn what_cannot_be_laid_out_is_stated() {
         let lacking = Schema::parse("a/B", "other/Missing x\n").unwrap_err();
         assert!(lacking.contains("lacks the type other/Missing"), "{lacking}");
         let circle = "C c\n===\nMSG: a/C\nB b\n";

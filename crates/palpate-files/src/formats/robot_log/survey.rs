@@ -18,7 +18,7 @@ const MOST_SERIES: usize = 16;
 
 /// A field of a series.
 #[derive(Debug, Clone)]
-pub(super) struct FieldSeen {
+pub(super) struct FieldObserved {
     /// Its name in the message.
     pub(super) name: String,
     /// Its first value that is a finite number.
@@ -31,7 +31,7 @@ pub(super) struct Series {
     pub(super) topic: String,
     /// Type of the messages.
     pub(super) kind: String,
-    pub(super) fields: Vec<FieldSeen>,
+    pub(super) fields: Vec<FieldObserved>,
     pub(super) messages: u64,
     /// Every message has a time stamp of its own.
     pub(super) stamped: bool,
@@ -203,7 +203,7 @@ impl Channel {
         Ok(self.known.get(&fields.signature).map(|belongs| (fields, belongs)))
     }
 
-    /// The series for a message whose fields were not seen in this order before: one with the same, or a new one.
+    /// The series for a message whose fields were not observed in this order before: one with the same, or a new one.
     fn place(&self, all: &mut Vec<Series>, names: &[String]) -> Belongs {
         let places_in = |series: &Series| -> Option<Vec<usize>> {
             if series.topic != self.topic || series.kind != self.kind || series.fields.len() != names.len() {
@@ -214,7 +214,7 @@ impl Channel {
         let known = all.iter().enumerate().find_map(|(series, own)| Some((series, places_in(own)?)));
         let (series, places) = known.unwrap_or_else(|| (all.len(), (0..names.len()).collect()));
         if series == all.len() {
-            let unseen = |name: &String| FieldSeen {
+            let unseen = |name: &String| FieldObserved {
                 name: name.clone(),
                 sample: None,
             };

@@ -16,10 +16,10 @@ pub(super) struct Sheet {
     pub(super) other: Option<&'static str>,
 }
 
-/// What is told of every cell: the cell, bytes done of the sheet, bytes of the sheet.
+/// What is given of every cell: the cell, bytes done of the sheet, bytes of the sheet.
 pub(super) type Visitor<'a> = dyn FnMut(Cell, u64, u64) -> Result<ControlFlow<()>, FileError> + 'a;
 
-/// A workbook whose sheets are known and whose cells are read as they are asked for.
+/// A workbook whose sheets are known and whose cells are read as they are requested.
 pub(super) trait Book: Send + Sync {
     /// Its sheets in their order.
     fn sheets(&self) -> &[Sheet];

@@ -17,7 +17,7 @@ const TRIES: usize = 3;
 /// Reads the chosen columns (numbers from 1, in any order) of a file laid out as `layout` says.
 ///
 /// The file is streamed: memory is 8 bytes for each cell of the chosen columns and a few megabytes besides, and
-/// no more than [`MOST_ROWS`](crate::table::MOST_ROWS) rows are kept: of a longer file successive rows are averaged. `progress` is told the bytes done and the bytes there are,
+/// no more than [`MOST_ROWS`](crate::table::MOST_ROWS) rows are kept: of a longer file successive rows are averaged. `progress` is given the bytes done and the bytes there are,
 /// once for every quarter of a mebibyte or so for each processor and once at the end.
 ///
 /// Blank lines are passed over and counted. Lines at the very end that do not start like data are
@@ -44,21 +44,21 @@ pub fn read_columns(
     let mut row = vec![0.0; distinct.len()];
     let mut suspect: Option<Suspect> = None;
     let mut lacking = Lacking::default();
-    let (mut told, mut reserved) = (0, false);
+    let (mut reported, mut reserved) = (0, false);
     let mut blocks = RowsAhead::new(distinct.len());
     let mut tries = if plan.may_be_plain() && !distinct.is_empty() { TRIES } else { 0 };
     let mut by_lines_until = layout.first_data_line;
     loop {
         let (done, total) = reader.progress();
         let number = reader.line() + 1;
-        if done != told && number > 1 {
+        if done != reported && number > 1 {
             progress(done, total);
-            if told > 0 && !reserved {
+            if reported > 0 && !reserved {
                 // The rows so far came from the pieces before this one.
-                read.reserve(told, total);
+                read.reserve(reported, total);
                 reserved = true;
             }
-            told = done;
+            reported = done;
         }
         if tries > 0 && number >= by_lines_until && suspect.is_none() {
             match blocks.read(&mut reader, &plan, &mut read, progress)? {

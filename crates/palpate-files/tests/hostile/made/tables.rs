@@ -20,7 +20,7 @@ fn numbers(values: &[Option<f64>]) -> ArrayRef {
     Arc::new(Float64Array::from_iter(values.iter().copied()))
 }
 
-/// Four rows of time and the force that is asked for.
+/// Four rows of time and the force that is requested.
 fn press(force: [Option<f64>; 4]) -> RecordBatch {
     table(vec![("time_s", numbers(&[0.0, 0.1, 0.2, 0.3].map(Some))), ("force_N", numbers(&force))])
 }
@@ -136,8 +136,8 @@ fn lying_about_unpacking() -> Vec<u8> {
     let mut writer = StreamWriter::try_new_with_options(Vec::new(), &batch.schema(), packed).expect("a writer");
     writer.write(&batch).expect("rows");
     let stream = writer.into_inner().expect("a stream");
-    let said = place(&stream, &1600_u64.to_le_bytes());
-    with(&stream, said, &(3_u64 << 29).to_le_bytes())
+    let stated = place(&stream, &1600_u64.to_le_bytes());
+    with(&stream, stated, &(3_u64 << 29).to_le_bytes())
 }
 
 pub(super) fn arrow() -> Vec<Made> {
@@ -147,7 +147,7 @@ pub(super) fn arrow() -> Vec<Made> {
     // The second message is the batch: its mark, the length of its description, the description.
     let mark = [0xFF; 4];
     let batch = 4 + place(&stream[4..], &mark);
-    let said = u32::from_le_bytes(*stream[batch + 4..].first_chunk().expect("a length")) as usize;
+    let stated = u32::from_le_bytes(*stream[batch + 4..].first_chunk().expect("a length")) as usize;
     files.extend([
         ("good.arrow", file.clone()),
         ("only_magic.arrow", b"ARROW1".to_vec()),
@@ -159,7 +159,7 @@ pub(super) fn arrow() -> Vec<Made> {
         ("only_schema.arrows", stream[..batch].to_vec()),
         ("cut_in_a_length.arrows", stream[..batch + 6].to_vec()),
         ("cut_in_a_description.arrows", stream[..batch + 20].to_vec()),
-        ("cut_in_a_batch.arrows", stream[..batch + 8 + said + 20].to_vec()),
+        ("cut_in_a_batch.arrows", stream[..batch + 8 + stated + 20].to_vec()),
         ("lying_length_of_a_description.arrows", with(&stream, batch + 4, &[0xFF, 0xFF, 0xFF, 0x03])),
         ("description_overwritten.arrows", with(&stream, batch + 12, &[0xFF; 24])),
         ("lying_length_of_a_packed_column.arrows", lying_about_unpacking()),

@@ -243,7 +243,7 @@ fn old_files_have_their_scalings_in_the_segment() {
 }
 
 #[test]
-fn volts_without_calibration_are_asked_about() {
+fn volts_without_calibration_are_requested_about() {
     let undefined = |text: String| {
         text.replace(
             "lcd-info.0.conversion-set.conversion.distance.defined=true",

@@ -197,7 +197,7 @@ fn segments_without_what_the_others_have_are_skipped_with_a_reason() {
     exports[4].columns = "height vDeflection other seriesTime time";
     let contents = opened(&written(&exports));
     let skipped: Vec<String> = contents.skipped.iter().map(|part| format!("{}: {}", part.name, part.reason)).collect();
-    // The height that all segments have is "height" (in the file as the piezo was told).
+    // The height that all segments have is "height" (in the file as the piezo was given).
     assert_eq!(
         skipped,
         [
@@ -248,7 +248,7 @@ fn refused_as_record(exports: &[Export]) -> ReadError {
 }
 
 #[test]
-fn volts_without_calibration_are_asked_about() {
+fn volts_without_calibration_are_requested_about() {
     let mut exports = press();
     for export in &mut exports {
         export.units = "m V m s s";
@@ -289,7 +289,7 @@ fn record(exports: &[Export], test: &str) -> Result<RecordFile, ReadError> {
 }
 
 #[test]
-fn the_lines_that_are_asked_for_make_volts_a_force_and_an_indentation() {
+fn the_lines_that_are_requested_for_make_volts_a_force_and_an_indentation() {
     let mut exports = press();
     for export in &mut exports {
         export.units = "m V m s s";
@@ -297,8 +297,11 @@ fn the_lines_that_are_asked_for_make_volts_a_force_and_an_indentation() {
     }
     let error = record(&exports, "").unwrap_err();
     let hint = error.hint().unwrap();
-    let (asked, lines) = hint.split_once('\n').unwrap();
-    assert!(asked.starts_with("the file lacks a sensitivity (m/V) or a spring constant (N/m)"), "{asked}");
+    let (requested, lines) = hint.split_once('\n').unwrap();
+    assert!(
+        requested.starts_with("the file lacks a sensitivity (m/V) or a spring constant (N/m)"),
+        "{requested}"
+    );
     let file = record(&exports, lines).unwrap_or_else(|error| panic!("{error}"));
     // 1 µV is 50 fm and 2 fN; the base has gone down by 4 µm.
     let (displacement, force) = (file.record.displacement().unwrap(), file.record.force());
@@ -320,8 +323,8 @@ fn the_lines_that_are_asked_for_make_volts_a_force_and_an_indentation() {
 fn a_deflection_is_taken_off_a_height_and_not_off_an_indentation() {
     let by_itself = record(&press(), "").unwrap();
     let deflection = "[columns.deflection]\ncolumn = \"cantilever deflection\"\n[columns.displacement]\n";
-    let said = record(&press(), &format!("{deflection}column = \"measuredHeight\"\nsign = -1")).unwrap();
-    let (one, other) = (by_itself.record.displacement().unwrap(), said.record.displacement().unwrap());
+    let stated = record(&press(), &format!("{deflection}column = \"measuredHeight\"\nsign = -1")).unwrap();
+    let (one, other) = (by_itself.record.displacement().unwrap(), stated.record.displacement().unwrap());
     assert!(one.iter().zip(other).all(|(one, other)| near(*one, *other)), "{one:?} {other:?}");
     let error = record(&press(), &format!("{deflection}column = \"indentation\"")).unwrap_err();
     assert!(
@@ -336,7 +339,7 @@ fn a_deflection_is_taken_off_a_height_and_not_off_an_indentation() {
 }
 
 #[test]
-fn what_is_wrong_is_said_with_its_place() {
+fn what_is_wrong_is_stated_with_its_place() {
     let with = |change: &dyn Fn(&mut Vec<Export>)| {
         let mut exports = press();
         change(&mut exports);

@@ -56,7 +56,7 @@ fn a_held_cell() {
     // The cell relaxes under the tip: of some 400 nN a part is lost.
     assert!((-4e-7..-1e-8).contains(&change), "{change} N");
     let displacement = file.record.displacement().unwrap();
-    // 20 µm of travel were asked for, and the cantilever takes a little of them.
+    // 20 µm of travel were requested, and the cantilever takes a little of them.
     let travel = displacement[2303] - displacement[256];
     assert!((18e-6..21e-6).contains(&travel), "{travel} m");
 }

@@ -71,7 +71,7 @@ fn variants() {
 }
 
 #[test]
-fn what_is_wrong_is_said_with_its_place() {
+fn what_is_wrong_is_stated_with_its_place() {
     let text = refusal(&file(METADATA, NAMES, "1\t2\t3\t4\t5\n"));
     assert!(text.contains("line 12: expected 6 cells, found 5"), "{text}");
     let text = refusal(&file(METADATA, NAMES, "1\t2\t3\t4\t5\t6\t7\n"));

@@ -62,11 +62,11 @@ fn progress_counts_packed_bytes() {
     let packed = gzip(rows.as_bytes());
     let size = packed.len() as u64;
     let contents = contents("long.gz", packed).expect("a table");
-    let mut told = Vec::new();
-    let read = contents.read(0, &[2], &mut |done, total| told.push((done, total))).expect("a column");
+    let mut reported = Vec::new();
+    let read = contents.read(0, &[2], &mut |done, total| reported.push((done, total))).expect("a column");
     assert_eq!(read.rows(), 1_000_000);
-    assert_eq!(told.last(), Some(&(size, size)));
-    assert!(told.len() > 3 && told.is_sorted());
+    assert_eq!(reported.last(), Some(&(size, size)));
+    assert!(reported.len() > 3 && reported.is_sorted());
 }
 
 #[test]

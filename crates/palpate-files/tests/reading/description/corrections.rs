@@ -15,17 +15,17 @@ fn nothing_is_corrected_unasked() {
 }
 
 #[test]
-fn all_that_can_be_asked_for() {
+fn all_that_can_be_requested_for() {
     let text = r#"
         clock = { skew = "-35 ms", resample = "1 kHz" }
         force = { baseline = "sloped", baseline_window = ["0 s", "1 min"] }
         machine = { compliance = "0.5 um/N" }
     "#;
-    let asked = test(text).unwrap().analysis.corrections;
-    assert_eq!((asked.skew, asked.resample), (SkewChoice::Given(-0.035), Some(1000.0)));
-    assert_eq!((asked.baseline, asked.baseline_window), (Some(Baseline::Sloped), Some((0.0, 60.0))));
-    assert_eq!(asked.compliance, Some(Compliance::Constant(5e-7)));
-    assert_eq!(test(text).unwrap().analysis.corrections, asked);
+    let requested = test(text).unwrap().analysis.corrections;
+    assert_eq!((requested.skew, requested.resample), (SkewChoice::Given(-0.035), Some(1000.0)));
+    assert_eq!((requested.baseline, requested.baseline_window), (Some(Baseline::Sloped), Some((0.0, 60.0))));
+    assert_eq!(requested.compliance, Some(Compliance::Constant(5e-7)));
+    assert_eq!(test(text).unwrap().analysis.corrections, requested);
     assert_eq!(test("clock.skew = \"auto\"").unwrap().analysis.corrections.skew, SkewChoice::Auto);
     let table = "machine.compliance_table = [[\"0 N\", \"0 um\"], [\"10 N\", \"4 um\"]]";
     let Some(Compliance::Table(table)) = test(table).unwrap().analysis.corrections.compliance else {

@@ -4,8 +4,8 @@
 use std::path::Path;
 
 use palpate::calibrate::{
-    Body, CalibrationRange, Candidate, EquilibriumLaw, Material, MaterialParameter, MaterialUncertainty, MaterialUnit,
-    RateLaw,
+    Body, CalibrationRange, Candidate, EquilibriumLaw, Material, MaterialParameter, MaterialParts, MaterialUncertainty,
+    MaterialUnit, RateLaw,
 };
 use palpate::contact::{Curve, Shape, Sides};
 use palpate::fit::Estimate;
@@ -59,7 +59,7 @@ fn material(law: &str, equilibrium: EquilibriumLaw, shape: Shape) -> MaterialFil
     let entry = |i: usize, j: usize| if i == j { 1e-4 * third } else { 1e-5 * third };
     let levels = if equilibrium == EquilibriumLaw::Table { vec![0.001, 0.002, 0.004] } else { Vec::new() };
     MaterialFile {
-        material: Material {
+        material: Material::new(MaterialParts {
             body: Body {
                 shape,
                 sides: Sides::Two,
@@ -81,7 +81,8 @@ fn material(law: &str, equilibrium: EquilibriumLaw, shape: Shape) -> MaterialFil
                 slowest: 0.01 * third,
                 largest_force: 10.0 * third,
             },
-        },
+        })
+        .unwrap(),
         origin: MaterialOrigin {
             record: "press \"3\"\n.csv".to_owned(),
             sha256: "ab12".to_owned(),
@@ -136,18 +137,20 @@ fn a_rate_coefficient_that_depends_on_the_state_is_written_and_read() {
         let mut file = usual();
         let name = rate.factor_name().unwrap();
         let factor = 0.1 + 0.2;
-        file.material.candidate.rate = rate;
-        file.material.parameters.push(number(name, MaterialUnit::One, factor));
-        let covariance = &mut file.material.uncertainty.as_mut().unwrap().covariance;
+        let mut parts = file.material.into_parts();
+        parts.candidate.rate = rate;
+        parts.parameters.push(number(name, MaterialUnit::One, factor));
+        let covariance = &mut parts.uncertainty.as_mut().unwrap().covariance;
         covariance.iter_mut().for_each(|row| row.push(0.0));
         covariance.push(vec![0.0, 0.0, 0.0, 0.0, 1e-3]);
+        file.material = Material::new(parts).unwrap();
         let text = file.to_toml();
         assert!(text.contains(&format!("{name} = 0.30000000000000004")), "{text}");
         assert_eq!(parse_material(&text, Path::new("m.toml")).unwrap(), file, "{text}");
         // The same in a protocol, which is not calibrated.
         let steps = "[[step]]\nto = \"5 mm\"\nrate = \"10 mm/s\"\nhold = \"10 s\"\n";
         let protocol = parse_protocol(&format!("{text}\n{steps}"), Path::new("p.toml")).unwrap();
-        assert_eq!(protocol.contact, file.material.contact());
+        assert_eq!(&protocol.contact, file.material.contact());
         let changed = text.replacen(&format!("{name} = 0.3"), &format!("{name} = 0.4"), 1);
         let error = parse_material(&changed, Path::new("m.toml")).unwrap_err().to_string();
         assert!(error.contains(&format!("law.{name}")) && error.contains("no longer calibrated"), "{error}");
@@ -169,10 +172,12 @@ fn a_rate_coefficient_that_depends_on_the_state_is_written_and_read() {
 #[test]
 fn a_material_without_intervals_is_one_too() {
     let mut file = usual();
-    file.material.uncertainty = None;
-    for number in &mut file.material.parameters {
-        number.estimate = Estimate::fixed(number.estimate.value);
+    let mut parts = file.material.into_parts();
+    parts.uncertainty = None;
+    for parameter in &mut parts.parameters {
+        parameter.estimate = Estimate::fixed(parameter.estimate.value);
     }
+    file.material = Material::new(parts).unwrap();
     file.origin.test = None;
     assert_eq!(parse_material(&file.to_toml(), Path::new("m.toml")).unwrap(), file);
 }
@@ -187,14 +192,14 @@ fn a_material_is_the_body_of_a_protocol_and_of_a_test() {
     let named = folder.path().join("named.toml");
     std::fs::write(&named, format!("material = \"soft.toml\"\n{steps}")).unwrap();
     let protocol = read_protocol(&named).unwrap();
-    let contact = file.material.contact();
+    let contact = file.material.contact().clone();
     assert_eq!(protocol.contact, contact);
     let text = self_contained(&std::fs::read_to_string(&named).unwrap(), &named).unwrap();
     assert_eq!(parse_protocol(&text, Path::new("elsewhere.toml")).unwrap(), protocol);
     // The file itself is a protocol, once it has steps.
     let whole = parse_protocol(&format!("{}\n{steps}", file.to_toml()), Path::new("p.toml")).unwrap();
     assert_eq!(whole.contact, contact);
-    // Another body in the protocol is left aside only where that is asked for.
+    // Another body in the protocol is left aside only where that is requested.
     let other = format!(
         "specimen = {{ shape = \"ball\", radius = \"20 mm\", modulus = \"1 kPa\" }}\nlaw = {{ name = \"latency\", exponent = 2, rate_coefficient = \"1 /s\" }}\n{steps}"
     );
@@ -204,7 +209,7 @@ fn a_material_is_the_body_of_a_protocol_and_of_a_test() {
     std::fs::write(&bodied, format!("material = \"soft.toml\"\n{other}")).unwrap();
     let both = read_protocol(&bodied).unwrap_err();
     assert!(both.to_string().contains("specimen") && both.to_string().contains("material"), "{both}");
-    // A missing file is told by its own name.
+    // A missing file is recognised by its own name.
     std::fs::write(&named, format!("material = \"none.toml\"\n{steps}")).unwrap();
     assert!(read_protocol(&named).unwrap_err().to_string().contains("none.toml: no such file"));
 
@@ -217,7 +222,7 @@ fn a_material_is_the_body_of_a_protocol_and_of_a_test() {
     assert!(parse_test(text, &path).unwrap_err().to_string().contains("law"));
 }
 
-/// `palpate grip ball.toml` and `palpate simulate ball.toml` said which keys were wrong, and not that the file was another one.
+/// `palpate grip ball.toml` and `palpate simulate ball.toml` stated which keys were wrong, and not that the file was another one.
 #[test]
 fn a_description_of_another_kind_is_refused_as_what_it_is() {
     let test = "[about]\ntitle = \"Ball\"\n[specimen]\nshape = \"ball\"\nradius = \"35 mm\"\n";
@@ -319,11 +324,11 @@ fn what_is_no_material_is_refused_with_its_place() {
         ("slowest = \"", "slowest = \"900", "calibration.range.slowest", "no more than the fastest"),
         ("sha256 = \"ab12\"\n", "", "calibration.sha256", "missing"),
     ];
-    for (from, to, key, told) in cases {
+    for (from, to, key, reported) in cases {
         assert!(text.contains(from), "{from}: {text}");
         let error = parse_material(&text.replacen(from, to, 1), Path::new("m.toml")).unwrap_err();
         let message = error.to_string();
-        assert!(message.contains(key) && message.contains(told), "{from} -> {to}: {message}");
+        assert!(message.contains(key) && message.contains(reported), "{from} -> {to}: {message}");
         assert!(error.hint().is_some(), "{message}");
     }
     let plain = text.split("# What follows").next().unwrap();

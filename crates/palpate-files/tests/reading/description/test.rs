@@ -16,7 +16,7 @@ use palpate_files::{
 use super::{says, test};
 
 #[test]
-fn nothing_said_is_the_default() {
+fn nothing_stated_is_the_default() {
     let nothing = test("").unwrap();
     assert_eq!(nothing, TestDescription::default());
     assert_eq!(nothing.analysis.exponents, [1.0, 2.0, 3.0, 5.0, 7.0]);
@@ -24,7 +24,7 @@ fn nothing_said_is_the_default() {
 }
 
 #[test]
-fn everything_said() {
+fn everything_stated() {
     let text = r#"
         about = { title = "a", source = "b", note = "c" }
         file = { delimiter = "semicolon", decimal = "comma", encoding = "gbk", skip_lines = 2, header = false }

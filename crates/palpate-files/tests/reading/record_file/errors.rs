@@ -66,7 +66,7 @@ fn names_that_say_nothing() {
 }
 
 #[test]
-fn units_are_asked_for() {
+fn units_are_requested_for() {
     let table = "Time,Pos,Force,GoalForce\n0,1,2,3\n1,2,3,4\n";
     let error = says(
         table,
@@ -122,7 +122,7 @@ fn units_of_other_machines_are_led_to_what_a_record_needs() {
     assert_eq!(read(modulus, &pasted(&error)).unwrap().record.force(), [1000.0, 2000.0]);
 }
 
-/// A creep logged as strain under one stress was told to check its load cell.
+/// A creep logged as strain under one stress was given to check its load cell.
 #[test]
 fn a_strain_under_constant_stress_is_led_to_creep() {
     let table = "t\tstrain\tstress\ns\t-\tPa\n0\t0.01\t10\n1\t0.02\t10\n2\t0.025\t10\n";
@@ -242,7 +242,7 @@ fn many_columns_are_not_all_shown() {
 
 /// A column in mm of a name that was not known was left aside, and the record passed for one of force alone.
 #[test]
-fn a_length_of_unknown_name_is_asked_about() {
+fn a_length_of_unknown_name_is_requested_about() {
     let table = "Zeit [s];Vorschub [mm];Kraft [N]\n0;0,5;1,5\n1;1,5;2,5\n2;1,5;2,1\n";
     let error = says(
         table,
@@ -256,7 +256,7 @@ fn a_length_of_unknown_name_is_asked_about() {
     assert_eq!(with.record.displacement(), Some([0.5e-3, 1.5e-3, 1.5e-3].as_slice()));
     let without = read(table, without).unwrap();
     assert_eq!(without.record.displacement(), None);
-    // A letter that usually stands for a length is asked about as well; what no length can be is not.
+    // A letter that usually stands for a length is in question as well; what no length can be is not.
     says(
         "t,z,F\n0,1,1\n1,2,2\n2,2,1\n",
         "columns.time.unit = \"s\"\ncolumns.force.unit = \"N\"",
@@ -267,9 +267,9 @@ fn a_length_of_unknown_name_is_asked_about() {
     assert!(read("Time (s),Max displacement (mm),Force (N)\n0,20,1\n1,20,2\n2,20,1\n", "").is_ok());
 }
 
-/// The row of units won over the unit in the name: forces a thousand times too large, and nothing said.
+/// The row of units won over the unit in the name: forces a thousand times too large, and nothing stated.
 #[test]
-fn two_units_for_one_column_are_asked_about() {
+fn two_units_for_one_column_are_requested_about() {
     let table = "Time (s),Force (N)\ns,kN\n0,1\n1,2\n2,1\n";
     let error = says(
         table,

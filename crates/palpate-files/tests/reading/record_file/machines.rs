@@ -157,7 +157,7 @@ fn every_testing_machine_has_a_file_here() {
 }
 
 #[test]
-fn a_file_is_told_by_the_names_of_its_columns() {
+fn a_file_is_reported_by_the_names_of_its_columns() {
     let fitting = |text: &str| -> Vec<&str> {
         let input = Input::from_bytes("press.csv", text.as_bytes()).unwrap();
         let contents = Contents::of(input, &ReadOptions::default()).unwrap();

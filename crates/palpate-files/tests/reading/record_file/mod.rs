@@ -1,4 +1,4 @@
-//! From a file to a record: choosing columns, units, clocks, and what is asked where they are not clear.
+//! From a file to a record: choosing columns, units, clocks, and what is requested where they are not clear.
 
 mod choosing;
 mod errors;

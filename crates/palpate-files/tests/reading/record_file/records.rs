@@ -191,9 +191,9 @@ fn headers_that_tell_all() {
         let path = folder.join(name);
         let file = open(&path, None);
         assert_eq!((file.rows, numbers(&file).as_slice()), (rows, columns.as_slice()), "{name}");
-        let told = open(&path, Some(&example(example_name)));
-        assert_eq!(told.record, file.record, "{name}");
-        assert_eq!(told.columns, file.columns, "{name}");
+        let reported = open(&path, Some(&example(example_name)));
+        assert_eq!(reported.record, file.record, "{name}");
+        assert_eq!(reported.columns, file.columns, "{name}");
     }
     let file = open(&folder.join("tendon/fresh_1.csv"), None);
     assert_eq!(numbers(&file), [4, 1, 2]);
@@ -202,7 +202,7 @@ fn headers_that_tell_all() {
 }
 
 #[test]
-fn grippers_and_muscle_are_asked_for_units() {
+fn grippers_and_muscle_are_requested_for_units() {
     let Some(folder) = folder() else { return };
     let path = folder.join("gripper-fruit/banana_ForceData_20240824_210940_refined.csv");
     let text = refused(&path).to_string();

@@ -14,7 +14,7 @@ use super::{
     writing::{Cdr, Log, Packing, START, force_at, gripper, joint_state, wrench},
 };
 
-const SAID: &str = r#"
+const STATED: &str = r#"
     columns.displacement = { column = "/joint_states.position[finger]", unit = "m" }
     columns.force.column = "/ft.wrench.force.z"
 "#;
@@ -58,7 +58,7 @@ fn topics_become_columns_with_clocks() {
 
 #[test]
 fn a_record_is_made_of_two_topics() {
-    let file = record(&gripper(Log::chunked()), SAID).unwrap();
+    let file = record(&gripper(Log::chunked()), STATED).unwrap();
     let roles: Vec<Role> = file.columns.iter().map(|column| column.role).collect();
     let [displacement, force] = [Quantity::Displacement, Quantity::Force];
     let clocks = [Role::ClockOf(displacement), Role::ClockOf(force)];
@@ -76,7 +76,7 @@ fn a_record_is_made_of_two_topics() {
 
 #[test]
 fn every_way_to_write_it_gives_the_same() {
-    let plain = record(&gripper(Log::chunked()), SAID).unwrap().record;
+    let plain = record(&gripper(Log::chunked()), STATED).unwrap().record;
     let chunked = || WriteOptions::new().chunk_size(Some(1500));
     let ways = [
         ("zstd", Log::chunked().packed(Packing::Zstd)),
@@ -88,7 +88,7 @@ fn every_way_to_write_it_gives_the_same() {
         ("no checksums", Log::new(chunked().calculate_chunk_crcs(false).calculate_data_section_crc(false))),
     ];
     for (way, log) in ways {
-        assert_eq!(record(&gripper(log), SAID).unwrap().record, plain, "{way}");
+        assert_eq!(record(&gripper(log), STATED).unwrap().record, plain, "{way}");
     }
 }
 
@@ -109,7 +109,7 @@ fn a_field_may_be_named_without_its_topic_and_needs_no_name_if_it_is_alone() {
         columns.displacement = { column = "position[finger]", unit = "m" }
         columns.force.column = "wrench.force.z"
     "#;
-    assert_eq!(record(&log, short).unwrap().record, record(&log, SAID).unwrap().record);
+    assert_eq!(record(&log, short).unwrap().record, record(&log, STATED).unwrap().record);
     let error = record(&log, "columns.displacement = { column = \"position[finger]\", unit = \"m\" }").unwrap_err();
     let text = error.to_string();
     assert!(text.contains("expected one column of force, found column 9 (/ft.wrench.force.x) and"), "{text}");

@@ -1,6 +1,6 @@
 //! Writing logs: messages by hand, the container by the reference library, its chunks packed here.
 //!
-//! The library packs chunks itself with features that the product does without; tests that asked for them would have all that
+//! The library packs chunks itself with features that the product does without; tests that requested them would have all that
 //! depends on zstd compiled twice.
 
 use std::{collections::BTreeMap, io::Cursor};

@@ -110,14 +110,14 @@ fn cells_out_of_order_and_outside_of_any_sheet() {
 
 #[test]
 fn counts_that_lie_take_no_memory() {
-    for said in [10_000_000, u64::MAX] {
+    for stated in [10_000_000, u64::MAX] {
         let book = Book {
-            strings_said: said,
+            strings_stated: stated,
             ..Book::of(&[("one", &[])])
         };
         let text = message(open(&book.bytes()));
         assert!(
-            text.ends_with(&format!("expected as many shared texts as there are bytes for, found {said}")),
+            text.ends_with(&format!("expected as many shared texts as there are bytes for, found {stated}")),
             "{text}"
         );
     }
@@ -149,7 +149,7 @@ fn sheets_beyond_any_workbook_are_refused() {
 }
 
 #[test]
-fn styles_that_would_not_be_found_are_told() {
+fn styles_that_would_not_be_found_are_reported() {
     let mut book = small_book();
     book.styles = "formats/styles.xml";
     let text = message(open(&book.bytes()));
@@ -192,7 +192,7 @@ fn packed_workbooks_are_read() {
 }
 
 #[test]
-fn other_documents_in_archives_are_told_from_workbooks() {
+fn other_documents_in_archives_are_reported_from_workbooks() {
     use std::io::Write;
     for (part, xml, found) in [
         ("word/document.xml", "<document/>", "expected a workbook with sheets, found word/document.xml"),
@@ -244,7 +244,7 @@ fn records_of_old_workbooks_that_lie_take_neither_memory_nor_time() {
 }
 
 #[test]
-fn what_old_workbooks_hold_too_much_of_or_lack_is_told() {
+fn what_old_workbooks_hold_too_much_of_or_lack_is_reported() {
     let corner = [xls_book::number(65_535, 255, 1.0)];
     let text = message(open(&old(&corner)));
     assert!(

@@ -22,7 +22,7 @@ fn zwick(name: &'static str) -> Vec<Vec<C>> {
 }
 
 #[test]
-fn every_sheet_with_a_test_is_a_part_and_the_others_are_told() {
+fn every_sheet_with_a_test_is_a_part_and_the_others_are_reported() {
     let parameters =
         vec![vec![T("Opérateur"), E, T("S")], vec![T("HR"), T("%"), N(25.0)], vec![T("TA"), T("°C"), N(28.0)]];
     let results = vec![
@@ -124,10 +124,10 @@ fn more_rows_than_the_sample_and_a_table_that_goes_on_below_it() {
     let mut table = vec![vec![T("t"), T("F")], vec![T("s"), T("N")]];
     table.extend((0..6000).map(|row| vec![N(f64::from(row)), N(1.0)]));
     let contents = open(&Book::of(&[("long", &table)]).bytes()).expect("a workbook");
-    let mut told = Vec::new();
-    let read = contents.read(0, &[1, 2], &mut |done, total| told.push((done, total))).expect("columns");
+    let mut reported = Vec::new();
+    let read = contents.read(0, &[1, 2], &mut |done, total| reported.push((done, total))).expect("columns");
     assert_eq!((read.rows(), read.values[0][5999]), (6000, 5999.0));
-    assert!(told.len() >= 2 && told.iter().all(|(done, total)| done <= total), "{told:?}");
+    assert!(reported.len() >= 2 && reported.iter().all(|(done, total)| done <= total), "{reported:?}");
 
     table.push(vec![T("second"), T("test")]);
     table.push(vec![N(0.0), N(1.0)]);

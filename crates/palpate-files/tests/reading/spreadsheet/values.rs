@@ -37,7 +37,7 @@ fn a_faulty_cell_is_an_error_that_names_it() {
             format!("book: sheet Foo, cell B4: expected {found}").replace("book: ", "book, ")
         );
         assert!(error.hint().is_some());
-        // A column that is not asked for may hold anything.
+        // A column that is not requested may hold anything.
         assert_eq!(read(&contents, 0, &[1, 3]).expect("other columns").rows(), 4);
     }
 }

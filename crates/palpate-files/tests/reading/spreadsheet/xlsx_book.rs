@@ -10,9 +10,9 @@ pub(crate) struct Book {
     pub(crate) sheets: Vec<(String, String)>,
     pub(crate) strings: String,
     /// How many shared texts it says there are.
-    pub(crate) strings_said: u64,
+    pub(crate) strings_stated: u64,
     pub(crate) formats: Vec<&'static str>,
-    /// Where its styles are said to be, if not where they are.
+    /// Where its styles are stated to be, if not where they are.
     pub(crate) styles: &'static str,
     pub(crate) from_1904: bool,
     pub(crate) charts: Vec<&'static str>,
@@ -113,7 +113,7 @@ impl Book {
         put("xl/_rels/workbook.xml.rels", &format!("<Relationships>{related}</Relationships>"));
         put(
             "xl/sharedStrings.xml",
-            &format!("<sst uniqueCount=\"{}\">{}</sst>", self.strings_said, self.strings),
+            &format!("<sst uniqueCount=\"{}\">{}</sst>", self.strings_stated, self.strings),
         );
         let format =
             |(index, code): (usize, &&str)| format!("<numFmt numFmtId=\"{}\" formatCode=\"{code}\"/>", 164 + index);

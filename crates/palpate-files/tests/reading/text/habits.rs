@@ -135,7 +135,7 @@ fn symbols_that_are_also_units() {
 }
 
 #[test]
-fn separator_told_to_a_spreadsheet() {
+fn separator_reported_to_a_spreadsheet() {
     let layout = layout("sep=;\nt;F\n0;1,5\n1;2,5\n");
     assert_eq!((layout.header_line, layout.first_data_line), (Some(2), 3));
     assert_eq!(layout.metadata, []);
@@ -184,7 +184,7 @@ fn rheometer_export() {
 }
 
 #[test]
-fn footer_is_passed_over_and_told() {
+fn footer_is_passed_over_and_reported() {
     let text = "t,F\n0,1.5\n\n1,2.5\n\nEnd of test\nOperator,me\n,\n,,\n";
     let columns = read(text, &[1, 2]).expect("columns");
     assert_eq!(columns.rows(), 2);
@@ -197,7 +197,7 @@ fn footer_is_passed_over_and_told() {
 
 #[test]
 fn summary_behind_the_data_is_no_row() {
-    // Only the second column is asked for, but the first tells the summary from a row.
+    // Only the second column is requested, but the first tells the summary from a row.
     let columns = read("t,F\n0,1.5\n1,2.5\nMax,2.5\n", &[2]).expect("columns");
     assert_eq!(columns.values, [[1.5, 2.5]]);
     assert!(columns.ignored.footer.is_some());
@@ -248,10 +248,10 @@ fn progress_reaches_the_end() {
     let rows: String = (0..200_000).map(|row| format!("{row},0.25\n")).collect();
     let file = written(&rows);
     let layout = layout(&rows);
-    let mut told = Vec::new();
+    let mut reported = Vec::new();
     let input = Input::open(&file.path).expect("a file");
     let columns = read_columns(&input, &layout, &[1, 2], &mut |done, total| {
-        told.push((done, total));
+        reported.push((done, total));
     })
     .expect("columns");
     assert_eq!(columns.rows(), 200_000);
@@ -259,8 +259,8 @@ fn progress_reaches_the_end() {
     assert_eq!(columns.line_of(199_999), Some(200_000));
     let size = rows.len() as u64;
     assert_eq!(columns.bytes, size);
-    assert_eq!(told.last(), Some(&(size, size)));
-    assert!(told.len() > 5 && told.is_sorted());
+    assert_eq!(reported.last(), Some(&(size, size)));
+    assert!(reported.len() > 5 && reported.is_sorted());
 }
 
 /// Long files are read many rows at once, on all processors, wherever rows are plain; nobody can tell.
@@ -294,7 +294,7 @@ fn a_long_file_is_read_like_a_short_one() {
 
 /// Odd lines anywhere in a long file: with its first cells in quotes, so that every row is read with care, it gives the same.
 #[test]
-fn odd_lines_in_a_long_file_are_seen_as_in_any() {
+fn odd_lines_in_a_long_file_are_observed_as_in_any() {
     const ODD: [&str; 8] = ["", " 1.5 , 2,3", "+1,2,3", "1e0,2,3", "1,2,3,", "1,2", "x,y,z", "1,2\r,3"];
     let mut state = 7_u64;
     let mut random = |below: usize| {

@@ -21,7 +21,7 @@ pub enum FigureError {
     Image {
         /// Name of the figure.
         figure: String,
-        /// What the encoder said.
+        /// What the encoder stated.
         reason: String,
     },
     /// The figure could not be turned into pixels.
@@ -29,7 +29,7 @@ pub enum FigureError {
     Raster {
         /// Name of the figure.
         figure: String,
-        /// What the renderer said.
+        /// What the renderer stated.
         reason: String,
     },
 }

@@ -22,7 +22,7 @@ pub enum Arrangement {
 pub struct Figure {
     /// Name of the figure, fit for a file name without extension.
     pub name: String,
-    /// Caption; also what a reader who cannot see the figure is told.
+    /// Caption; also what a reader who cannot see the figure is given.
     pub caption: String,
     pub(crate) panels: Vec<Panel>,
     pub(crate) arrangement: Arrangement,
@@ -32,7 +32,7 @@ pub struct Figure {
 }
 
 impl Figure {
-    /// A figure without panels, stacked unless told otherwise.
+    /// A figure without panels, stacked unless stated otherwise.
     #[must_use]
     pub fn new(name: impl Into<String>, caption: impl Into<String>) -> Self {
         Self {

@@ -132,11 +132,11 @@ pub(crate) fn points(positions: Vec<Position>) -> Vec<Position> {
     }
     let mut cell = 0.4;
     loop {
-        let mut seen = std::collections::HashSet::new();
+        let mut observed = std::collections::HashSet::new();
         let mut kept: Vec<Position> = positions
             .iter()
             .copied()
-            .filter(|(x, y)| seen.insert(((x / cell) as i64, (y / cell) as i64)))
+            .filter(|(x, y)| observed.insert(((x / cell) as i64, (y / cell) as i64)))
             .collect();
         if kept.len() <= 2 * PLAIN {
             extremes.empty_into(&mut kept);

@@ -13,7 +13,7 @@ use crate::study::grid::displacement_panel;
 use crate::table::{Cell, Table};
 use crate::wrap::wrapped;
 
-/// The laws on the record, in the order in which they were asked for.
+/// The laws on the record, in the order in which they were requested.
 fn laws(record: &CalibratedRecord) -> Table {
     let (fitted, all) = (record.data.fitted(), record.data.times().len());
     let until = record.data.times()[fitted - 1] - record.data.times()[0];
@@ -52,13 +52,13 @@ pub fn material_table(material: &Material) -> Table {
 /// The same with profile intervals, where there are any.
 fn law_table(material: &Material, profiles: &[ParameterProfile]) -> Table {
     const LEFT_OPEN: &str = "not determined by the record";
-    let share = material.uncertainty.as_ref().map_or(0.95, |uncertainty| uncertainty.confidence);
+    let share = material.uncertainty().map_or(0.95, |uncertainty| uncertainty.confidence);
     let parameters = parameters_of_material(material, true);
     let estimate = |parameter: &ParameterDocument| match (parameter.role.as_str(), parameter.interval) {
         ("estimated", None) => Cell::missing(LEFT_OPEN),
         _ => Cell::text(parameter.shown().0),
     };
-    let caption = format!("Parameters of the law {} with {} intervals.", material.candidate, percent(share));
+    let caption = format!("Parameters of the law {} with {} intervals.", material.candidate(), percent(share));
     let mut table = Table::of("law", caption, &parameters)
         .column("Parameter", "parameter", "", |(name, _)| Cell::text(name.as_str()))
         .column("Value", "value", "", |(_, parameter)| estimate(parameter))
@@ -122,7 +122,7 @@ pub fn calibration_figure(record: &CalibratedRecord, name: &str) -> Figure {
     let mut left = Panel::over_time("Measured − simulated", "N");
     for (index, made) in record.made().take(MOST).enumerate() {
         let role = if index == 0 { Role::Fitted } else { Role::Alternative(index as u8 - 1) };
-        let law = made.material.candidate.to_string();
+        let law = made.material.candidate().to_string();
         force = force.layer(Layer::line(times.to_vec(), made.simulated.clone(), role).label(law));
         let residuals = forces.iter().zip(&made.simulated).map(|(measured, simulated)| measured - simulated).collect();
         left = left.layer(Layer::line(times.to_vec(), residuals, role));

@@ -10,7 +10,7 @@ use crate::result::{ComparedHold, ComparedRecord, law_of_record};
 use crate::study::findings::entry;
 use crate::study::grid::by_hold;
 
-/// Laws that a panel shows; there are no more markers that can be told apart.
+/// Laws that a panel shows; there are no more markers that can be distinguished.
 const MOST_LAWS: usize = 8;
 /// The same where a figure has several panels.
 const FEWER_LAWS: usize = 5;

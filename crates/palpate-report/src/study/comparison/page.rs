@@ -33,7 +33,7 @@ pub fn comparison_bundle(
         if !found.is_empty() {
             section = section
                 .block(Block::Subheading("Findings".to_owned()))
-                .block(Block::Findings(found.iter().map(findings::Gathered::told).collect()));
+                .block(Block::Findings(found.iter().map(findings::Gathered::reported).collect()));
         }
         page = page
             .section(section)

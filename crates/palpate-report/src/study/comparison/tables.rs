@@ -12,7 +12,7 @@ use crate::wrap::wrapped;
 const NO_FIT: &str = "could not be fitted";
 const NO_FORECAST: &str = "its first part could not be fitted, or no samples follow it";
 
-/// What the columns mean; told once below all tables.
+/// What the columns mean; reported once below all tables.
 pub(super) const NOTES: [&str; 3] = [
     "p: parameters of the law (of the spectrum those that the data determine). RMSE: root mean square residual of the fit to the whole hold, in % of the change.",
     "Held-out errors of fits to the first part of the hold (its share heads the column), over all later samples, in % of the change; score: their root mean square.",
@@ -163,17 +163,17 @@ pub fn comparison_text(records: &[ComparedRecord], left_out: &[LeftOut]) -> Stri
 #[must_use]
 pub fn comparison_markdown(records: &[ComparedRecord], left_out: &[LeftOut], laws: &[Law]) -> String {
     let rows: Vec<_> = records.iter().flat_map(|record| record.holds.iter().map(move |hold| (record, hold))).collect();
-    let verdict = |hold: &ComparedHold, told: fn(&Verdict) -> String| {
+    let verdict = |hold: &ComparedHold, reported: fn(&Verdict) -> String| {
         let verdict = hold.comparison.as_ref().and_then(|found| found.verdict.as_ref());
-        Cell::text(verdict.map_or("–".to_owned(), told))
+        Cell::text(verdict.map_or("–".to_owned(), reported))
     };
     let mut columns = Table::of("comparison", "", &rows)
         .column("Record", "record", "", |(record, _)| Cell::text(record.input.called()))
         .column("Hold", "hold", "", |(_, hold)| Cell::Integer(hold.number as i64));
     for law in laws {
         columns = columns.column(law.to_string(), law.to_string(), "", |(_, hold)| {
-            let told = hold.comparison.as_ref().and_then(|found| overview(found, *law));
-            Cell::text(told.unwrap_or("–".to_owned()))
+            let reported = hold.comparison.as_ref().and_then(|found| overview(found, *law));
+            Cell::text(reported.unwrap_or("–".to_owned()))
         });
     }
     let mut table = columns
@@ -224,18 +224,18 @@ pub(super) fn left_out_line(file: &LeftOut) -> String {
 fn overview(comparison: &Comparison, law: Law) -> Option<String> {
     let row = row_of(comparison, law)?;
     let figure = comparison.figure(row)?;
-    let told = match comparison.ranking {
+    let reported = match comparison.ranking {
         Ranking::Forward => significant(100.0 * figure, 2),
         Ranking::Information => format!("Δ{}", significant(figure, 2)),
     };
     let best = comparison.rows.iter().filter(|row| row.is_good()).find_map(|row| comparison.figure(row));
     // What did not end at an optimum is set apart: its figure may be good, its parameters are not.
-    let told = if row.is_good() { told } else { format!("({told})") };
-    Some(if best == Some(figure) { format!("**{told}**") } else { told })
+    let reported = if row.is_good() { reported } else { format!("({reported})") };
+    Some(if best == Some(figure) { format!("**{reported}**") } else { reported })
 }
 
 fn sure(verdict: &Verdict) -> String {
-    match (verdict.certainty, verdict.alike.len()) {
+    match (verdict.certainty, verdict.indistinguishable.len()) {
         (Certainty::Clear | Certainty::Likely, 1) => word(verdict.certainty),
         (certainty, alike) => format!("{}, {} not distinguishable", word(certainty), alike - 1),
     }

@@ -5,7 +5,7 @@ use palpate::calibrate::Prediction;
 use crate::figure::{Axis, Figure, Layer, Panel, Role};
 use crate::result::{GrippedBody, percent};
 
-/// The grips over time: force with the limit at which it slips, margin over that limit, displacement of the jaws; the one that is asked about
+/// The grips over time: force with the limit at which it slips, margin over that limit, displacement of the jaws; the one that is in question
 /// with its band.
 #[must_use]
 pub fn grip_figure(body: &GrippedBody<'_>, name: &str) -> Figure {
@@ -20,7 +20,7 @@ pub fn grip_figure(body: &GrippedBody<'_>, name: &str) -> Figure {
     let shown: Vec<(&str, Role, &Prediction)> =
         all.filter_map(|((name, role), course)| Some((name, role, course?.ok()?))).collect();
     let closing = answer.squeeze.as_ref().map_or(body.grip.limits().closing.unwrap_or(2.0), |made| made.found.closing);
-    // A hold that is long beside the squeeze is told by its logarithm.
+    // A hold that is long beside the squeeze is recognised by its logarithm.
     let axis = || {
         if answer.shown > 30.0 * closing {
             Axis::log("Time", "s").range(0.1 * closing, closing + answer.shown)

@@ -181,10 +181,12 @@ fn trend_sentence(analysis: &Analysis) -> Option<String> {
     ))
 }
 
-/// Findings of the record and of its holds; the same finding of several holds is told once.
+/// Findings of the record and of its holds; the same finding of several holds is given once.
 fn findings(analysis: &Analysis) -> Vec<Block> {
-    let list: Vec<_> =
-        findings::gathered(analysis, findings::MOST_LINES).iter().map(findings::Gathered::told).collect();
+    let list: Vec<_> = findings::gathered(analysis, findings::MOST_LINES)
+        .iter()
+        .map(findings::Gathered::reported)
+        .collect();
     if list.is_empty() {
         vec![Block::paragraph("No findings: the holds are long enough, with low noise, for the estimates below.")]
     } else {

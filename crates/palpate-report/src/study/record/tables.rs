@@ -27,7 +27,7 @@ fn parameter(fit: &LatencyFit, kind: ParameterKind) -> Cell {
 
 /// A correction in words, if neither a finding nor first touch tells of it.
 fn untold(done: &Correction) -> Option<String> {
-    let told = matches!(
+    let reported = matches!(
         done,
         Correction::Tared(_)
             | Correction::StampsSorted { .. }
@@ -36,7 +36,7 @@ fn untold(done: &Correction) -> Option<String> {
             | Correction::StressAsForce
             | Correction::DropoutsReplaced { .. }
     );
-    (!told).then(|| done.to_string())
+    (!reported).then(|| done.to_string())
 }
 
 /// One row a hold: where it lies, what the force does.
@@ -178,7 +178,7 @@ pub(super) fn exponents(analysis: &Analysis) -> Table {
         .column("Holds where it is not distinguishable from the best", "holds_indistinguishable", "", |(n, _)| {
             let orders = analysis.holds.iter().filter_map(|hold| hold.order.as_ref());
             let candidates = orders.flat_map(|order| &order.candidates);
-            Cell::Integer(candidates.filter(|c| !c.free && c.exponent == *n && c.as_good_as_best).count() as i64)
+            Cell::Integer(candidates.filter(|c| !c.free && c.exponent == *n && c.indistinguishable).count() as i64)
         })
         .column("Verdict", "verdict", "", |(n, delta)| {
             Cell::text(match delta {
@@ -313,9 +313,9 @@ pub fn analysis_text(analysis: &Analysis, input: &Input) -> String {
     if analysis.options.compare.is_some() {
         text.push_str(&comparison_tables::verdict_text(&compared));
     }
-    let asked: Vec<String> = analysis.record.corrections().iter().filter_map(untold).collect();
-    if !asked.is_empty() {
-        text.push_str(&format!("Corrections\n  {}\n\n", asked.join("\n  ")));
+    let requested: Vec<String> = analysis.record.corrections().iter().filter_map(untold).collect();
+    if !requested.is_empty() {
+        text.push_str(&format!("Corrections\n  {}\n\n", requested.join("\n  ")));
     }
     let findings = findings::plain(&gathered);
     if !findings.is_empty() {

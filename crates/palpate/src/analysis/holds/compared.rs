@@ -5,7 +5,7 @@ use crate::fit::{Fit, FitError, Termination};
 use crate::forecast::Comparison;
 use crate::laws::Law;
 use crate::record::Record;
-use crate::segment::{After, HoldMode, PARTS, SEEN, Segment, change, error_of_mean};
+use crate::segment::{After, HoldMode, OBSERVED, PARTS, Segment, change, error_of_mean};
 use crate::statistics::{mean, range};
 use crate::watch::Cancelled;
 
@@ -29,7 +29,7 @@ pub(super) fn comparison_findings(comparison: &Comparison) -> Vec<Finding> {
     });
     // A law that contains the chosen one predicts at least as well.
     let alike = comparison.verdict.as_ref().map_or_else(Vec::new, |verdict| {
-        let alternatives = verdict.alike.iter().filter(|law| !law.contains(verdict.law));
+        let alternatives = verdict.indistinguishable.iter().filter(|law| !law.contains(verdict.law));
         [verdict.law].iter().chain(alternatives).copied().collect()
     });
     let mut findings = Vec::new();
@@ -73,7 +73,7 @@ fn drift(record: &Record, segment: &Segment) -> Option<Finding> {
     let parts = means(force);
     let lowest = parts.iter().copied().fold(f64::MAX, f64::min);
     let (rise, fall) = (parts[PARTS - 1] - lowest, parts[0] - lowest);
-    let seen = rise > SEEN * std::f64::consts::SQRT_2 * error_of_mean(force);
+    let observed = rise > OBSERVED * std::f64::consts::SQRT_2 * error_of_mean(force);
     let matters = rise > LEAST_SHARES[0] * fall && rise > LEAST_SHARES[1] * range(record.force());
-    (seen && matters).then_some(Finding::DriftInsteadOfRelaxation { rise, fall })
+    (observed && matters).then_some(Finding::DriftInsteadOfRelaxation { rise, fall })
 }

@@ -14,6 +14,7 @@ use crate::watch::{Cancelled, Watch};
 
 /// One hold of constant force, with the laws of creep compared on it.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct CreepHold {
     /// Number of the hold in the record, from 1.
     pub number: usize,
@@ -39,6 +40,7 @@ pub struct CreepHold {
 
 /// Why a record holds no creep.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum CreepError {
     /// The watch ended the work.
     #[error(transparent)]
@@ -92,7 +94,7 @@ fn of_force(error: SegmentError) -> CreepError {
 }
 
 /// Holds of constant force: of given ones all but those in which the displacement is held; else those over which the jaw is
-/// seen to creep, or else all in which the force stays.
+/// observed to creep, or else all in which the force stays.
 fn force_held(
     record: &Record,
     exchanged: &Record,
@@ -104,10 +106,10 @@ fn force_held(
         return creeping(&found, |hold| hold.mode != Some(HoldMode::DisplacementHeld));
     }
     let held = |segment: &&Segment| segment.mode == Some(HoldMode::ForceHeld);
-    let seen = find_phases(record, segment);
-    let seen: Vec<Segment> = seen.iter().flat_map(|found| found.holds().filter(held)).copied().collect();
-    if !seen.is_empty() {
-        return Ok(seen);
+    let observed = find_phases(record, segment);
+    let observed: Vec<Segment> = observed.iter().flat_map(|found| found.holds().filter(held)).copied().collect();
+    if !observed.is_empty() {
+        return Ok(observed);
     }
     // The tolerance of a test is a length; a controller that rings about its set force still holds it.
     let segment = SegmentOptions {
@@ -217,7 +219,7 @@ mod tests {
         assert_eq!(found, Err(CreepError::NoDisplacement));
     }
 
-    /// It was "nothing moves", said of the force.
+    /// It was "nothing moves", stated of the force.
     #[test]
     fn a_flow_under_a_force_that_never_varies_is_creep() {
         let time: Vec<f64> = (0..300).map(f64::from).collect();

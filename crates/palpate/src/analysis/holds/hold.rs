@@ -6,10 +6,7 @@ use super::compared::{comparison_findings, fitted, not_a_hold};
 use super::rate_bias::{RateBias, rate_bias};
 use crate::analysis::{AnalysisOptions, Finding};
 use crate::contact::Specimen;
-use crate::fit::{
-    ExponentChoice, FitError, LatencyFit, OrderSelection, Samples, Termination, fit_hold_watched, fit_rates,
-    select_order,
-};
+use crate::fit::{ExponentChoice, LatencyFit, OrderSelection, Samples, Termination, select_order};
 use crate::forecast::{Comparison, KnownFit, RampChoice, compare_laws_watched};
 use crate::laws::Loading;
 use crate::record::Record;
@@ -17,7 +14,7 @@ use crate::segment::{After, HoldMode, Relaxation, RelaxationType, Segment, class
 use crate::simulate::Separation;
 use crate::statistics::{mean, median, noise};
 use crate::strain::{StrainRates, contact_strain, strain_rates};
-use crate::watch::{Cancelled, Progress, Watch};
+use crate::watch::{Cancelled, Watch};
 
 /// What the laws are fitted to.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
@@ -31,6 +28,7 @@ pub enum Signal {
 
 /// All that is known of one hold.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct HoldAnalysis {
     /// Number of the hold in the record, from 1.
     pub number: usize,
@@ -62,7 +60,7 @@ pub struct HoldAnalysis {
     pub values: Vec<f64>,
     /// How many of those samples were fitted (the rest is predicted).
     pub fitted: usize,
-    /// Time-domain fits: the listed exponents in order, then the free one.
+    /// Time-domain fits: the exponents of the list and of its extension in order, then the free one.
     pub fits: Vec<LatencyFit>,
     /// How well each predicts the rest of the hold, where the fit ended early on request.
     pub predictions: Vec<Option<HoldoutError>>,
@@ -86,6 +84,11 @@ impl HoldAnalysis {
         Samples::new(&self.times[..self.fitted], &self.values[..self.fitted])
     }
 
+    /// Whether the hold has a signal that relaxes, so that laws are fitted to it.
+    pub(super) fn relaxes(&self) -> bool {
+        !self.times.is_empty() && self.relaxation.kind != RelaxationType::None
+    }
+
     /// The preferred time-domain fit.
     #[must_use]
     pub fn preferred(&self) -> Option<&LatencyFit> {
@@ -105,15 +108,14 @@ impl HoldAnalysis {
     }
 }
 
-/// Analyses one hold of a corrected record; `ramp` is the first sample of the loading or unloading before it.
-pub(in crate::analysis) fn analyze_hold(
+/// A hold of a corrected record with its signal, before any fit.
+pub(in crate::analysis) fn prepare_hold(
     record: &Record,
-    (segment, ramp): (&Segment, Option<usize>),
+    segment: &Segment,
     number: usize,
     specimen: Option<&Specimen>,
     options: &AnalysisOptions,
-    watch: &mut dyn Watch,
-) -> Result<HoldAnalysis, Cancelled> {
+) -> HoldAnalysis {
     let mut segment = *segment;
     let reopened = specimen.and_then(|_| open_until(record, &segment, options));
     segment.fit_start = reopened.unwrap_or(segment.fit_start);
@@ -159,16 +161,32 @@ pub(in crate::analysis) fn analyze_hold(
             standard_error: hold.relaxation.standard_error,
         });
     }
-    let has_signal = take_signal(&mut hold, record, if force_held { None } else { specimen }, options);
-    if has_signal && hold.relaxation.kind != RelaxationType::None {
-        fit_all(&mut hold, options, watch)?;
-        hold.comparison = compare(&hold, loading(record, ramp, &segment), options, watch)?;
+    take_signal(&mut hold, record, if force_held { None } else { specimen }, options);
+    if hold.relaxes() {
+        let (times, values) = (&hold.times[..hold.fitted], &hold.values[..hold.fitted]);
+        hold.rates = strain_rates(times, values, &options.rate_window);
+    }
+    hold
+}
+
+/// Completes a hold whose exponents have been fitted: the choice among them, the comparison of laws, the findings. `ramp` is the
+/// first sample of the loading or unloading before the hold.
+pub(in crate::analysis) fn complete_hold(
+    hold: &mut HoldAnalysis,
+    record: &Record,
+    ramp: Option<usize>,
+    options: &AnalysisOptions,
+    watch: &mut dyn Watch,
+) -> Result<(), Cancelled> {
+    if hold.relaxes() {
+        hold.order = (!hold.fits.is_empty()).then(|| select_order(&hold.fits));
+        hold.comparison = compare(hold, loading(record, ramp, &hold.segment), options, watch)?;
         hold.rate_bias = hold.preferred().and_then(|fit| rate_bias(hold.samples(), fit, options));
-        judge(&mut hold);
+        judge(hold);
         hold.findings.extend(hold.comparison.iter().flat_map(comparison_findings));
     }
-    hold.findings.extend(not_a_hold(record, &segment));
-    Ok(hold)
+    hold.findings.extend(not_a_hold(record, &hold.segment));
+    Ok(())
 }
 
 /// The sample at which the body meets the jaw again, in a hold after unloading that begins with the contact open.
@@ -186,13 +204,8 @@ fn open_until(record: &Record, segment: &Segment, options: &AnalysisOptions) -> 
     (closed >= LEAST).then_some(segment.start + closed)
 }
 
-/// Fills times and values, thinned if there are too many; `false` if there is no strain to be told.
-fn take_signal(
-    hold: &mut HoldAnalysis,
-    record: &Record,
-    specimen: Option<&Specimen>,
-    options: &AnalysisOptions,
-) -> bool {
+/// Fills times and values, thinned if there are too many; they stay empty where there is no strain.
+fn take_signal(hold: &mut HoldAnalysis, record: &Record, specimen: Option<&Specimen>, options: &AnalysisOptions) {
     let range = hold.segment.fit_start..hold.segment.end;
     let every = range.len().div_ceil(options.most_samples.max(8));
     if every > 1 {
@@ -216,7 +229,7 @@ fn take_signal(
                         hold.findings.push(Finding::NoContactArea);
                         hold.times.clear();
                         hold.values.clear();
-                        return false;
+                        return;
                     }
                 }
             }
@@ -230,37 +243,9 @@ fn take_signal(
         }
     }
     hold.fitted = options.fitted(&hold.times);
-    true
 }
 
-fn fit_all(hold: &mut HoldAnalysis, options: &AnalysisOptions, watch: &mut dyn Watch) -> Result<(), Cancelled> {
-    let (times, values) = (&hold.times[..hold.fitted], &hold.values[..hold.fitted]);
-    hold.rates = strain_rates(times, values, &options.rate_window);
-    for choice in options.choices() {
-        watch.report(Progress::open("fitting the latency law", hold.fits.len()))?;
-        match fit_hold_watched(times, values, choice, &options.fit, watch) {
-            Ok(fit) => {
-                hold.predictions.push(forecast(&fit, &hold.times, &hold.values, hold.fitted));
-                hold.fits.push(fit);
-                hold.rate_fits.push(fit_rates(&hold.rates.strain, &hold.rates.rate, choice, &options.fit).ok());
-            }
-            Err(FitError::TooFewSamples { needed, found, .. }) => {
-                if hold.fits.is_empty() && hold.findings.iter().all(|finding| finding.code() != "too_few_samples") {
-                    hold.findings.push(Finding::TooFewSamples { found, needed });
-                }
-            }
-            Err(FitError::Cancelled(cancelled)) => return Err(cancelled),
-            // A constant signal has been reported as no relaxation; nothing else can happen to a checked record.
-            Err(_) => {}
-        }
-    }
-    if !hold.fits.is_empty() {
-        hold.order = Some(select_order(&hold.fits));
-    }
-    Ok(())
-}
-
-/// Compares laws over the whole hold, or over what was asked to be fitted.
+/// Compares laws over the whole hold, or over what was requested to be fitted.
 fn compare(
     hold: &HoldAnalysis,
     loading: Option<Loading>,
@@ -287,35 +272,17 @@ fn loading(record: &Record, ramp: Option<usize>, segment: &Segment) -> Option<Lo
     Loading::new(&record.time()[range.clone()], &record.displacement()?[range]).ok()
 }
 
-/// Error of a fit over the samples from index `fitted` on.
-fn forecast(fit: &LatencyFit, times: &[f64], values: &[f64], fitted: usize) -> Option<HoldoutError> {
-    let beyond = times[fitted..].iter().zip(&values[fitted..]);
-    let samples = values.len() - fitted;
-    if samples == 0 {
-        return None;
-    }
-    let square: f64 = beyond.map(|(t, y)| (y - fit.predict(*t)).powi(2)).sum();
-    let tail = (values.len() / 100).max(1);
-    let drop = (values[0] - mean(&values[values.len() - tail..])).abs();
-    let rmse = (square / samples as f64).sqrt();
-    Some(HoldoutError {
-        rmse,
-        relative: rmse / drop,
-        samples,
-    })
-}
-
 /// Adds what the fits give cause to say.
 fn judge(hold: &mut HoldAnalysis) {
     let Some(order) = hold.order.as_ref() else { return };
     let alike: Vec<f64> = order
         .candidates
         .iter()
-        .filter(|candidate| !candidate.free && candidate.as_good_as_best)
+        .filter(|candidate| !candidate.free && candidate.indistinguishable)
         .map(|candidate| candidate.exponent)
         .collect();
     if alike.len() > 1 {
-        hold.findings.push(Finding::ExponentsAlike { exponents: alike });
+        hold.findings.push(Finding::ExponentsIndistinguishable { exponents: alike });
     }
     if let Some(free) = hold.fits.iter().find(|fit| fit.choice() == ExponentChoice::Free) {
         match free.exponent().interval {
@@ -374,6 +341,7 @@ fn confounded(fit: &LatencyFit) -> Option<f64> {
 
 /// Error of a fit over samples that it was not fitted to.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[non_exhaustive]
 pub struct HoldoutError {
     /// Root mean square of measured less predicted, in the unit of the signal.
     pub rmse: f64,

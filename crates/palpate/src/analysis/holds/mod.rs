@@ -2,18 +2,21 @@
 //!
 //! | file | what |
 //! |---|---|
-//! | `hold.rs` | signal, fits in both domains, prediction beyond the window |
+//! | `hold.rs` | signal, choice of the exponent, comparison of laws, findings |
+//! | `exponents.rs` | fits in both domains with the listed exponents, the extension of the list, the free one |
 //! | `creep.rs` | holds of constant force |
 //! | `rate_bias.rs` | how far noise takes the rate domain from the truth |
 //! | `compared.rs` | what a comparison of laws gives cause to say; holds that are none: drift, feedback control |
 
 mod compared;
 mod creep;
+mod exponents;
 mod hold;
 mod rate_bias;
 
 pub(super) use compared::fitted;
 pub use creep::{CreepError, CreepHold, creep_holds};
-pub(super) use hold::analyze_hold;
+pub(super) use exponents::fit_exponents;
 pub use hold::{HoldAnalysis, HoldoutError, Signal};
+pub(super) use hold::{complete_hold, prepare_hold};
 pub use rate_bias::RateBias;

@@ -10,6 +10,7 @@ use crate::strain::strain_rates;
 
 /// What the rate domain makes of simulated holds whose truth is the fit in time, with the noise of the measured one.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[non_exhaustive]
 pub struct RateBias {
     /// The exponent, given in all fits.
     pub exponent: f64,

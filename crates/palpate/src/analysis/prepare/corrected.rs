@@ -10,6 +10,7 @@ use crate::simulate::Separation;
 
 /// A corrected record with its phases, ready for first touch.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct Corrected {
     /// The record; it knows what was done to it.
     pub record: Record,
@@ -18,14 +19,14 @@ pub struct Corrected {
     /// Estimated skew of the clocks of the uncorrected record.
     pub skew: Option<ClockSkew>,
     /// Whether a correction of the skew was requested.
-    pub skew_asked: bool,
+    pub skew_requested: bool,
 }
 
 impl Corrected {
     /// The record with corrected clocks and the properties of its columns, if the clocks differ.
     #[must_use]
     pub fn aligned(&self, record: &Record) -> Option<(Record, SignalReport)> {
-        let skew = self.skew.filter(ClockSkew::is_seen)?;
+        let skew = self.skew.filter(ClockSkew::is_observed)?;
         let aligned = record.without_skew(skew.skew, Some(skew.standard_error)).ok()?;
         let signals = aligned.signals();
         Some((aligned, signals))
@@ -54,8 +55,8 @@ impl Corrected {
                     standard_error: skew.standard_error,
                 })
             }
-            Some((skew, interval)) if skew.is_seen() || 3.0 * skew.standard_error < 2.0 * interval => None,
-            _ => self.skew_asked.then(|| Finding::ClocksOpen {
+            Some((skew, interval)) if skew.is_observed() || 3.0 * skew.standard_error < 2.0 * interval => None,
+            _ => self.skew_requested.then(|| Finding::ClocksOpen {
                 skew: self.skew.map(|skew| (skew.skew, skew.standard_error)),
                 one_clock: false,
             }),
@@ -73,23 +74,23 @@ impl Corrected {
 /// [`AnalysisError`] for a correction that cannot be made, and where a baseline is to be found but the phases are not.
 pub fn corrected(record: &Record, options: &AnalysisOptions) -> Result<Corrected, AnalysisError> {
     let record = record.repaired();
-    let asked = &options.corrections;
+    let requested = &options.corrections;
     let phases = |record: &Record| phases_with(record, &options.segment, &options.given_holds);
     let segmentation = phases(&record);
     let skew = segmentation.as_ref().ok().and_then(|segmentation| clock_skew(&record, segmentation));
     let mut next = record;
     let before = next.corrections().len();
-    match (asked.skew, skew.filter(ClockSkew::is_seen)) {
+    match (requested.skew, skew.filter(ClockSkew::is_observed)) {
         (SkewChoice::Given(given), _) => next = next.without_skew(given, None)?,
-        (SkewChoice::Auto, Some(seen)) if is_beyond_one_clock(&next, &seen) => {}
-        (SkewChoice::Auto, Some(seen)) => next = next.without_skew(seen.skew, Some(seen.standard_error))?,
+        (SkewChoice::Auto, Some(observed)) if is_beyond_one_clock(&next, &observed) => {}
+        (SkewChoice::Auto, Some(observed)) => next = next.without_skew(observed.skew, Some(observed.standard_error))?,
         (SkewChoice::Auto, None) | (SkewChoice::Report, _) => {}
     }
-    if let Some(rate) = asked.resample {
+    if let Some(rate) = requested.resample {
         next = next.resampled(rate)?;
     }
-    if let Some(baseline) = asked.baseline {
-        let free = match asked.baseline_window {
+    if let Some(baseline) = requested.baseline {
+        let free = match requested.baseline_window {
             Some((from, until)) => {
                 let index = |at: f64| next.time().partition_point(|time| *time < at);
                 std::iter::once(index(from)..index(until)).collect()
@@ -98,7 +99,7 @@ pub fn corrected(record: &Record, options: &AnalysisOptions) -> Result<Corrected
         };
         next = next.without_baseline(baseline, &free)?;
     }
-    if let Some(compliance) = &asked.compliance {
+    if let Some(compliance) = &requested.compliance {
         next = next.without_compliance(compliance)?;
     }
     touch_within(&next, options.touch)?;
@@ -107,7 +108,7 @@ pub fn corrected(record: &Record, options: &AnalysisOptions) -> Result<Corrected
         record: next,
         segmentation,
         skew,
-        skew_asked: asked.skew == SkewChoice::Auto,
+        skew_requested: requested.skew == SkewChoice::Auto,
     })
 }
 
@@ -117,20 +118,21 @@ const ONE_CLOCK: f64 = 0.25;
 /// Whether one clock stamps both columns, and they seem to differ by more than any delay in front of it.
 fn is_beyond_one_clock(record: &Record, skew: &ClockSkew) -> bool {
     let own = |done: &Correction| matches!(done, Correction::ClocksJoined { .. } | Correction::SkewRemoved { .. });
-    !record.corrections().iter().any(own) && skew.is_seen() && skew.skew.abs() > ONE_CLOCK
+    !record.corrections().iter().any(own) && skew.is_observed() && skew.skew.abs() > ONE_CLOCK
 }
 
 /// Refuses a first touch that the jaw does not reach.
 fn touch_within(record: &Record, touch: ContactChoice) -> Result<(), AnalysisError> {
-    let (ContactChoice::Displacement(asked), Some(displacement)) = (touch, record.displacement()) else {
+    let (ContactChoice::Displacement(requested), Some(displacement)) = (touch, record.displacement()) else {
         return Ok(());
     };
     let farthest = displacement.iter().copied().fold(f64::MIN, f64::max);
-    if asked < farthest { Ok(()) } else { Err(AnalysisError::TouchBeyond { asked, farthest }) }
+    if requested < farthest { Ok(()) } else { Err(AnalysisError::TouchBeyond { requested, farthest }) }
 }
 
 /// A record whose displacement and force begin at first touch, with its phases.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct Prepared {
     /// The record; it knows what was done to it.
     pub record: Record,

@@ -101,8 +101,8 @@ fn rounded(column: Column, values: &Values) -> Option<Finding> {
 pub fn suspicious_signs(record: &Record) -> Vec<Finding> {
     let force = record.force();
     let (low, high) = force.iter().fold((f64::MAX, f64::MIN), |(low, high), f| (low.min(*f), high.max(*f)));
-    let seen = (0.05 * (high - low)).max(8.0 * noise(force));
-    let columns = [("displacement", record.displacement(), 0.0), ("force", Some(force), seen)];
+    let observed = (0.05 * (high - low)).max(8.0 * noise(force));
+    let columns = [("displacement", record.displacement(), 0.0), ("force", Some(force), observed)];
     let falls = columns.into_iter().filter_map(|(column, values, least)| {
         let values = values?;
         let start = median(&mut values[..values.len().min(5)].to_vec());
@@ -148,16 +148,18 @@ const SPREAD: f64 = 0.05;
 const APART: f64 = 0.05;
 
 /// Findings on first touch in a record that counts from it.
-fn touch_findings(record: &Record, contact: &ContactPoint, asked: ContactChoice) -> Vec<Finding> {
+fn touch_findings(record: &Record, contact: &ContactPoint, requested: ContactChoice) -> Vec<Finding> {
     let mut findings = Vec::new();
     let squeeze = record.displacement().into_iter().flatten().fold(0.0f64, |most, d| most.max(*d));
     if let Some(spread) = contact.spread.filter(|spread| *spread > SPREAD * squeeze) {
         findings.push(Finding::TouchSpread { spread, squeeze });
     }
-    if let Some(apart) = contact.apart().filter(|apart| asked == ContactChoice::Auto && apart.abs() > APART * squeeze) {
+    if let Some(apart) =
+        contact.apart().filter(|apart| requested == ContactChoice::Auto && apart.abs() > APART * squeeze)
+    {
         findings.push(Finding::TouchApart { apart, squeeze });
     }
-    if let ContactChoice::By(method) = asked
+    if let ContactChoice::By(method) = requested
         && contact.method != Some(method)
     {
         findings.push(Finding::TouchNotFound { method });

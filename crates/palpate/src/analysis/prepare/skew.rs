@@ -9,6 +9,7 @@ use crate::statistics::median;
 
 /// By how much the stamps of the force lag behind those of the displacement.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[non_exhaustive]
 pub struct ClockSkew {
     /// Time that the force is stamped too late, s; negative where it is too early.
     pub skew: f64,
@@ -23,20 +24,20 @@ pub struct ClockSkew {
 impl ClockSkew {
     /// Whether it differs significantly from zero.
     #[must_use]
-    pub fn is_seen(&self) -> bool {
-        self.skew.abs() > SEEN * self.standard_error
+    pub fn is_observed(&self) -> bool {
+        self.skew.abs() > OBSERVED * self.standard_error
     }
 
     /// Whether it stands out from what samples every `interval` s leave open as well: it is longer than that, and than its
     /// error together with interval/√12, since all edges may lie alike between two samples.
     pub(super) fn is_resolved(&self, interval: f64) -> bool {
         let open = interval / 12f64.sqrt();
-        self.skew.abs() > interval && self.skew.abs() > SEEN * self.standard_error.hypot(open)
+        self.skew.abs() > interval && self.skew.abs() > OBSERVED * self.standard_error.hypot(open)
     }
 }
 
 /// Standard errors from which on a skew is believed.
-const SEEN: f64 = 3.0;
+const OBSERVED: f64 = 3.0;
 /// Fewest edges whose scatter says anything.
 const FEWEST: usize = 3;
 /// Samples on each side of an edge: fewest and most.
@@ -76,7 +77,7 @@ pub fn clock_skew(record: &Record, segmentation: &Segmentation) -> Option<ClockS
     }
     // Farther off than the stretches around the edges are long, a skew shows where most edges agree again.
     let lags = (1..=FARTHEST).flat_map(|step| [1.0, -1.0].map(|sign| 0.5 * sign * f64::from(step) * stretch));
-    let far = lags.filter_map(found).filter(|skew| is_sure(skew) && skew.is_seen());
+    let far = lags.filter_map(found).filter(|skew| is_sure(skew) && skew.is_observed());
     far.max_by(|a, b| a.edges.cmp(&b.edges).then(b.standard_error.total_cmp(&a.standard_error)))
         .or(near)
 }

@@ -11,6 +11,7 @@ use crate::watch::{Cancelled, Watch};
 
 /// Trend of ln v with the equilibrium strain over the holds after loading (Table I).
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[non_exhaustive]
 pub struct Trend {
     /// d ln v/dε_e.
     pub slope: f64,
@@ -24,6 +25,7 @@ pub struct Trend {
 
 /// Equilibria of two holds at one displacement, one after loading, one after unloading.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[non_exhaustive]
 pub struct LevelAgreement {
     /// Displacement, m.
     pub displacement: f64,
@@ -41,6 +43,7 @@ pub struct LevelAgreement {
 
 /// Results over all holds.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+#[non_exhaustive]
 pub struct Across {
     /// The lowest listed exponent that fits all holds best: the sum of their information criteria is within 2 of the lowest.
     pub common_exponent: Option<f64>,
@@ -56,11 +59,12 @@ pub struct Across {
 
 pub(in crate::analysis) fn across(
     holds: &[HoldAnalysis],
+    exponents: &[f64],
     options: &AnalysisOptions,
     displacement_tolerance: f64,
     watch: &mut dyn Watch,
 ) -> Result<Across, Cancelled> {
-    let evidence = summed_evidence(holds, &options.exponents);
+    let evidence = summed_evidence(holds, exponents);
     let common_exponent = evidence.iter().filter(|(_, delta)| *delta <= 2.0).map(|(n, _)| *n).min_by(f64::total_cmp);
     let fit = |hold: &HoldAnalysis| {
         common_exponent.and_then(|n| hold.fit_with(n).cloned()).filter(|fit| fit.termination.is_good())

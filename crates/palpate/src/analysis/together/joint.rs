@@ -24,6 +24,7 @@ pub enum JointHolds {
 
 /// The latency law with one v (and n) for several holds.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[non_exhaustive]
 pub struct JointAnalysis {
     /// Which holds.
     pub which: JointHolds,

@@ -128,16 +128,16 @@ fn relaxed_hold(
 /// The lowest listed exponent whose criteria, summed over the holds, are within 2 of the lowest sum; a free one where that
 /// beats all listed ones by more than 2.
 fn common_choice(holds: &[RelaxedHold], options: &AnalysisOptions) -> Option<ExponentChoice> {
-    let asked: Vec<ExponentChoice> = options.choices().collect();
-    let mut sums = vec![0.0; asked.len()];
+    let requested: Vec<ExponentChoice> = options.choices().collect();
+    let mut sums = vec![0.0; requested.len()];
     let mut counted = 0;
-    for hold in holds.iter().filter(|hold| hold.fits.len() == asked.len()) {
+    for hold in holds.iter().filter(|hold| hold.fits.len() == requested.len()) {
         counted += 1;
         let order = select_order(&hold.fits);
         sums.iter_mut().zip(&order.candidates).for_each(|(sum, candidate)| *sum += candidate.delta_bic);
     }
     let lowest = sums.iter().copied().fold(f64::INFINITY, f64::min);
-    let good = asked.iter().zip(&sums).filter(|(_, sum)| counted > 0 && **sum - lowest <= 2.0);
+    let good = requested.iter().zip(&sums).filter(|(_, sum)| counted > 0 && **sum - lowest <= 2.0);
     let number = |choice: &ExponentChoice| match choice {
         ExponentChoice::Fixed(n) => *n,
         ExponentChoice::Free => f64::INFINITY,

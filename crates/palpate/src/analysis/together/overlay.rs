@@ -14,6 +14,7 @@ const MOST_SAMPLES: usize = 20_000;
 
 /// A simulation laid over the record.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct Overlay {
     /// The model that was simulated.
     pub model: ContactModel,

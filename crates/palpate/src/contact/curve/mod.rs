@@ -17,6 +17,7 @@ pub use cubic::Curve;
 
 /// Points that make no curve; rows count from 1.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum CurveError {
     /// Fewer than two points.
     #[error("a table needs at least 2 rows, found {found}")]

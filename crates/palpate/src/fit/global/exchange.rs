@@ -22,16 +22,16 @@ const FOLLOWED: usize = 4;
 /// The valleys with those that replacing terms opens, deepest first.
 pub(crate) fn exchanged(model: &Model, nodes: &Condensed, valleys: Vec<Valley>, work: &mut Work) -> Vec<Valley> {
     let mut all = valleys;
-    let mut seen: Vec<Vec<f64>> = Vec::new();
+    let mut observed: Vec<Vec<f64>> = Vec::new();
     for _ in 0..ROUNDS {
         all.sort_by(|a, b| a.square.total_cmp(&b.square));
-        let fresh = |valley: &&Valley| seen.iter().all(|other| distance(other, &rising(&valley.theta)) > SAME);
+        let fresh = |valley: &&Valley| observed.iter().all(|other| distance(other, &rising(&valley.theta)) > SAME);
         let fresh = all.iter().filter(fresh).map(|valley| rising(&valley.theta));
         let next = distinct(fresh, OPEN, |other, theta| distance(other, theta) <= SAME);
         let lowest = all.first().map_or(f64::INFINITY, |valley| valley.square);
         for theta in next {
             all.extend(replaced(model, nodes, &theta, work));
-            seen.push(theta);
+            observed.push(theta);
         }
         if !all.iter().any(|valley| valley.square < lowest * (1.0 - ENOUGH)) {
             break;

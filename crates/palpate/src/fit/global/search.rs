@@ -98,7 +98,7 @@ fn settled_between_kinks(model: &Model, scaled: &Scaled, solution: Solution, wor
 /// Relative difference of residual squares that is rounding.
 const ALIKE_AT_ALL: f64 = 1e-12;
 
-/// Says so if what ended well, or could not be told apart, are merged terms.
+/// Says so if what ended well, or could not be distinguished, are merged terms.
 fn mark_merged(model: &Model, solution: &mut Solution) {
     let open = matches!(solution.termination, Termination::Converged | Termination::Singular);
     if open && redundant_terms(model, solution).iter().any(|term| matches!(term, RedundantTerm::Merged { .. })) {
@@ -170,7 +170,7 @@ fn valleys(model: &Model, nodes: &Condensed, most_iterations: usize, work: &mut 
     work.starts += aside.starts;
     let Some(limit) = found
         .first()
-        .map(|(least, _)| least * (1.0 + f64::max(ALIKE, nodes.noise(TOLD))) + f64::MIN_POSITIVE)
+        .map(|(least, _)| least * (1.0 + f64::max(ALIKE, nodes.noise(REPORTED))) + f64::MIN_POSITIVE)
     else {
         return Vec::new();
     };
@@ -218,7 +218,7 @@ const KINKED: f64 = 1e-2;
 const ALIKE: f64 = 1e-3;
 
 /// Variances of the noise of a sample, the same.
-const TOLD: f64 = 0.2;
+const REPORTED: f64 = 0.2;
 
 /// Relative gain at which a valley has been searched well enough to tell it from others.
 const ROUGH: f64 = 1e-5;

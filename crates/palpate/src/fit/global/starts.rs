@@ -14,7 +14,7 @@ pub(crate) fn starts(model: &Model, nodes: &Condensed, most: usize, work: &mut W
     fine_starts(model, &nodes.coarser(), Grid::Coarse, most, work)
 }
 
-/// The same on these very nodes, with a grid as fine as asked for.
+/// The same on these very nodes, with a grid as fine as requested.
 pub(crate) fn fine_starts(model: &Model, nodes: &Condensed, grid: Grid, most: usize, work: &mut Work) -> Vec<Vec<f64>> {
     let (moving, still) = model.moving();
     let all = model.complete(&vec![0.0; model.free().len()]);
@@ -176,7 +176,7 @@ impl Plane {
     }
 }
 
-/// Valleys of a lattice of combinations: those beside none that was seen before, that is, is lower.
+/// Valleys of a lattice of combinations: those beside none that was observed before, that is, is lower.
 fn lattice_valleys(mut found: Vec<(f64, Vec<usize>)>, most: usize) -> Vec<Vec<usize>> {
     let order = |a: &(f64, Vec<usize>), b: &(f64, Vec<usize>)| a.0.total_cmp(&b.0);
     if found.len() > LOWEST {
@@ -314,7 +314,7 @@ fn deepest_along(valleys: &[Valley]) -> Vec<Valley> {
         .collect()
 }
 
-/// ln λ near the bottom of a valley that was seen, and the residual square there: the vertex of a parabola through the lowest of a few
+/// ln λ near the bottom of a valley that was observed, and the residual square there: the vertex of a parabola through the lowest of a few
 /// points `step` apart, as many as a table takes together, and those beside it.
 fn bottom(at: f64, here: f64, step: f64, mut residuals: impl FnMut(&[f64]) -> Few) -> (f64, f64) {
     let rates: Few = (-3..=3).map(|k| at + step * f64::from(k)).collect();

@@ -1,4 +1,4 @@
-//! The search for hard cases: where the quick one ends at a bound, at merged terms or where parameters cannot be told apart.
+//! The search for hard cases: where the quick one ends at a bound, at merged terms or where parameters cannot be distinguished.
 //!
 //! A finer grid, more valleys, and local searches that make columns orthogonal instead of forming normal equations, which lose
 //! half the digits just where shapes imitate each other. The result may still be one that no data determine; but no other is

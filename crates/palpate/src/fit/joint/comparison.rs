@@ -22,6 +22,7 @@ pub enum TrendVerdict {
 
 /// A joint fit against the holds fitted alone.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[non_exhaustive]
 pub struct JointComparison {
     /// F = [(RSS_joint − RSS_separate)/(difference of parameters)]/[RSS_separate/(N_e − parameters of the separate fits)].
     pub statistic: f64,

@@ -7,7 +7,7 @@ use crate::laws::{Law, ShapeParameterKind};
 use crate::optimise::{Cholesky, Few, Solution, Termination, Work};
 use crate::statistics::{effective_count, lag_one_correlation};
 
-/// Holds brought together, with what each said alone.
+/// Holds brought together, with what each stated alone.
 pub(crate) struct Joint {
     pub(crate) law: Law,
     pub(crate) options: JointOptions,

@@ -31,6 +31,7 @@ pub struct JointOptions {
 
 /// One law fitted to several holds.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[non_exhaustive]
 pub struct JointFit {
     /// The law.
     pub law: Law,

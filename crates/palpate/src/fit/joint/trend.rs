@@ -10,6 +10,7 @@ use crate::statistics::{coverage_factor, normal_factor, range};
 /// estimate). The slope's error follows from the scatter about the line (Hartung and Knapp), but is never below what the fits' own errors make it; its interval from Student's t
 /// with H − 2 degrees of freedom; errors of x are not counted.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[non_exhaustive]
 pub struct SharedTrend {
     /// Which parameter.
     pub parameter: String,
@@ -27,6 +28,7 @@ pub struct SharedTrend {
 
 /// One hold in a trend.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[non_exhaustive]
 pub struct TrendPoint {
     /// Number of the hold among those fitted, from 1.
     pub hold: usize,

@@ -24,7 +24,7 @@ const MEDIAN_SHARE: f64 = 0.6745;
 const ROUNDS: usize = 200;
 
 impl Fitted {
-    /// Reweights residuals until weights, scale and parameters agree: first by Huber, then, if asked for, by Tukey.
+    /// Reweights residuals until weights, scale and parameters agree: first by Huber, then, if requested, by Tukey.
     ///
     /// The scale is found anew in every round. After the first rounds the whole range of the nonlinear parameters is searched again,
     /// since outliers may have led the first search into the wrong valley. In the end the solution stands among all samples at

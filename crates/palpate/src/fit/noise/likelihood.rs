@@ -194,7 +194,7 @@ impl<'a> Mixture<'a> {
             .iter()
             .zip(&filters)
             .map(|(square, filter)| samples * (square / samples).ln() + filter.log_determinant);
-        let told = deviances.zip(places).filter(|(deviance, _)| deviance.is_finite());
-        told.min_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, place)| place)
+        let reported = deviances.zip(places).filter(|(deviance, _)| deviance.is_finite());
+        reported.min_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, place)| place)
     }
 }

@@ -112,7 +112,7 @@ fn parameters(
             bounds = (ends[0].min(ends[1]).max(widest.0), ends[0].max(ends[1]).min(widest.1));
             // An exponent may be sought wherever the caller wants it; an end left open is that of the law.
             if pure {
-                let end = |asked: f64, widest: f64| if asked.is_finite() { asked } else { widest };
+                let end = |requested: f64, widest: f64| if requested.is_finite() { requested } else { widest };
                 bounds = (end(*low, widest.0).max(f64::MIN_POSITIVE), end(*high, widest.1));
             }
             if !(bounds.0 <= bounds.1 && bounds.1.is_finite()) {
@@ -147,8 +147,8 @@ fn linear_bounds(
     options: &LawOptions,
 ) -> Vec<(f64, f64)> {
     let bound = |name: &String, offset: f64| {
-        let asked = options.bounds.iter().find(|(bounded, _)| bounded == name);
-        asked.map_or(FREE, |(_, (low, high))| ((low - offset) / scaled.range, (high - offset) / scaled.range))
+        let requested = options.bounds.iter().find(|(bounded, _)| bounded == name);
+        requested.map_or(FREE, |(_, (low, high))| ((low - offset) / scaled.range, (high - offset) / scaled.range))
     };
     if options.bounds.is_empty() && !options.one_sign {
         return Vec::new();

@@ -68,7 +68,7 @@ impl Model {
         usize::from(self.constant) + self.form.shapes.len()
     }
 
-    /// Names of the parameters that are sought, the nonlinear ones as asked for.
+    /// Names of the parameters that are sought, the nonlinear ones as requested.
     pub(crate) fn names(&self, of: impl Fn(&ModelParameter) -> String) -> Vec<String> {
         let constant = self.constant.then(|| self.form.constant_name().to_owned());
         let nonlinear = self.free().map(of);

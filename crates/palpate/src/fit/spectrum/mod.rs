@@ -179,7 +179,7 @@ impl Scaled {
         (0..=steps as u32).map(|j| shortest * 10f64.powf(decades * f64::from(j) / steps)).collect()
     }
 
-    /// The sign that fits better with next to no smoothing, and the smoothing asked for; in the units of the caller.
+    /// The sign that fits better with next to no smoothing, and the smoothing requested; in the units of the caller.
     fn fit(&self, grid: &[f64], constant: Option<f64>, smoothing: Smoothing) -> Option<SpectrumFit> {
         let normal = Normal::new(&self.times, &self.values, &self.roots, grid);
         let mut tried = Vec::with_capacity(2);

@@ -7,6 +7,7 @@ use serde::{Deserialize, Serialize};
 /// Single amplitudes have no standard errors: they are bounded, and neighbours can stand in for each other. What the data
 /// determine are predictions inside the hold, and the peaks where they are few and far apart.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[non_exhaustive]
 pub struct SpectrumFit {
     /// y_e, the constant. A convention of the grid if [`SpectrumFit::is_open_ended`].
     pub equilibrium: f64,
@@ -36,6 +37,7 @@ pub struct SpectrumFit {
 
 /// Neighbouring times whose amplitudes form one peak.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[non_exhaustive]
 pub struct SpectrumPeak {
     /// exp of the mean of ln τ_j with weights h_j, s.
     pub time: f64,

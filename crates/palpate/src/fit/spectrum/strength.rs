@@ -6,7 +6,7 @@ use crate::optimise::{BoundedProblem, BoundedSolver, Cholesky, Held};
 /// Weakest and strongest smoothing tried, as powers of ten.
 const DECADES: (i32, i32) = (-12, 1);
 
-/// Strengths per decade that are told apart.
+/// Strengths per decade that are distinguished.
 const STEPS: i32 = 8;
 
 /// A spectrum at one strength of smoothing, in units of the hold's duration and range.

@@ -3,7 +3,7 @@
 //! For a given λ the best F_e and A follow from means, so the search is for ln λ alone: a coarse grid, then halvings of the bracket. What
 //! is left open is kept as *nodes*, values of λ on either side of the best, up to where the sum of squares has grown by z²s²: with the
 //! best F_e and A of each they hold the region of confidence of all three numbers (profile likelihood). Where n is known to a deviation
-//! only, the ends of its interval have nodes of their own: the readings of a hold are not asked for n, of which they tell little.
+//! only, the ends of its interval have nodes of their own: the readings of a hold are not requested n, of which they tell little.
 
 use super::bins::{Bin, MOST};
 use crate::latency::decay;
@@ -13,7 +13,7 @@ use crate::observe::{Normal, kept};
 const SIDE: usize = 10;
 /// Fewest means: three numbers and two over.
 pub(in crate::observe) const FEWEST: usize = 5;
-/// Slowest relaxation that is sought: λ times the time that was seen. Slower ones are straight lines to the eye, and to a fit.
+/// Slowest relaxation that is sought: λ times the time that was observed. Slower ones are straight lines to the eye, and to a fit.
 const SLOWEST: f64 = 0.05;
 /// Fastest: λ times the time of the first mean. Faster ones are one pure power.
 const FASTEST: f64 = 100.0;

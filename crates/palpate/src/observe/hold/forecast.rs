@@ -39,7 +39,7 @@ impl Crossing {
         Self { falls }
     }
 
-    /// How much is left open: ln of the ratio of the ends of the interval, as seen `now` seconds after the hold began.
+    /// How much is left open: ln of the ratio of the ends of the interval, as observed `now` seconds after the hold began.
     pub(in crate::observe) fn width(self, now: f64) -> f64 {
         self.falls.map_or(0.0, |Falls { low, high, .. }| {
             // Less than a millisecond is now.
@@ -47,8 +47,8 @@ impl Crossing {
         })
     }
 
-    /// As seen `now` seconds after the hold began.
-    pub(in crate::observe) fn seen(self, now: f64) -> SlipForecast {
+    /// As observed `now` seconds after the hold began.
+    pub(in crate::observe) fn observed(self, now: f64) -> SlipForecast {
         let left = |time: Option<f64>| time.map_or(TimeToSlip::Never, |time| TimeToSlip::After((time - now).max(0.0)));
         SlipForecast::Known {
             best: left(self.falls.and_then(|falls| falls.value)),
@@ -95,12 +95,12 @@ mod tests {
             assert!((found / truth - 1.0).abs() < 1e-3, "{found} {truth}");
         }
         assert_eq!(Crossing::find(2.0, 0.9, force).falls, None);
-        assert_eq!(Crossing::find(2.0, 0.9, force).seen(2.0), SlipForecast::NEVER);
+        assert_eq!(Crossing::find(2.0, 0.9, force).observed(2.0), SlipForecast::NEVER);
         let Falls { value, high, .. } = Crossing::find(2.0, 0.96, force).falls.unwrap();
         assert_eq!((value, high), (None, None));
         let low = Crossing::find(60.0, 1.1, force).falls.unwrap().low;
         assert_eq!(
-            Crossing::find(60.0, 1.1, force).seen(60.0),
+            Crossing::find(60.0, 1.1, force).observed(60.0),
             SlipForecast::Known {
                 best: TimeToSlip::After(0.0),
                 low: TimeToSlip::After(0.0),

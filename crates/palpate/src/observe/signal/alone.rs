@@ -1,9 +1,9 @@
-//! The end of loading seen in a force alone.
+//! The end of loading observed in a force alone.
 
 use super::stand::Change;
 use crate::observe::kept::kept;
 
-/// A hold is told once the force, at the speed of its loading, would have risen this many tolerances above its peak.
+/// A hold is given once the force, at the speed of its loading, would have risen this many tolerances above its peak.
 const FAR: f64 = 8.0;
 /// Readings off the fitted curve that end a hold.
 const OFF: u32 = 3;
@@ -22,9 +22,9 @@ pub(in crate::observe) struct Alone {
     falls: bool,
     least: f64,
     off: u32,
-    seen: bool,
+    observed: bool,
 }
-kept!(Alone: foot, peak, since, stands, falls, least, off, seen);
+kept!(Alone: foot, peak, since, stands, falls, least, off, observed);
 
 impl Alone {
     pub(in crate::observe) fn feed(
@@ -37,7 +37,7 @@ impl Alone {
         let Some(tolerance) = tolerance else {
             return self.moved(time, level);
         };
-        if !self.seen {
+        if !self.observed {
             self.foot = (time, level);
             return self.moved(time, level);
         }
@@ -75,7 +75,7 @@ impl Alone {
     }
 
     fn moved(&mut self, time: f64, level: f64) -> Change {
-        (self.peak, self.since, self.stands, self.off, self.seen) = (level, time, false, 0, true);
+        (self.peak, self.since, self.stands, self.off, self.observed) = (level, time, false, 0, true);
         Change::Moved
     }
 }

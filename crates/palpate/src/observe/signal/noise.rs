@@ -15,7 +15,7 @@ const FIRST: [usize; 2] = [8, 16];
 pub(in crate::observe) struct NoiseMeter {
     known: Option<f64>,
     last: [(f64, f64); 2],
-    seen: usize,
+    observed: usize,
     room: [f64; ROOM],
     filled: usize,
     found: Option<f64>,
@@ -23,7 +23,7 @@ pub(in crate::observe) struct NoiseMeter {
     step: Option<f64>,
     quantum: f64,
 }
-kept!(NoiseMeter: known, last, seen, room, filled, found, step, quantum; |meter| meter.filled < ROOM);
+kept!(NoiseMeter: known, last, observed, room, filled, found, step, quantum; |meter| meter.filled < ROOM);
 
 impl NoiseMeter {
     pub(in crate::observe) fn new(known: Option<f64>) -> Self {
@@ -35,14 +35,14 @@ impl NoiseMeter {
     }
 
     pub(in crate::observe) fn feed(&mut self, time: f64, value: f64) {
-        if self.seen >= 2 {
+        if self.observed >= 2 {
             let [(_, y0), (_, y1)] = self.last;
             if let Some(step) = self.step.filter(|_| value == y1) {
                 self.quantum = self.quantum.min(step);
             }
             self.step = (y0 == y1 && value != y1).then_some((value - y1).abs());
         }
-        if self.known.is_none() && self.seen >= 2 {
+        if self.known.is_none() && self.observed >= 2 {
             let [(t0, y0), (t1, y1)] = self.last;
             let w = (t1 - t0) / (time - t0);
             let off = y1 - ((1.0 - w) * y0 + w * value);
@@ -53,7 +53,7 @@ impl NoiseMeter {
             }
         }
         self.last = [self.last[1], (time, value)];
-        self.seen = self.seen.saturating_add(1);
+        self.observed = self.observed.saturating_add(1);
     }
 
     /// Standard deviation; `None` before the first estimate.
@@ -67,7 +67,7 @@ impl NoiseMeter {
     }
 
     fn found_early(&self) -> bool {
-        self.seen < ROOM + 2
+        self.observed < ROOM + 2
     }
 
     fn estimate(&mut self) {

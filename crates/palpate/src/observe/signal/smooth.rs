@@ -17,16 +17,16 @@ pub(in crate::observe) struct Smooth {
     pub(in crate::observe) level: f64,
     rate: f64,
     usual: f64,
-    seen: bool,
+    observed: bool,
 }
-kept!(Smooth: level, rate, usual, seen);
+kept!(Smooth: level, rate, usual, observed);
 
 impl Smooth {
     /// Takes a reading `dt` (s) after the last; `noise` is its standard deviation, if that is known.
     pub(in crate::observe) fn feed(&mut self, dt: f64, value: f64, noise: Option<f64>) {
         let gap = self.usual > 0.0 && dt > GAP * self.usual;
-        if !self.seen || gap {
-            (self.level, self.rate, self.seen) = (value, 0.0, true);
+        if !self.observed || gap {
+            (self.level, self.rate, self.observed) = (value, 0.0, true);
         } else {
             let expected = self.level + self.rate * dt;
             let surprise = value - expected;

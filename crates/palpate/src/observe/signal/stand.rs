@@ -1,12 +1,12 @@
-//! Whether a signal stands still, told within a few readings.
+//! Whether a signal stands still, reported within a few readings.
 
 use crate::observe::kept::kept;
 
 /// Fewest readings of a stand.
 const FEWEST: u32 = 3;
-/// Readings after which a stand is told where no speed is known, at the beginning of a record.
+/// Readings after which a stand is given where no speed is known, at the beginning of a record.
 const AT_FIRST: u32 = 20;
-/// How many tolerances a signal may wander about a place before it has left it, once the stand was told.
+/// How many tolerances a signal may wander about a place before it has left it, once the stand was given.
 const LEAVES: f64 = 3.0;
 /// Readings outside that make it leave: one alone may be a dropout.
 const OUTSIDE: u32 = 2;
@@ -32,7 +32,7 @@ pub(in crate::observe) struct Stand {
     fastest: f64,
     /// Whether the last motion went up (1), down (−1), or there was none (0).
     pub(in crate::observe) direction: f64,
-    /// Whether the stand was told.
+    /// Whether the stand was given.
     pub(in crate::observe) stands: bool,
 }
 kept!(Stand: start, middle, last, place, count, readings, outside, drifts_since, speed, fastest, direction, stands);
@@ -47,7 +47,7 @@ pub(in crate::observe) enum Change {
     Same,
     /// The signal is at a new place, where a stand may begin.
     Moved,
-    /// The stand is told with this reading.
+    /// The stand is given with this reading.
     Stands,
     /// It left where it stood, at a speed like that with which it came.
     Left,
@@ -57,7 +57,7 @@ pub(in crate::observe) enum Change {
 
 impl Stand {
     /// Takes a reading; `tolerance` is how far the signal may be from a place and still be there, `None` where that is not known yet. A stand
-    /// is told once the signal, at its last speed, would have gone `patience` tolerances.
+    /// is given once the signal, at its last speed, would have gone `patience` tolerances.
     pub(in crate::observe) fn feed(&mut self, time: f64, value: f64, tolerance: Option<f64>, patience: f64) -> Change {
         if self.readings == 0 {
             self.begin(time, value);
@@ -82,12 +82,12 @@ impl Stand {
             return Change::Moved;
         }
         self.stay(time, value);
-        let told = match self.speed {
+        let reported = match self.speed {
             Some(speed) => self.readings >= FEWEST && (time - self.start) * speed >= patience * tolerance,
             None => self.readings >= AT_FIRST,
         };
-        self.stands = told;
-        if told { Change::Stands } else { Change::Same }
+        self.stands = reported;
+        if reported { Change::Stands } else { Change::Same }
     }
 
     fn stay_or_leave(&mut self, time: f64, value: f64, off: f64, tolerance: f64) -> Change {
@@ -122,7 +122,7 @@ impl Stand {
         }
     }
 
-    /// Whether the stand was told, and the last reading is off its place: a dropout, or the first of a motion.
+    /// Whether the stand was given, and the last reading is off its place: a dropout, or the first of a motion.
     pub(in crate::observe) fn is_doubtful(&self) -> bool {
         self.stands && self.outside > 0
     }
@@ -139,20 +139,20 @@ mod tests {
     use crate::random::Rng;
 
     #[test]
-    fn a_stop_is_told_within_a_few_readings_and_no_ramp_is_a_stop() {
+    fn a_stop_is_reported_within_a_few_readings_and_no_ramp_is_a_stop() {
         for (speed, rate) in [(8e-3, 1000.0), (8e-3, 20.0), (2e-4, 100.0)] {
             for seed in 0..50 {
                 let (mut stand, mut noise) = (Stand::default(), Rng::new(seed));
                 let stop = 5e-3 / speed;
-                let mut told = None;
+                let mut reported = None;
                 for i in 0..((stop + 2.0) * rate) as usize {
                     let time = i as f64 / rate;
                     let value = speed * time.min(stop) + 1e-6 * noise.normal();
                     if stand.feed(time, value, Some(1e-5), 4.0) == Change::Stands && time > 0.3 * stop {
-                        told = told.or(Some(time));
+                        reported = reported.or(Some(time));
                     }
                 }
-                let late = told.unwrap() - stop;
+                let late = reported.unwrap() - stop;
                 assert!(late > -1e-9 && late < (5.0 * 1e-5 / speed).max(4.5 / rate), "{speed} {seed}: {late}");
             }
         }

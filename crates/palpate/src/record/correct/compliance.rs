@@ -25,6 +25,7 @@ const BEYOND: f64 = 0.01;
 
 /// An invalid compliance of a machine. Rows count from 1.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum ComplianceError {
     /// The compliance must not be negative.
     #[error("expected a compliance of 0 m/N or more, found {0} m/N")]

@@ -25,6 +25,7 @@ use crate::record::correction::Column;
 /// An examination looks and says; it changes nothing. It takes columns that would make no record, too: values that are
 /// not finite are counted and passed over.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[non_exhaustive]
 pub struct SignalReport {
     /// Time stamps: of all columns, or of the displacement where the force has its own.
     pub stamps: Stamps,

@@ -6,6 +6,7 @@ use crate::statistics::quantile;
 
 /// What time stamps are like, in the order in which they were written.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[non_exhaustive]
 pub struct Stamps {
     /// Number of stamps.
     pub rows: usize,
@@ -23,6 +24,7 @@ pub struct Stamps {
 
 /// Time between neighbouring stamps, s, without those that repeat or step back.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[non_exhaustive]
 pub struct SampleInterval {
     /// Median, s.
     pub median: f64,
@@ -38,6 +40,7 @@ pub struct SampleInterval {
 ///
 /// Those around decide, not the median, so that neither sampling ever more slowly nor a change of rate counts as a gap.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+#[non_exhaustive]
 pub struct Gaps {
     /// How many.
     pub count: usize,
@@ -51,6 +54,7 @@ pub struct Gaps {
 
 /// Stamps that lie before the one before them.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+#[non_exhaustive]
 pub struct Reversals {
     /// How many steps back.
     pub count: usize,
@@ -160,7 +164,7 @@ mod tests {
     }
 
     #[test]
-    fn gaps_are_told_from_slower_sampling() {
+    fn gaps_are_reported_from_slower_sampling() {
         let logarithmic: Vec<f64> = (0..200).map(|i| 1.05f64.powi(i)).collect();
         assert_eq!(Stamps::of(&logarithmic).gaps.count, 0);
         assert!(Stamps::of(&logarithmic).interval.unwrap().irregular);

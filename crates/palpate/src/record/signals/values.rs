@@ -7,6 +7,7 @@ use crate::statistics::{bounds, noise};
 
 /// What a measured column is like; its unit is that of the column.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[non_exhaustive]
 pub struct Values {
     /// Values that are no finite number.
     pub not_finite: usize,
@@ -24,6 +25,7 @@ pub struct Values {
 
 /// Single rows that leave their neighbours and come back.
 #[derive(Debug, Clone, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[non_exhaustive]
 pub struct Strays {
     /// How many.
     pub count: usize,
@@ -35,6 +37,7 @@ pub struct Strays {
 
 /// A run of rows at one end of the range of a column.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[non_exhaustive]
 pub struct Saturation {
     /// The value.
     pub level: f64,
@@ -231,7 +234,7 @@ mod tests {
     }
 
     #[test]
-    fn a_clipped_force_is_told_from_a_held_displacement() {
+    fn a_clipped_force_is_reported_from_a_held_displacement() {
         let (displacement, force) = squeeze();
         let clipped: Vec<f64> = force.iter().map(|f| f.min(8.0)).collect();
         let found = Values::of(Column::Force, &clipped, Some(&displacement)).saturation.unwrap();

@@ -61,7 +61,7 @@ pub(super) fn phases(
     }
 }
 
-/// Levels of the force over which the displacement creeps; where none is seen, perhaps because its controller hunts, those
+/// Levels of the force over which the displacement creeps; where none is observed, perhaps because its controller hunts, those
 /// of the force less its ripple, with the corners of the jaw.
 fn force_held(record: &Record, jaw: &Levels, options: &SegmentOptions) -> Vec<Level> {
     let found = creeps(record, jaw, options);
@@ -169,7 +169,7 @@ fn slows_down(record: &Record, level: &Level, share: f64) -> bool {
 }
 
 /// How far the jaw comes, in standard deviations of its noise.
-const SEEN: f64 = 4.0;
+const OBSERVED: f64 = 4.0;
 /// How many times faster than in the hold the jaw comes to it.
 const FASTER: f64 = 2.0;
 
@@ -184,7 +184,7 @@ fn arrives(record: &Record, level: &Level, jaw: &SegmentSettings) -> bool {
     let inside = speed(level.start, level.end - 1);
     let length = level.end - level.start;
     let before = [1, 4, 16, 64].map(|part| level.start.saturating_sub((length / part).max(3)));
-    let far = (SEEN * jaw.noise).max(0.5 * jaw.tolerance);
+    let far = (OBSERVED * jaw.noise).max(0.5 * jaw.tolerance);
     let faster = |from: usize| way(from, level.start) > far && speed(from, level.start) > FASTER * inside;
     level.start > 0 && before.into_iter().any(faster)
 }

@@ -12,7 +12,7 @@ use crate::segment::{
 };
 use crate::statistics::{noise_in_time, range};
 
-/// Fewest samples in which phases can be seen.
+/// Fewest samples in which phases can be observed.
 const NEEDED: usize = 8;
 
 /// Finds the phases of a record: from its displacement and its force, or from its force alone where the displacement is missing.

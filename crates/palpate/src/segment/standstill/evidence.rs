@@ -18,7 +18,7 @@ pub(super) struct Stillness {
     pub(super) goes_on: [f64; 2],
     /// Fewest samples.
     pub(super) samples: usize,
-    /// Shortest duration, where one is asked for; then `goes_on` does not count.
+    /// Shortest duration, where one is requested; then `goes_on` does not count.
     pub(super) duration: Option<f64>,
 }
 
@@ -66,14 +66,14 @@ pub(super) fn evidence(
     let price = PART * parts.saturating_sub(2) as f64 * stillness.noise.powi(2);
     let (gain, samples) = gain_of_corners(time, values, (before, start, end, after), polygon, price);
     let stray = 0.1 * stillness.band;
-    let unit = stillness.noise.powi(2) + samples as f64 / SEEN * stray * stray;
+    let unit = stillness.noise.powi(2) + samples as f64 / OBSERVED * stray * stray;
     Some(gain / unit)
 }
 
 /// Square deviation, in units of the noise's, that a part of a polygon must explain.
 const PART: f64 = 12.0;
-/// Gain in square deviation, in units of the noise's, by which the corners of one standstill are seen.
-pub(super) const SEEN: f64 = 16.0;
+/// Gain in square deviation, in units of the noise's, by which the corners of one standstill are observed.
+pub(super) const OBSERVED: f64 = 16.0;
 /// How far noise takes a few samples, in its standard deviations.
 const SCRAP: f64 = 5.0;
 /// Fewest samples of a ramp that could be the side of a smooth turning point.

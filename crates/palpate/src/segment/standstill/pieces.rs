@@ -337,7 +337,7 @@ mod tests {
         }
     }
 
-    /// A kink of slope change s with n samples on either side is seen where s² n³/24 exceeds 25 σ².
+    /// A kink of slope change s with n samples on either side is observed where s² n³/24 exceeds 25 σ².
     #[test]
     fn noise_alone_is_hardly_ever_cut() {
         let mut random = Rng::new(3);

@@ -18,14 +18,14 @@ pub(super) fn gain_of_corners(
     let (from, until) = (time[start], time[end - 1]);
     let (centre, half) = (0.5 * (from + until), 0.5 * (until - from));
     let at: Vec<f64> = samples.iter().map(|i| (time[*i] - centre) / half).collect();
-    let seen: Vec<f64> = samples.iter().map(|i| values[*i] - values[start]).collect();
+    let observed: Vec<f64> = samples.iter().map(|i| values[*i] - values[start]).collect();
     let column = |f: &dyn Fn(f64) -> f64| at.iter().map(|u| f(*u)).collect::<Vec<f64>>();
     let powers: Vec<Vec<f64>> = (0..5).map(|power| column(&|u| u.powi(power))).collect();
     let line = || powers[..2].to_vec();
     let with_corners = |first: f64, last: f64| {
         let mut columns = line();
         columns.extend([column(&|u| (first - u).max(0.0)), column(&|u| (u - last).max(0.0))]);
-        left(&seen, &columns)
+        left(&observed, &columns)
     };
     let step = (1.0 / (end - start) as f64).max(0.03);
     let best = |with: &dyn Fn(f64) -> f64, usual: f64| {
@@ -40,12 +40,12 @@ pub(super) fn gain_of_corners(
         let place = f64::from(k) / 4.0;
         let mut columns = line();
         columns.push(column(&|u| (u - place).max(0.0)));
-        left(&seen, &columns)
+        left(&observed, &columns)
     };
     let one_corner = (-4..=4).map(corner).fold(f64::MAX, f64::min);
     // At an end of the record one corner is all there is.
     let both = before < start && end < after;
-    let smooth = if both { left(&seen, &powers).min(one_corner) } else { left(&seen, &powers) };
+    let smooth = if both { left(&observed, &powers).min(one_corner) } else { left(&observed, &powers) };
     let drawn = samples.iter().map(|i| polygon(*i).powi(2)).sum::<f64>() + price;
     (smooth - cornered.min(drawn), samples.len())
 }

@@ -3,7 +3,7 @@
 //! A standstill is where the column goes by far less than it does beside it. Nothing global is needed for that: a slow ramp
 //! between two levels is none, since they are slower, and a level that drifts is one, between ramps that are faster.
 
-use super::evidence::{SEEN, Stillness, evidence};
+use super::evidence::{OBSERVED, Stillness, evidence};
 use super::moves::{Move, moves};
 use super::pieces::Piece;
 use crate::statistics::mean;
@@ -79,9 +79,9 @@ pub(super) fn standstills(
             None => refused.note(&moves, first, last),
         }
     }
-    let seen = together(&found);
+    let observed = together(&found);
     found.retain(|(first, last, gain)| {
-        let stands = *gain >= SEEN || (seen && *gain > -LEAST);
+        let stands = *gain >= OBSERVED || (observed && *gain > -LEAST);
         if !stands {
             refused.note(&moves, *first, *last);
         }
@@ -129,12 +129,12 @@ pub(super) fn joined(values: &[f64], found: &[Standstill], stillness: &Stillness
 /// A standstill among others may do without, if its corners are not worse by this.
 const LEAST: f64 = 6.0;
 
-/// Whether the standstills whose corners are not seen one by one are seen together: a machine that stops at one turn, stops at
+/// Whether the standstills whose corners are not observed one by one are observed together: a machine that stops at one turn, stops at
 /// the others, too.
 fn together(found: &[(usize, usize, f64)]) -> bool {
     let gains: Vec<f64> = found.iter().map(|(_, _, gain)| *gain).filter(|gain| gain.is_finite()).collect();
-    let sum = gains.iter().map(|gain| gain.min(2.0 * SEEN)).sum::<f64>();
-    sum >= SEEN.max(3.0 * gains.len() as f64)
+    let sum = gains.iter().map(|gain| gain.min(2.0 * OBSERVED)).sum::<f64>();
+    sum >= OBSERVED.max(3.0 * gains.len() as f64)
 }
 
 /// Grows a piece to all neighbours that keep to its level.

@@ -29,6 +29,7 @@ pub enum ContactChoice {
 
 /// First touch.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+#[non_exhaustive]
 pub struct ContactPoint {
     /// Sample of first touch, if it lies in the record.
     pub sample: Option<usize>,

@@ -44,6 +44,7 @@ impl TouchMethod {
 
 /// Estimate of one rule.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[non_exhaustive]
 pub struct TouchEstimate {
     /// The rule.
     pub method: TouchMethod,
@@ -243,7 +244,7 @@ mod tests {
     }
 
     #[test]
-    fn a_sloping_baseline_is_seen_by_curves() {
+    fn a_sloping_baseline_is_observed_by_curves() {
         for seed in 0..5 {
             let line = approach(|s| 3.0 * s, 0.01, 0.05, seed);
             within(&line, TouchMethod::TwoLines, 0.02, 0.02);

@@ -13,6 +13,7 @@ pub struct Motion {
 
 /// An invalid motion.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum MotionError {
     /// Fewer than two knots.
     #[error("a motion needs two points or more, found {found}")]

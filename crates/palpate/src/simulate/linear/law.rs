@@ -23,6 +23,7 @@ pub struct LinearLaw {
 
 /// Invalid parameters of a linear law.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum LinearLawError {
     /// No term at all.
     #[error("a linear law needs a term that relaxes, found none")]

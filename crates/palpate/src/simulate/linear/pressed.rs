@@ -96,8 +96,8 @@ impl Pressed {
         let contact = &self.contact;
         let behind: f64 = memory.iter().zip(contact.law.terms()).map(|(x, term)| x - term.overshoot * value).sum();
         // A force that the body cannot carry at once asks for all of it.
-        let asked = contact.carried(to, behind).unwrap_or(contact.specimen.limit().at);
-        let allowed = (TOLERANCE * contact.value(asked).abs().max(value.abs())).max(f64::MIN_POSITIVE);
+        let requested = contact.carried(to, behind).unwrap_or(contact.specimen.limit().at);
+        let allowed = (TOLERANCE * contact.value(requested).abs().max(value.abs())).max(f64::MIN_POSITIVE);
         let u = contact.place(value).unwrap_or(0.0);
         // At first touch of a ball q begins like √t.
         let mut width = if contact.stiffness(u).0 == 0.0 { 1e-20 * duration } else { duration };

@@ -150,15 +150,15 @@ impl Surface {
     ///
     /// They are compared in what is remembered: the displacement of a body that is soft at first touch is a root of rounding there.
     pub(super) fn meeting(&self, since: f64, (start, end): (f64, f64), jaw: &impl Fn(f64) -> f64) -> Option<f64> {
-        let asked = |time: f64| self.contact.value(jaw(time));
-        let most = asked(start).max(asked(end));
+        let requested = |time: f64| self.contact.value(jaw(time));
+        let most = requested(start).max(requested(end));
         let rounding = 4.0 * f64::EPSILON * (most.abs() + self.recovery.size());
         if self.recovery.least(start - since, end - since) - most >= -rounding {
             return None;
         }
         let middle = 0.5 * (start + end);
         if middle <= start || middle >= end {
-            return (self.recovery.value(end - since) < asked(end)).then_some(end);
+            return (self.recovery.value(end - since) < requested(end)).then_some(end);
         }
         self.meeting(since, (start, middle), jaw).or_else(|| self.meeting(since, (middle, end), jaw))
     }

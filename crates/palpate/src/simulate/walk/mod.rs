@@ -5,7 +5,7 @@
 //! | file | what |
 //! |---|---|
 //! | `course.rs` | a drive with the times of its knots, and the walk through it |
-//! | `walker.rs` | along straight pieces of motion and of force, where the body can be asked for them |
+//! | `walker.rs` | along straight pieces of motion and of force, where the body can be requested them |
 //! | `program.rs` | through the steps of a program |
 //! | `stretch.rs` | contacts lost and regained, and the stretches between, in which nothing changes its course |
 

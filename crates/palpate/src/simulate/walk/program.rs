@@ -7,6 +7,7 @@ use crate::watch::{Stages, Unwatched};
 
 /// Where a step of a program ended.
 #[derive(Debug, Clone, Copy, PartialEq, Default, serde::Serialize, serde::Deserialize)]
+#[non_exhaustive]
 pub struct StepEnd {
     /// Time, s.
     pub time: f64,
@@ -77,7 +78,7 @@ struct Runner<'w, 'a, L: Layer> {
     model: &'a L,
     time: f64,
     jaw: f64,
-    /// The force (N) that was asked for last, as long as it stands: what can be computed back is off by rounding.
+    /// The force (N) that was requested last, as long as it stands: what can be computed back is off by rounding.
     kept: Option<f64>,
 }
 

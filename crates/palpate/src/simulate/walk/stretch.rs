@@ -7,6 +7,7 @@ use crate::simulate::layer::{InMotion, Layer};
 
 /// A contact that was lost or regained.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[non_exhaustive]
 pub struct ContactEvent {
     /// Lost or regained.
     pub kind: ContactEventKind,

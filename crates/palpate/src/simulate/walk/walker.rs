@@ -268,7 +268,7 @@ fn next_event<L: Layer>(stretch: &Stretch<L>, model: &L) -> Option<ContactEvent>
     })
 }
 
-/// Checks that a force can be asked for at all.
+/// Checks that a force can be requested at all.
 pub(in crate::simulate) fn check_force(time: f64, force: f64, model: &impl Layer) -> Result<(), SimulateError> {
     let bonded = model.is_bonded();
     if force < 0.0 && !(bonded && model.specimen().has_constant_section()) {

@@ -140,8 +140,8 @@ const BEATEN: f64 = 1e-6;
 
 /// Fits random problems of a law; none may be beaten by brute force, whatever reason the fit gives for its end.
 fn challenge(name: &str, response: Response) {
-    let asked = |name: &str, usual: u64| std::env::var(name).map_or(usual, |count| count.parse().unwrap());
-    let (problems, from) = (asked("PALPATE_PROBLEMS", 40), asked("PALPATE_FROM", 0));
+    let requested = |name: &str, usual: u64| std::env::var(name).map_or(usual, |count| count.parse().unwrap());
+    let (problems, from) = (requested("PALPATE_PROBLEMS", 40), requested("PALPATE_FROM", 0));
     challenge_with(name, response, from..from + problems);
 }
 

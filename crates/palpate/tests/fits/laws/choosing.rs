@@ -32,7 +32,7 @@ fn the_law_that_made_the_hold_is_chosen() {
         let comparison = compared(&times, &values);
         assert_eq!(comparison.ranking, Ranking::Forward, "{name}");
         let verdict = comparison.verdict.as_ref().unwrap();
-        assert!(verdict.alike.contains(&name.parse().unwrap()), "{name}: {verdict:?}");
+        assert!(verdict.indistinguishable.contains(&name.parse().unwrap()), "{name}: {verdict:?}");
         let chosen = comparison.rows.iter().find(|row| row.law == verdict.law).unwrap();
         println!("{name}: {} at {:.5}, {:?}", verdict.law, chosen.forward.score.unwrap(), verdict.certainty);
         // The noise of what is predicted is in every error; a good law adds little to it.
@@ -84,7 +84,10 @@ fn holds_that_predict_nothing_are_ranked_by_information() {
 fn a_noisy_hold_is_given_the_simplest_law_that_does() {
     let (times, values) = hold(300, 10.0, 0.1, |t| 1.0 + (-t / 3.0).exp());
     let verdict = compared(&times, &values).verdict.unwrap();
-    assert!(verdict.alike.len() > 1 && verdict.alike.contains(&Law::StandardLinearSolid), "{verdict:?}");
+    assert!(
+        verdict.indistinguishable.len() > 1 && verdict.indistinguishable.contains(&Law::StandardLinearSolid),
+        "{verdict:?}"
+    );
     assert_ne!(verdict.law, Law::Spectrum);
 }
 

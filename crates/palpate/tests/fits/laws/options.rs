@@ -1,4 +1,4 @@
-//! What may be asked of a fit does what it says: bounds, fixed parameters, constants, signs, samples.
+//! What may be required of a fit does what it says: bounds, fixed parameters, constants, signs, samples.
 
 #![allow(clippy::unwrap_used, reason = "in a test a panic is the verdict")]
 
@@ -27,7 +27,7 @@ fn bounded(name: &str, low: f64, high: f64) -> LawOptions {
 }
 
 #[test]
-fn a_bound_that_binds_is_kept_and_said() {
+fn a_bound_that_binds_is_kept_and_stated() {
     let free = fit("sls", &LawOptions::default(), 1e-3).unwrap();
     let within = fit("sls", &bounded("time_constant_s", 1.0, 10.0), 1e-3).unwrap();
     assert!((within.value("time_constant_s").unwrap() / free.value("time_constant_s").unwrap() - 1.0).abs() < 1e-9);

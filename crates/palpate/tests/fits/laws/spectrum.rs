@@ -130,7 +130,7 @@ fn share_after_hold(fit: &SpectrumFit) -> f64 {
 }
 
 #[test]
-fn an_open_end_is_told_from_a_plateau() {
+fn an_open_end_is_reported_from_a_plateau() {
     let t = times(1000, 100.0);
     let level = fit(&t, &noisy(&t, 1e-3, 1, sum_of_exponentials(&[(1.0, 3.0), (0.5, 12.0)], 1.0)));
     assert!(!level.is_open_ended() && share_after_hold(&level) < 1e-3);

@@ -56,8 +56,8 @@ fn an_analysis_says_how_far_its_rate_domain_is_off() {
     let force: Vec<f64> = rising.chain(strains.iter().copied()).collect();
     let record = Record::new(time, Some(displacement), force).unwrap();
     let analysis = analyze(&record, &AnalysisOptions::default()).unwrap();
-    let said = analysis.holds[0].rate_bias.unwrap();
+    let stated = analysis.holds[0].rate_bias.unwrap();
     let by_rate = analysis.holds[0].rate_fit_with(5.0).unwrap().rate_coefficient().value;
-    println!("said {said:?}, found {:.3}", by_rate / TRUTH);
-    assert!((0.8..0.99).contains(&said.coefficient), "{said:?}");
+    println!("stated {stated:?}, found {:.3}", by_rate / TRUTH);
+    assert!((0.8..0.99).contains(&stated.coefficient), "{stated:?}");
 }

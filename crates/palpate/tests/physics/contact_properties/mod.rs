@@ -89,7 +89,7 @@ proptest! {
         let off = far_of(&result.contact_displacement, &moved.contact_displacement, 1.0, scene.body.deepest());
         prop_assert!(off < dent, "{off:e}");
         prop_assert_eq!(result.events.len(), moved.events.len());
-        // Under the force that came of it, where there is one that can be asked for.
+        // Under the force that came of it, where there is one that can be requested.
         let forces: Vec<f64> = result.force.iter().map(|force| force.max(0.0)).collect();
         let times: Vec<f64> = result.time.clone();
         let history = ForceHistory::new(times.clone(), forces.clone()).unwrap();
@@ -324,8 +324,8 @@ proptest! {
         let (force, depth) = (largest(&fine.force), scene.body.deepest());
         for (end, step) in ends.iter().zip(&program) {
             match *step {
-                ProgramStep::MoveToForce { force: asked, .. } | ProgramStep::Press { to: asked, .. } => {
-                    prop_assert!((end.force - asked).abs() <= 1e-9 * asked, "{asked} N, found {} N", end.force);
+                ProgramStep::MoveToForce { force: requested, .. } | ProgramStep::Press { to: requested, .. } => {
+                    prop_assert!((end.force - requested).abs() <= 1e-9 * requested, "{requested} N, found {} N", end.force);
                 }
                 ProgramStep::Move { to, .. } => prop_assert!((end.displacement - to).abs() <= 1e-12 * depth),
                 ProgramStep::HoldPosition { .. } | ProgramStep::HoldForce { .. } => {}

@@ -201,7 +201,7 @@ fn long() -> Motion {
 }
 
 #[test]
-fn long_simulations_report_progress_and_end_when_they_are_told_to() {
+fn long_simulations_report_progress_and_end_when_they_are_reported_to() {
     let (motion, model) = (long(), model(BLOCK, Separation::Bonded));
     let sampling = Sampling::Rate(10.0);
     type Work<'a> = &'a dyn Fn(&mut dyn Watch) -> Result<(), SimulateError>;

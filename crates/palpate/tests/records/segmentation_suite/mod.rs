@@ -28,37 +28,37 @@ fn sum(keep: impl Fn(Kind, f64) -> bool) -> Score {
     sum
 }
 
-fn told(score: &Score) -> String {
+fn reported(score: &Score) -> String {
     format!("{} of {} holds, {} extra, {} turned", score.found, score.holds, score.extra, score.turned)
 }
 
 #[test]
 fn holds_of_constant_displacement_are_found() {
     let score = sum(|kind, _| kind != Kind::ForceHeld);
-    println!("{}", told(&score));
-    assert!(score.found_share() >= 0.99, "{}", told(&score));
-    assert_eq!(score.extra, 0, "{}", told(&score));
+    println!("{}", reported(&score));
+    assert!(score.found_share() >= 0.99, "{}", reported(&score));
+    assert_eq!(score.extra, 0, "{}", reported(&score));
 }
 
 #[test]
 fn no_hold_is_found_where_there_is_none() {
     let score = sum(|kind, _| matches!(kind, Kind::Triangle | Kind::Sine | Kind::Ramps | Kind::Still | Kind::Creeping));
-    assert_eq!(score.extra, 0, "{}", told(&score));
+    assert_eq!(score.extra, 0, "{}", reported(&score));
 }
 
 #[test]
 fn edges_are_within_two_samples_at_one_per_cent_of_noise() {
     let score = sum(|kind, noise| kind != Kind::ForceHeld && noise == 1e-2);
-    assert!(score.found_share() >= 0.98, "{}", told(&score));
+    assert!(score.found_share() >= 0.98, "{}", reported(&score));
     for errors in &score.sharp {
-        assert!(quantile(errors, 0.95).unwrap() <= 2.0, "{}", told(&score));
+        assert!(quantile(errors, 0.95).unwrap() <= 2.0, "{}", reported(&score));
     }
-    assert!(quantile(&score.blunt, 0.95).unwrap() <= 6.0, "{}", told(&score));
+    assert!(quantile(&score.blunt, 0.95).unwrap() <= 6.0, "{}", reported(&score));
 }
 
 #[test]
 fn holds_of_constant_force_are_found() {
     let score = sum(|kind, _| kind == Kind::ForceHeld);
-    assert!(score.found_share() >= 0.98, "{}", told(&score));
-    assert_eq!(score.extra, 0, "{}", told(&score));
+    assert!(score.found_share() >= 0.98, "{}", reported(&score));
+    assert_eq!(score.extra, 0, "{}", reported(&score));
 }

@@ -1,6 +1,6 @@
 //! Jaw protocols by lot: what the jaw does, and where it stands still.
 //!
-//! # What can be told
+//! # What can be determined
 //!
 //! A hold is demanded where the data can show it, by one rule on every ramp beside it. With σ what noise and rounding leave
 //! unsure of the displacement, a ramp travels 6 σ or more (and 1 % of the range), and at its speed the jaw would have gone on by
@@ -22,9 +22,9 @@ pub const FEWEST: f64 = 10.0;
 pub const TRAVEL: f64 = 6.0;
 /// Least way the jaw would have gone on in a hold, in σ.
 pub const STANDS: f64 = 12.0;
-/// Samples in which that is seen; of fewer it must be farther, as the root of their number.
+/// Samples in which that is observed; of fewer it must be farther, as the root of their number.
 pub const ENOUGH: f64 = 24.0;
-/// The same as a share of the range: less is not seen by eye.
+/// The same as a share of the range: less is not observed by eye.
 pub const STANDS_SHARE: f64 = 0.01;
 
 /// One ramp and the hold after it: in samples, and levels as shares of the deepest.
@@ -145,7 +145,7 @@ fn levels(kind: Kind, unsure: f64, random: &mut Rng) -> Vec<f64> {
     }
 }
 
-/// Ramps and holds in samples, all of which can be told.
+/// Ramps and holds in samples, all of which can be determined.
 fn steps(kind: Kind, levels: &[f64], unsure: f64, random: &mut Rng) -> Vec<Step> {
     let spread = if kind == Kind::UnevenHolds { 10.0 } else { 2.0 };
     let holds: Vec<f64> = levels.iter().map(|_| log_uniform(1.0 / spread, spread, random)).collect();
@@ -190,7 +190,7 @@ fn settle(knots: &mut Vec<(f64, f64)>, start: f64, rise: f64, step: &Step, unsur
     }
 }
 
-/// A body whose relaxation can be seen in these holds.
+/// A body whose relaxation can be observed in these holds.
 fn body(steps: &[Step], interval: f64, random: &mut Rng) -> ContactModel {
     let is_ball = random.uniform() < 0.5;
     let (shape, sides) = if is_ball {

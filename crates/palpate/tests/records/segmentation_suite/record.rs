@@ -15,7 +15,7 @@ pub struct TrueHold {
     pub after: After,
     /// Whether the machine held the force (else the displacement).
     pub force_held: bool,
-    /// How well the noise lets start and end be told, samples: the limit of Cramér and Rao.
+    /// How well the noise lets start and end be reported, samples: the limit of Cramér and Rao.
     pub limits: [f64; 2],
 }
 

@@ -8,7 +8,7 @@ use palpate::segment::{Segment, SegmentOptions, find_phases};
 use super::record::TrueHold;
 use super::suite::{Kind, Labelled};
 
-/// The limit of Cramér and Rao up to which an edge can be told to two samples, nineteen times of twenty.
+/// The limit of Cramér and Rao up to which an edge can be determined to two samples, nineteen times of twenty.
 pub const SHARP: f64 = 0.75;
 
 /// The outcome of some records.
@@ -24,7 +24,7 @@ pub struct Score {
     pub extra: usize,
     /// Found with a wrong direction before.
     pub turned: usize,
-    /// Errors of starts and ends that can be told to two samples, samples.
+    /// Errors of starts and ends that can be determined to two samples, samples.
     pub sharp: [Vec<f64>; 2],
     /// Errors of the others, in units of their limit.
     pub blunt: Vec<f64>,
@@ -126,7 +126,7 @@ pub fn table(rows: &[(String, Score)]) -> String {
         "| records | number | holds | found | missed | extra | wrong direction | start: median | 95 % | most | end: median | 95 % | most | blunt edges | 95 %, limits |\n\
          |---|---:|---:|---:|---:|---:|---:|---:|---:|---:|---:|---:|---:|---:|---:|\n",
     );
-    let told =
+    let reported =
         |value: Option<f64>, digits: usize| value.map_or_else(|| "–".to_owned(), |value| format!("{value:.digits$}"));
     for (name, score) in rows {
         let _ = write!(
@@ -141,10 +141,10 @@ pub fn table(rows: &[(String, Score)]) -> String {
         );
         for errors in &score.sharp {
             for share in [0.5, 0.95, 1.0] {
-                let _ = write!(out, " {} |", told(quantile(errors, share), 0));
+                let _ = write!(out, " {} |", reported(quantile(errors, share), 0));
             }
         }
-        let _ = writeln!(out, " {} | {} |", score.blunt.len(), told(quantile(&score.blunt, 0.95), 1));
+        let _ = writeln!(out, " {} | {} |", score.blunt.len(), reported(quantile(&score.blunt, 0.95), 1));
     }
     out
 }

@@ -193,7 +193,7 @@ impl JpkForce {
         let mut wanted = chosen.channels();
         let stored = |index: &usize| matches!(channels[*index].stored, Stored::Numbers(_));
         if !wanted.iter().any(stored) {
-            // That there are as many rows as the header says is seen from the bytes of a channel only.
+            // That there are as many rows as the header says is observed from the bytes of a channel only.
             let proof = (0..channels.len()).find(stored).ok_or_else(|| {
                 self.input.damaged(format!("segment {}", segment.number), "a channel of numbers", "rules only")
             })?;

@@ -48,11 +48,11 @@ pub(crate) fn look_into(input: &Input, _options: &ReadOptions) -> Result<Found, 
 
 /// The entries of the first header, and those of the others that say something else.
 fn of_headers(blocks: &[Block], clock: &'static str) -> Vec<Metadata> {
-    let mut seen = std::collections::HashSet::new();
+    let mut observed = std::collections::HashSet::new();
     let mut all = Vec::new();
     for (key, value) in blocks.iter().flat_map(|block| &block.header) {
         let layout = matches!(key.as_str(), "columns" | "units" | "fancyNames" | "calibrationSlots" | "segment");
-        if !layout && !value.is_empty() && seen.insert((key, value)) {
+        if !layout && !value.is_empty() && observed.insert((key, value)) {
             all.push(metadata(key, value));
         }
     }

@@ -94,7 +94,7 @@ fn load(
 }
 
 /// Time: of the whole series where the file has it, else of each segment, put one behind the other, else of the
-/// durations that were asked for. Which of these is said.
+/// durations that were requested. Which of these is stated.
 fn set_clocks(blocks: &[Block], drafts: &mut [Draft]) -> &'static str {
     const NONE: &str = "none: the file has neither a column of it nor the durations of all segments";
     if set_series_clock(drafts.iter_mut()) {
@@ -126,13 +126,13 @@ fn set_clocks(blocks: &[Block], drafts: &mut [Draft]) -> &'static str {
     }
 }
 
-/// The time between two rows, going by what was asked for: a segment may have ended early.
+/// The time between two rows, going by what was requested: a segment may have ended early.
 fn step(block: &Block) -> Option<f64> {
     let number = |key: &str| block.value(key)?.parse::<f64>().ok().filter(|value| *value > 0.0 && value.is_finite());
     let index = block.value("segmentIndex")?;
-    let asked = |key: &str| number(&format!("force-settings.segment.{index}.{key}"));
-    if let Some(duration) = asked("duration") {
-        return Some(duration / asked("num-points").unwrap_or(block.rows as f64));
+    let requested = |key: &str| number(&format!("force-settings.segment.{index}.{key}"));
+    if let Some(duration) = requested("duration") {
+        return Some(duration / requested("num-points").unwrap_or(block.rows as f64));
     }
     let key = match block.value("segment")? {
         "extend" | "trace" => "traceScanTime",

@@ -7,7 +7,7 @@ use crate::{
     input::{Encoding, Input, LineReader},
 };
 
-/// Most segments that are told apart; more are no segments.
+/// Most segments that are distinguished; more are no segments.
 pub(super) const MOST_SEGMENTS: usize = 4096;
 
 /// Rows, and where the number of the segment changes.

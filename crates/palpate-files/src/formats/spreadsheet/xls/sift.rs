@@ -211,9 +211,9 @@ impl Cells {
 
     /// A text of as many letters as are there; one that goes on in another record ends with its own.
     fn text(&mut self, into: &mut Sifted, cell: &[u8], text: &[u8]) -> Option<()> {
-        let (said, wide) = (u16_at(text, 0)?, *text.get(2)? & 1 == 1);
+        let (stated, wide) = (u16_at(text, 0)?, *text.get(2)? & 1 == 1);
         let held = text.len() - 3;
-        let length = usize::from(said).min(if wide { held / 2 } else { held });
+        let length = usize::from(stated).min(if wide { held / 2 } else { held });
         let bytes = if wide { 2 * length } else { length };
         let length = (length as u16).to_le_bytes();
         self.put(into, LABEL, &[cell, &length, &text[2..3 + bytes]].concat())

@@ -2,7 +2,7 @@
 //!
 //! It reserves memory by the number of shared texts that a part states, keeps styles with all they name, wraps places
 //! that are too large for its numbers, takes the first shared text where a number is none, and drops what stands in a
-//! value beside plain text. All of this is damage here, and told with its place.
+//! value beside plain text. All of this is damage here, and reported with its place.
 
 use std::borrow::Cow;
 
@@ -70,7 +70,7 @@ struct Checked<'a> {
 struct Tally {
     is_sheet: bool,
     texts: u64,
-    texts_said: u64,
+    texts_stated: u64,
     styles: u64,
     sheets: usize,
     longest_name: u64,
@@ -138,9 +138,9 @@ impl Checked<'_> {
         match name.as_ref() {
             "si" => self.tally.texts += 1,
             "sst" => {
-                let said = self.said(element, "uniqueCount")?;
-                let said = said.map_or(0, |said| said.trim().parse().unwrap_or(u64::MAX));
-                self.tally.texts_said = self.tally.texts_said.max(said);
+                let stated = self.stated(element, "uniqueCount")?;
+                let stated = stated.map_or(0, |stated| stated.trim().parse().unwrap_or(u64::MAX));
+                self.tally.texts_stated = self.tally.texts_stated.max(stated);
             }
             "xf" | "font" | "fill" | "border" => self.tally.styles += 1,
             "sheetData" => {
@@ -164,16 +164,16 @@ impl Checked<'_> {
     }
 
     /// The value of an attribute, the first of exactly this name, as `calamine` takes it.
-    fn said<'a>(&self, element: &'a BytesStart<'_>, name: &str) -> Result<Option<Cow<'a, str>>, FileError> {
+    fn stated<'a>(&self, element: &'a BytesStart<'_>, name: &str) -> Result<Option<Cow<'a, str>>, FileError> {
         let mut all = self.attributes(element)?.into_iter();
         Ok(all.find(|attribute| attribute.key.as_ref() == name).map(|attribute| attribute.value))
     }
 
     /// Parts that are read are those gone over here: other names would lead around.
     fn relation(&mut self, element: &BytesStart<'_>) -> Result<(), FileError> {
-        let kind = self.said(element, "Type")?.unwrap_or_default();
+        let kind = self.stated(element, "Type")?.unwrap_or_default();
         let kind = kind.rsplit('/').next().unwrap_or_default();
-        let target = self.said(element, "Target")?.unwrap_or_default();
+        let target = self.stated(element, "Target")?.unwrap_or_default();
         let lower = target.to_ascii_lowercase();
         match kind {
             "officeDocument" if lower.ends_with(".bin") => {
@@ -203,7 +203,7 @@ impl Checked<'_> {
     fn begin_in_rows(&mut self, element: &BytesStart<'_>) -> Result<(), FileError> {
         let name = element.local_name();
         let (place, kind) = match name.as_ref() {
-            "row" | "c" => (self.said(element, "r")?, self.said(element, "t")?),
+            "row" | "c" => (self.stated(element, "r")?, self.stated(element, "t")?),
             _ => (None, None),
         };
         let damaged = |expected: &str, found: &str| Err(self.package.damaged(self.path, expected, found));
@@ -293,8 +293,8 @@ impl Checked<'_> {
         let damaged = |expected: &str, found: u64| Err(self.package.damaged(self.path, expected, &found.to_string()));
         self.found.texts += tally.texts;
         // The shortest is `<si/>`.
-        if tally.texts_said > done / 5 {
-            return damaged("as many shared texts as there are bytes for", tally.texts_said);
+        if tally.texts_stated > done / 5 {
+            return damaged("as many shared texts as there are bytes for", tally.texts_stated);
         }
         if self.found.texts > MOST_TEXTS {
             return damaged("at most 2097152 shared texts", self.found.texts);

@@ -58,7 +58,7 @@ impl Package {
         paths
     }
 
-    /// Goes through the XML of a part of at most `most` bytes. `step` is told what comes, with the bytes done.
+    /// Goes through the XML of a part of at most `most` bytes. `step` is given what comes, with the bytes done.
     pub(super) fn read(
         &self,
         path: &str,

@@ -163,7 +163,7 @@ fn descended(
     here.point.theta
 }
 
-/// The place where Levenberg's method ends, with one parameter held where it is if asked for.
+/// The place where Levenberg's method ends, with one parameter held where it is if requested.
 fn lowered(
     mut here: Place,
     at: &impl Fn(&[f64]) -> Place,

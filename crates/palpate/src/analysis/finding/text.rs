@@ -8,23 +8,23 @@ use crate::number::{counted, significant, with_error};
 use crate::record::Column;
 
 /// Code, severity, observation, meaning and remedy.
-type Told = (&'static str, Severity, String, &'static str, &'static str);
+type Text = (&'static str, Severity, String, &'static str, &'static str);
 
-fn info(code: &'static str, seen: String, meaning: &'static str, remedy: &'static str) -> Told {
-    (code, Info, seen, meaning, remedy)
+fn info(code: &'static str, observed: String, meaning: &'static str, remedy: &'static str) -> Text {
+    (code, Info, observed, meaning, remedy)
 }
 
-fn caution(code: &'static str, seen: String, meaning: &'static str, remedy: &'static str) -> Told {
-    (code, Caution, seen, meaning, remedy)
+fn caution(code: &'static str, observed: String, meaning: &'static str, remedy: &'static str) -> Text {
+    (code, Caution, observed, meaning, remedy)
 }
 
-fn warning(code: &'static str, seen: String, meaning: &'static str, remedy: &'static str) -> Told {
-    (code, Warning, seen, meaning, remedy)
+fn warning(code: &'static str, observed: String, meaning: &'static str, remedy: &'static str) -> Text {
+    (code, Warning, observed, meaning, remedy)
 }
 
 impl Finding {
     /// The text of the finding.
-    pub(super) fn told(&self) -> Told {
+    pub(super) fn text(&self) -> Text {
         match self {
             Self::EquilibriumExtrapolated { beyond } => caution(
                 "equilibrium_extrapolated",
@@ -47,10 +47,37 @@ impl Finding {
                 SHORT_OR_NOISY,
                 LONGER_OR_FASTER,
             ),
-            Self::ExponentsAlike { exponents } => {
-                let list: Vec<String> = exponents.iter().map(|n| format!("{n}")).collect();
-                let seen = format!("the exponents {} are not distinguishable", list.join(", "));
-                info("exponents_alike", seen, SHORT_OR_NOISY, LONGER_OR_FASTER)
+            Self::ExponentsIndistinguishable { exponents } => {
+                let observed = format!("the exponents {} are not distinguishable", series(exponents));
+                info("exponents_indistinguishable", observed, SHORT_OR_NOISY, LONGER_OR_FASTER)
+            }
+            Self::ExponentListExtended {
+                listed,
+                added,
+                holds,
+                open,
+            } => {
+                let observed = format!(
+                    "the information criterion of {} was lowest at an end of the listed exponents {}; {} added",
+                    listed_holds(holds),
+                    series(listed),
+                    if added.len() == 1 { format!("{} was", series(added)) } else { format!("{} were", series(added)) },
+                );
+                if *open {
+                    caution(
+                        "exponent_list_extended",
+                        format!("{observed}, and it is still lowest at the largest"),
+                        "the data give no upper limit of the exponent; the relaxation is close to logarithmic in time",
+                        LONGER_OR_FASTER,
+                    )
+                } else {
+                    info(
+                        "exponent_list_extended",
+                        observed,
+                        "an exponent at the end of a list is limited by the list, not by the data",
+                        "list the added exponents too, or use the free exponent",
+                    )
+                }
             }
             Self::RateAtBound { exponent } => warning(
                 "rate_at_bound",
@@ -171,8 +198,8 @@ impl Finding {
                 "check first touch (touch = \"...\" in the test description)",
             ),
             Self::Thinned { every } => {
-                let seen = format!("the fit uses one sample in {every}");
-                info("thinned", seen, "the remaining samples carry the same information; the fit is faster", "none")
+                let observed = format!("the fit uses one sample in {every}");
+                info("thinned", observed, "the remaining samples carry the same information; the fit is faster", "none")
             }
             Self::DropoutsRepaired { column, count } => caution(
                 "dropouts_repaired",
@@ -384,7 +411,7 @@ impl Finding {
             Self::RateCoefficientTrend { verdict, holds, slope, interval: (low, high) } => {
                 const NEAREST: &str = "use v of the hold whose strain is nearest to the one of interest";
                 let [slope, low, high] = [slope, low, high].map(|value| significant(*value, 3));
-                let seen = format!("over {holds} holds after loading d ln v/dεₑ = {slope} (interval {low} to {high})");
+                let observed = format!("over {holds} holds after loading d ln v/dεₑ = {slope} (interval {low} to {high})");
                 let (severity, meaning, remedy) = match verdict {
                     TrendVerdict::FallsWithStrain => (
                         Caution,
@@ -400,7 +427,7 @@ impl Finding {
                         "hold longer or at more strains",
                     ),
                 };
-                ("rate_coefficient_trend", severity, seen, meaning, remedy)
+                ("rate_coefficient_trend", severity, observed, meaning, remedy)
             }
             Self::OverlayPoor { relative } => caution(
                 "overlay_poor",
@@ -419,6 +446,16 @@ impl Finding {
             ),
         }
     }
+}
+
+/// Numbers as people write a list.
+fn series(numbers: &[f64]) -> String {
+    numbers.iter().map(f64::to_string).collect::<Vec<_>>().join(", ")
+}
+
+fn listed_holds(holds: &[usize]) -> String {
+    let numbers: Vec<String> = holds.iter().map(usize::to_string).collect();
+    format!("{} {}", if holds.len() == 1 { "hold" } else { "holds" }, numbers.join(", "))
 }
 
 const SHORT_OR_NOISY: &str = "the hold is too short or too noisy to determine the exponent";
