@@ -203,7 +203,7 @@ fn the_guide_explains_every_finding() {
         .filter(|line| !line.starts_with([' ', '}']));
     let words = variants.map(|line| line.split(|c: char| !c.is_alphanumeric()).next().unwrap_or_default());
     let mut codes: Vec<String> = words.map(in_snake_case).collect();
-    let told = read("crates/palpate/src/analysis/finding/told.rs");
+    let told = read("crates/palpate/src/analysis/finding/text.rs");
     assert!(codes.iter().all(|code| told.contains(&format!("\"{code}\""))), "{codes:?}");
     let guide = read("docs/guides/reading-the-report.md");
     let rows = guide.split("## Findings").nth(1).and_then(|rest| rest.split("\n## ").next()).unwrap_or_default();

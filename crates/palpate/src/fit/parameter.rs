@@ -6,7 +6,7 @@ use std::str::FromStr;
 use serde::{Deserialize, Serialize};
 
 use super::error::FitError;
-use crate::laws::{name_of_term, term_of_name};
+use crate::laws::{Form, name_of_term, term_of_name};
 
 /// What a parameter of a law is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -53,6 +53,8 @@ pub enum ParameterKind {
     FlowRate,
     /// The coefficient of a power.
     Coefficient,
+    /// A parameter of a law that another crate defines, by its name.
+    Custom(&'static str),
 }
 
 impl ParameterKind {
@@ -82,6 +84,9 @@ impl ParameterKind {
     ];
 
     fn word(self) -> &'static str {
+        if let Self::Custom(name) = self {
+            return name;
+        }
         Self::WORDS.iter().find(|(kind, _)| *kind == self).map_or("", |(_, word)| word)
     }
 }
@@ -109,6 +114,19 @@ impl ParameterName {
     #[must_use]
     pub fn of_term(kind: ParameterKind, term: usize) -> Self {
         Self { kind, term: Some(term) }
+    }
+}
+
+impl ParameterName {
+    /// The name of a parameter of a law of this form.
+    pub(crate) fn of_form(form: &Form, name: &str) -> Option<Self> {
+        let custom = || {
+            form.parameter(name).map(|(name, term)| Self {
+                kind: ParameterKind::Custom(name),
+                term,
+            })
+        };
+        name.parse().ok().or_else(custom)
     }
 }
 
@@ -162,7 +180,7 @@ impl TryFrom<String> for ParameterName {
 
 impl PartialEq<str> for ParameterName {
     fn eq(&self, name: &str) -> bool {
-        name.parse() == Ok(*self)
+        self.to_string() == name
     }
 }
 

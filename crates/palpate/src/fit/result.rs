@@ -148,8 +148,10 @@ impl Fit {
     /// A parameter by its name in writing.
     #[must_use]
     pub fn estimate(&self, name: &str) -> Option<&Estimate> {
-        let name: ParameterName = name.parse().ok()?;
-        self.parameter(name).map(|parameter| &parameter.estimate)
+        self.parameters
+            .iter()
+            .find(|parameter| parameter.name == *name)
+            .map(|parameter| &parameter.estimate)
     }
 
     /// Parameters found from the data.

@@ -1,6 +1,8 @@
-//! What laws are made of and described by: functions of time, the choice of an exponent, the response, words.
+//! What laws are made of and described by: functions of time, the choice of an exponent, the response.
 
 use serde::{Deserialize, Serialize};
+
+use super::CustomKernel;
 
 /// A function of time with one or two parameters, of which laws are composed.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
@@ -28,6 +30,8 @@ pub enum BasisFunction {
     Diffusion,
     /// λt; θ = ln λ.
     Straight,
+    /// A function that another crate defines.
+    Custom(CustomKernel),
 }
 
 impl BasisFunction {
@@ -66,15 +70,4 @@ pub enum Response {
     Relaxation,
     /// Displacement or strain at constant force, and recovery after release.
     Creep,
-}
-
-/// A law in words: what tables, figures and help show of it.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Description {
-    /// Name in running text, such as "standard linear solid".
-    pub title: &'static str,
-    /// The law for relaxation, or for creep if it has no other form.
-    pub equation: &'static str,
-    /// Where it is used or comes from.
-    pub source: &'static str,
 }

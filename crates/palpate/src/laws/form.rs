@@ -1,7 +1,8 @@
 //! What a law is made of: a constant or none, and shapes.
 
+use super::{BasisFunction, Kernel, Response, ShapeParameterKind, name_of_term, term_of_name};
+
 /// Columns of a law, in the order of its linear parameters: the constant if it has one, then the shapes.
-use super::{BasisFunction, Kernel, Response, ShapeParameterKind, name_of_term};
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Form {
     /// Relaxation or creep.
@@ -40,6 +41,14 @@ impl Form {
         let names = self.numbered(|shape| shape.parameters().iter().map(|parameter| parameter.name));
         let kinds = self.shapes.iter().flat_map(|shape| shape.parameters().iter().map(|parameter| parameter.kind));
         names.into_iter().zip(kinds).map(|((shape, name), kind)| (shape, name, kind)).collect()
+    }
+
+    /// A nonlinear parameter by its name: the name without the number of its term, and that number.
+    pub(crate) fn parameter(&self, written: &str) -> Option<(&'static str, Option<usize>)> {
+        self.shapes.iter().flat_map(Kernel::parameters).find_map(|parameter| {
+            let term = term_of_name(parameter.name, written);
+            (parameter.name == written || term.is_some()).then_some((parameter.name, term))
+        })
     }
 
     /// Names of each shape, with the number of the shape among its like where there are several.

@@ -73,6 +73,9 @@ fn shape(term: &Term) -> String {
         }
         BasisFunction::Diffusion => format!("(8/π²) Σ_k exp(−k² t/{time})/k² over odd k"),
         BasisFunction::Straight => format!("t/{time}"),
+        BasisFunction::Custom(custom) => {
+            custom.kernel.formula(&term.parameters).unwrap_or_else(|| format!("{}(t)", custom.name))
+        }
     }
 }
 

@@ -2,15 +2,18 @@
 
 /// What a nonlinear parameter of a shape is, and between which bounds it is sought.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) enum ShapeParameterKind {
+pub enum ShapeParameterKind {
     /// ln λ, reported as a rate λ in 1/s. Sought from the slowest to the fastest that a hold can show.
     Rate,
     /// ln λ, reported as a time τ = 1/λ in s.
     Time,
     /// A dimensionless parameter between two bounds, with the values that a coarse search tries.
     Pure {
+        /// Lowest value.
         low: f64,
+        /// Highest value.
         high: f64,
+        /// Values of the coarse search.
         coarse: &'static [f64],
     },
     /// ln λ of a rate that only sets the unit of the amplitude: one over the duration of the fit, never sought.
@@ -19,20 +22,23 @@ pub(crate) enum ShapeParameterKind {
 
 /// A nonlinear parameter of a shape.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct ShapeParameter {
+pub struct ShapeParameter {
     /// Name in results, with its unit: `relative_rate_per_s`, `time_constant_s`, `exponent`.
-    pub(crate) name: &'static str,
+    pub name: &'static str,
     /// Kind and range.
-    pub(crate) kind: ShapeParameterKind,
+    pub kind: ShapeParameterKind,
 }
 
 impl ShapeParameter {
-    pub(in crate::laws) const fn new(name: &'static str, kind: ShapeParameterKind) -> Self {
+    /// A parameter of this name and kind.
+    #[must_use]
+    pub const fn new(name: &'static str, kind: ShapeParameterKind) -> Self {
         Self { name, kind }
     }
 
-    /// A dimensionless parameter.
-    pub(in crate::laws) const fn pure(name: &'static str, low: f64, high: f64, coarse: &'static [f64]) -> Self {
+    /// A dimensionless parameter between two bounds, with the values that a coarse search tries.
+    #[must_use]
+    pub const fn pure(name: &'static str, low: f64, high: f64, coarse: &'static [f64]) -> Self {
         Self::new(name, ShapeParameterKind::Pure { low, high, coarse })
     }
 }
@@ -69,11 +75,12 @@ pub(in crate::laws) fn two(derivatives: &mut [Vec<f64>]) -> [&mut Vec<f64>; 2] {
     }
 }
 
-/// One shape: a function of time and of one or two numbers θ.
+/// A basis function: a function of time t ≥ 0 and of one or two parameters θ.
 ///
-/// Rates enter as ln λ, so that a change of the unit of time adds a constant to them and no more.
-pub(crate) trait Kernel {
-    /// The parameters θ of the shape, a rate first.
+/// Rates enter as ln λ, so that a change of the unit of time adds a constant to them and no more. A fit needs no starting values: it
+/// searches rates between the slowest and the fastest that the hold can show, and dimensionless parameters on their coarse values.
+pub trait Kernel: Sync {
+    /// The parameters θ of the function, a rate first.
     fn parameters(&self) -> &'static [ShapeParameter];
 
     /// Whether the shape falls from 1 to 0 (and creeps as 1 − shape) rather than growing from 0 without end.
@@ -86,4 +93,10 @@ pub(crate) trait Kernel {
 
     /// The shape and its derivatives by every parameter.
     fn gradient(&self, times: &[f64], theta: &[f64], value: &mut [f64], derivatives: &mut [Vec<f64>]);
+
+    /// The function with its parameters put in, as people write it; without one the name of the function stands in formulas.
+    fn formula(&self, theta: &[f64]) -> Option<String> {
+        let _ = theta;
+        None
+    }
 }

@@ -24,6 +24,7 @@ fn with<R>(basis: &BasisFunction, act: impl FnOnce(&dyn Kernel) -> R) -> R {
         BasisFunction::FungContinuous => act(&FungContinuous),
         BasisFunction::Diffusion => act(&Diffusion),
         BasisFunction::Straight => act(&Straight),
+        BasisFunction::Custom(custom) => act(custom.kernel),
     }
 }
 

@@ -7,60 +7,77 @@ use serde::{Deserialize, Serialize};
 
 use super::continuous::{diffusion, fractional_zener, fung_continuous, latency, logarithmic, power, stretched};
 use super::discrete::{burgers, fung, kelvin_voigt, maxwell, prony, spectrum, standard_linear_solid};
-use super::{BasisFunction, Description, ExponentChoice, Form, Response};
+use super::{BasisFunction, Description, ExponentChoice, Form, LawDefinition, Response};
 
-/// A law of relaxation or creep whose parameters are to be found; see the [table of laws](crate::laws).
-///
-/// In text and JSON a law is its name: `latency` (n found), `latency:5`, `prony:2`, `standard-linear-solid`, …
-///
-/// ```
-/// use palpate::laws::{ExponentChoice, Law};
-/// let law: Law = "latency:5".parse()?;
-/// assert_eq!(law, Law::Latency { exponent: ExponentChoice::Fixed(5.0) });
-/// assert_eq!(Law::Prony { terms: 2 }.to_string(), "prony:2");
-/// # Ok::<(), palpate::laws::UnknownLaw>(())
-/// ```
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-#[serde(into = "String", try_from = "String")]
-pub enum Law {
-    /// The paper's law, n given or found.
-    Latency {
-        /// Whether n is given.
-        exponent: ExponentChoice,
-    },
-    /// Spring and dashpot in series.
-    Maxwell,
-    /// Spring and dashpot side by side (creep only).
-    KelvinVoigt,
-    /// One exponential and a constant.
-    StandardLinearSolid,
-    /// Maxwell and Kelvin–Voigt in series.
-    Burgers,
-    /// A few exponentials and a constant.
-    Prony {
-        /// How many, from 1 to [`MOST_TERMS`].
-        terms: usize,
-    },
-    /// Many exponentials on a fixed grid of times, of one sign.
-    Spectrum,
-    /// Prony in Fung's parameters (relaxation only).
-    Fung {
-        /// How many, from 1 to [`MOST_TERMS`].
-        terms: usize,
-    },
-    /// Fung's continuous spectrum (relaxation only).
-    FungContinuous,
-    /// Stretched exponential.
-    Stretched,
-    /// Power of time.
-    Power,
-    /// Logarithm of time.
-    Logarithmic,
-    /// Mittag-Leffler function.
-    FractionalZener,
-    /// One-dimensional diffusion.
-    Diffusion,
+/// Declares [`Law`] from the laws whose names hold no number: a line each, with the variant and the definition in the file of the law.
+macro_rules! laws {
+    ($($(#[$about:meta])* $variant:ident = $definition:path;)*) => {
+        /// A law of relaxation or creep whose parameters are to be found; see the [table of laws](crate::laws).
+        ///
+        /// In text and JSON a law is its name: `latency` (n found), `latency:5`, `prony:2`, `standard-linear-solid`, …
+        ///
+        /// ```
+        /// use palpate::laws::{ExponentChoice, Law};
+        /// let law: Law = "latency:5".parse()?;
+        /// assert_eq!(law, Law::Latency { exponent: ExponentChoice::Fixed(5.0) });
+        /// assert_eq!(Law::Prony { terms: 2 }.to_string(), "prony:2");
+        /// # Ok::<(), palpate::laws::UnknownLaw>(())
+        /// ```
+        #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+        #[serde(into = "String", try_from = "String")]
+        pub enum Law {
+            /// The paper's law, n given or estimated.
+            Latency {
+                /// Whether n is given.
+                exponent: ExponentChoice,
+            },
+            /// A few exponentials and a constant.
+            Prony {
+                /// How many, from 1 to [`MOST_TERMS`].
+                terms: usize,
+            },
+            /// Prony in Fung's parameters (relaxation only).
+            Fung {
+                /// How many, from 1 to [`MOST_TERMS`].
+                terms: usize,
+            },
+            $($(#[$about])* $variant,)*
+            /// A law that another crate defines. It is written by its name, and cannot be read from there.
+            Custom(&'static LawDefinition),
+        }
+
+        /// The laws whose names hold no number.
+        const PLAIN: &[(Law, &LawDefinition)] = &[$((Law::$variant, &$definition)),*];
+    };
 }
+
+laws! {
+    /// Spring and dashpot in series.
+    Maxwell = maxwell::LAW;
+    /// Spring and dashpot side by side (creep only).
+    KelvinVoigt = kelvin_voigt::LAW;
+    /// One exponential and a constant.
+    StandardLinearSolid = standard_linear_solid::LAW;
+    /// Maxwell and Kelvin–Voigt in series.
+    Burgers = burgers::LAW;
+    /// Many exponentials on a fixed grid of times, of one sign.
+    Spectrum = spectrum::LAW;
+    /// Fung's continuous spectrum (relaxation only).
+    FungContinuous = fung_continuous::LAW;
+    /// Stretched exponential.
+    Stretched = stretched::LAW;
+    /// Power of time.
+    Power = power::LAW;
+    /// Logarithm of time.
+    Logarithmic = logarithmic::LAW;
+    /// Mittag-Leffler function.
+    FractionalZener = fractional_zener::LAW;
+    /// One-dimensional diffusion.
+    Diffusion = diffusion::LAW;
+}
+
+/// Names with a number, and the free latency law.
+const NUMBERED: [&str; 4] = ["latency", "latency:N", "prony:K", "fung:K"];
 
 /// Largest number of terms of a series with free times; a hold does not distinguish more.
 pub const MOST_TERMS: usize = 5;
@@ -84,40 +101,16 @@ fn nearest(found: &str) -> String {
 }
 
 impl Law {
-    /// Names as they are written; N, K stand for parameters.
-    pub const NAMES: [&'static str; 15] = [
-        "latency",
-        "latency:N",
-        "maxwell",
-        "kelvin-voigt",
-        "standard-linear-solid",
-        "burgers",
-        "prony:K",
-        "spectrum",
-        "fung:K",
-        "fung-continuous",
-        "stretched",
-        "power",
-        "logarithmic",
-        "fractional-zener",
-        "diffusion",
-    ];
-
-    /// The laws whose names hold no number.
-    const PLAIN: [(Self, &str); 12] = [
-        (Self::FREE_LATENCY, "latency"),
-        (Self::Maxwell, "maxwell"),
-        (Self::KelvinVoigt, "kelvin-voigt"),
-        (Self::StandardLinearSolid, "standard-linear-solid"),
-        (Self::Burgers, "burgers"),
-        (Self::Spectrum, "spectrum"),
-        (Self::FungContinuous, "fung-continuous"),
-        (Self::Stretched, "stretched"),
-        (Self::Power, "power"),
-        (Self::Logarithmic, "logarithmic"),
-        (Self::FractionalZener, "fractional-zener"),
-        (Self::Diffusion, "diffusion"),
-    ];
+    /// Names as they are written; N, K stand for numbers.
+    pub const NAMES: [&'static str; NUMBERED.len() + PLAIN.len()] = {
+        let mut names = [""; NUMBERED.len() + PLAIN.len()];
+        let mut index = 0;
+        while index < names.len() {
+            names[index] = if index < NUMBERED.len() { NUMBERED[index] } else { PLAIN[index - NUMBERED.len()].1.name };
+            index += 1;
+        }
+        names
+    };
 
     const FREE_LATENCY: Self = Self::Latency {
         exponent: ExponentChoice::Free,
@@ -127,24 +120,21 @@ impl Law {
         exponent: ExponentChoice::Fixed(1.0),
     };
 
+    /// The definition of a law whose name holds no number.
+    fn definition(self) -> Option<&'static LawDefinition> {
+        match self {
+            Self::Custom(definition) => Some(definition),
+            law => PLAIN.iter().find(|(plain, _)| *plain == law).map(|(_, definition)| *definition),
+        }
+    }
+
     /// What the law is, in words.
     #[must_use]
     pub fn description(self) -> Description {
         match self {
             Self::Latency { exponent } => latency::description(exponent),
-            Self::Maxwell => maxwell::DESCRIPTION,
-            Self::KelvinVoigt => kelvin_voigt::DESCRIPTION,
-            Self::StandardLinearSolid => standard_linear_solid::DESCRIPTION,
-            Self::Burgers => burgers::DESCRIPTION,
-            Self::Prony { .. } => prony::DESCRIPTION,
-            Self::Spectrum => spectrum::DESCRIPTION,
             Self::Fung { .. } => fung::DESCRIPTION,
-            Self::FungContinuous => fung_continuous::DESCRIPTION,
-            Self::Stretched => stretched::DESCRIPTION,
-            Self::Power => power::DESCRIPTION,
-            Self::Logarithmic => logarithmic::DESCRIPTION,
-            Self::FractionalZener => fractional_zener::DESCRIPTION,
-            Self::Diffusion => diffusion::DESCRIPTION,
+            law => law.definition().map_or(prony::DESCRIPTION, |definition| definition.description),
         }
     }
 
@@ -171,8 +161,8 @@ impl Law {
             || match self {
                 Self::Spectrum => true,
                 Self::FREE_LATENCY => matches!(other, Self::Latency { .. } | Self::Power) || exponential,
-                Self::Stretched | Self::FractionalZener | Self::FungContinuous => exponential,
                 Self::Burgers => other == Self::KelvinVoigt,
+                _ if self.definition().is_some_and(|definition| definition.contains_exponential) => exponential,
                 _ => terms(self).zip(terms(other)).is_some_and(|(own, its)| own >= its),
             }
     }
@@ -185,28 +175,19 @@ impl Law {
 
     /// Columns of the law; `None` where it has no form for the response, and for the spectrum, which is fitted another way.
     pub(crate) fn form(self, response: Response) -> Option<Form> {
-        use BasisFunction::{Exponential, Straight};
-        use Response::{Creep, Relaxation};
-
         let (constant, shapes) = match (self, response) {
             (Self::Latency { exponent }, _) => (true, vec![exponent.shape()]),
-            (Self::Maxwell, Relaxation) => (false, vec![Exponential]),
-            (Self::Maxwell, Creep) => (true, vec![Straight]),
-            (Self::KelvinVoigt, Creep) => (false, vec![Exponential]),
-            (Self::StandardLinearSolid, _) => (true, vec![Exponential]),
-            (Self::Burgers, Relaxation) => (false, vec![Exponential; 2]),
-            (Self::Burgers, Creep) => (true, vec![Exponential, Straight]),
-            (Self::Prony { terms }, _) | (Self::Fung { terms }, Relaxation) => (true, vec![Exponential; terms]),
-            (Self::FungContinuous, Relaxation) => (true, vec![BasisFunction::FungContinuous]),
-            (Self::Stretched, _) => (true, vec![BasisFunction::Stretched]),
-            (Self::Power, Relaxation) => (false, vec![BasisFunction::PowerDecay]),
-            (Self::Power, Creep) => (true, vec![BasisFunction::PowerGrowth]),
-            (Self::Logarithmic, _) => (true, vec![BasisFunction::Logarithm]),
-            (Self::FractionalZener, _) => (true, vec![BasisFunction::MittagLeffler]),
-            (Self::Diffusion, _) => (true, vec![BasisFunction::Diffusion]),
-            (Self::KelvinVoigt, Relaxation)
-            | (Self::Fung { .. } | Self::FungContinuous, Creep)
-            | (Self::Spectrum, _) => return None,
+            (Self::Prony { terms }, _) | (Self::Fung { terms }, Response::Relaxation) => {
+                (true, vec![BasisFunction::Exponential; terms])
+            }
+            _ => {
+                let definition = self.definition()?;
+                let composition = match response {
+                    Response::Relaxation => definition.relaxation?,
+                    Response::Creep => definition.creep?,
+                };
+                (composition.constant, composition.basis.to_vec())
+            }
         };
         Some(Form {
             response,
@@ -224,7 +205,10 @@ impl fmt::Display for Law {
             } => write!(f, "latency:{n}"),
             Self::Prony { terms } => write!(f, "prony:{terms}"),
             Self::Fung { terms } => write!(f, "fung:{terms}"),
-            _ => f.write_str(Self::PLAIN.iter().find(|(law, _)| law == self).map_or("", |(_, name)| name)),
+            Self::Latency {
+                exponent: ExponentChoice::Free,
+            } => f.write_str("latency"),
+            law => f.write_str(law.definition().map_or("", |definition| definition.name)),
         }
     }
 }
@@ -255,7 +239,8 @@ impl FromStr for Law {
                 },
                 "sls" => Self::StandardLinearSolid,
                 "kww" => Self::Stretched,
-                _ => Self::PLAIN.iter().find(|(_, name)| *name == text).ok_or_else(unknown)?.0,
+                "latency" => Self::FREE_LATENCY,
+                _ => PLAIN.iter().find(|(_, definition)| definition.name == text).ok_or_else(unknown)?.0,
             },
         })
     }

@@ -18,8 +18,8 @@
 //! | `fractional-zener` | y_e + Δ E_α(−(λt)^α) | y₀ + Δ (1 − same) | `continuous/fractional_zener.rs` |
 //! | `diffusion` | y_e + Δ (8/π²) Σ_odd exp(−k²λt)/k² | y₀ + Δ (1 − same) | `continuous/diffusion.rs` |
 //!
-//! A [`Law`] has its parameters free; a [`LawCurve`] has parameters put in. `law.rs` holds the list, the names and what each law is made
-//! of, `form.rs` how that stands in a signal, `basis.rs` the list of basis functions, `kernel.rs` what one of them must be able to do, `kernels.rs` that they can,
+//! A [`Law`] has its parameters free; a [`LawCurve`] has parameters put in. `law.rs` holds the list of laws,
+//! a line each, `definition.rs` what such a line leads to, `form.rs` how a law stands in a signal, `basis.rs` the list of basis functions, `kernel.rs` what one of them must be able to do, `kernels.rs` that they can,
 //! `curve.rs` a law with its parameters, `formula.rs` that in writing. Two rooms hold the laws themselves: `discrete/` those with single relaxation times, `continuous/` all
 //! others. A hold that follows a ramp is no step: `loading.rs` holds what came before it, `superposition.rs` averages basis functions
 //! over that. `fit` fits them all; nothing here looks at data.
@@ -27,6 +27,7 @@
 mod basis;
 mod continuous;
 mod curve;
+mod definition;
 mod discrete;
 mod form;
 mod formula;
@@ -36,11 +37,13 @@ mod law;
 mod loading;
 mod superposition;
 
-pub use basis::{BasisFunction, Description, ExponentChoice, Response};
+pub use basis::{BasisFunction, ExponentChoice, Response};
 pub use curve::{LawCurve, Term};
+pub use definition::{Composition, CustomKernel, Description, LawDefinition};
 pub(crate) use form::{Column, Form};
-pub(crate) use kernel::{Kernel, ShapeParameterKind, name_of_term, term_of_name};
-use kernel::{REFERENCE, ShapeParameter, TIME, two};
+pub use kernel::{Kernel, ShapeParameter, ShapeParameterKind};
+use kernel::{REFERENCE, TIME, two};
+pub(crate) use kernel::{name_of_term, term_of_name};
 pub use law::{Law, MOST_TERMS, UnknownLaw};
 pub use loading::{Loading, LoadingError};
 pub(crate) use superposition::Superposition;

@@ -2,7 +2,7 @@
 
 use super::arrow::Point;
 use super::hold::Hold;
-use crate::fit::{Assessed, Fit, Fitted, JointFit, JointOptions, ParameterName};
+use crate::fit::{Assessed, Fit, Fitted, JointFit, JointOptions};
 use crate::laws::{Law, ShapeParameterKind};
 use crate::optimise::{Cholesky, Few, Solution, Termination, Work};
 use crate::statistics::{effective_count, lag_one_correlation};
@@ -46,7 +46,7 @@ impl Joint {
             fitted.report_with(self.law, assessed, work)
         };
         let holds: Vec<Fit> = correlations.iter().enumerate().map(hold).collect();
-        let parameter = |name: String| holds[0].parameter(name.parse::<ParameterName>().ok()?).cloned();
+        let parameter = |name: String| holds[0].parameters.iter().find(|parameter| parameter.name == *name).cloned();
         let shared = self.shared_names().into_iter().filter_map(parameter).collect();
         let signal = (2.0 * self.log_signal).exp();
         let alone = self.solutions.iter().zip(&self.holds);

@@ -2,8 +2,8 @@
 
 use super::derived::{Estimating, derived};
 use crate::fit::{
-    Assessed, Domain, Estimate, Fit, Fitted, LawOptions, Loss, Parameter, ParameterKind, ParameterRole, ParameterUnit,
-    Scale, redundant_terms,
+    Assessed, Domain, Estimate, Fit, Fitted, LawOptions, Loss, Parameter, ParameterKind, ParameterName, ParameterRole,
+    ParameterUnit, Scale, redundant_terms,
 };
 use crate::laws::{ExponentChoice, Law, ShapeParameterKind};
 use crate::optimise::{Few, Shapes, Termination, Work};
@@ -100,7 +100,7 @@ impl Fitted {
             |i: usize, entry: f64| -> Few { (0..values.len()).map(|j| if i == j { entry } else { 0.0 }).collect() };
         let mut parameters = Vec::with_capacity(1 + model.form.shapes.len() + model.parameters.len());
         let mut add = |name: &str, unit: ParameterUnit, estimate: Estimate, role: ParameterRole| {
-            parameters.extend(name.parse().ok().map(|name| Parameter {
+            parameters.extend(ParameterName::of_form(&model.form, name).map(|name| Parameter {
                 name,
                 unit,
                 estimate,

@@ -11,13 +11,21 @@
 //!
 //! Early, 1 − φ grows as the square root of time; late, φ falls as (8/π²) exp(−t/τ).
 
-use crate::laws::{Description, Kernel, ShapeParameter, TIME};
+use crate::laws::{BasisFunction, Composition, Description, Kernel, LawDefinition, ShapeParameter, TIME};
 use crate::special::diffusion_decay_many;
 
-pub(in crate::laws) const DESCRIPTION: Description = Description {
-    title: "diffusion",
-    equation: "y_e + Δ (8/π²) Σ_odd exp(−k²t/τ)/k²",
-    source: "hole diffusion after Golik, cited by Tsai, Kao et al.; series: Crank, The Mathematics of Diffusion, section 4.3",
+const FORM: Composition = Composition::with_constant(&[BasisFunction::Diffusion]);
+
+pub(in crate::laws) const LAW: LawDefinition = LawDefinition {
+    name: "diffusion",
+    description: Description {
+        title: "diffusion",
+        equation: "y_e + Δ (8/π²) Σ_odd exp(−k²t/τ)/k²",
+        source: "hole diffusion after Golik, cited by Tsai, Kao et al.; series: Crank, The Mathematics of Diffusion, section 4.3",
+    },
+    relaxation: Some(FORM),
+    creep: Some(FORM),
+    contains_exponential: false,
 };
 
 /// (8/π²) Σ_odd exp(−k²λt)/k².

@@ -9,13 +9,21 @@
 //! | time τ | s | above 0 | between the two powers, t^α before and t^(−α) after |
 //! | order α | 1 | 0.05 to 1 | 1: standard linear solid |
 
-use crate::laws::{Description, Kernel, ShapeParameter, TIME, two};
+use crate::laws::{BasisFunction, Composition, Description, Kernel, LawDefinition, ShapeParameter, TIME, two};
 use crate::special::{mittag_leffler_decay_many, mittag_leffler_decay_value_many};
 
-pub(in crate::laws) const DESCRIPTION: Description = Description {
-    title: "fractional Zener",
-    equation: "y_e + Δ E_α(−(t/τ)^α)",
-    source: "Bagley and Torvik 1983; Mainardi, Fractional Calculus and Waves in Linear Viscoelasticity, chapter 3",
+const FORM: Composition = Composition::with_constant(&[BasisFunction::MittagLeffler]);
+
+pub(in crate::laws) const LAW: LawDefinition = LawDefinition {
+    name: "fractional-zener",
+    description: Description {
+        title: "fractional Zener",
+        equation: "y_e + Δ E_α(−(t/τ)^α)",
+        source: "Bagley and Torvik 1983; Mainardi, Fractional Calculus and Waves in Linear Viscoelasticity, chapter 3",
+    },
+    relaxation: Some(FORM),
+    creep: Some(FORM),
+    contains_exponential: true,
 };
 
 /// E_α(−(λt)^α).

@@ -11,13 +11,21 @@
 //!
 //! Limit: ϱ → 1 is the standard linear solid.
 
-use crate::laws::{Description, Kernel, ShapeParameter, ShapeParameterKind, two};
+use crate::laws::{
+    BasisFunction, Composition, Description, Kernel, LawDefinition, ShapeParameter, ShapeParameterKind, two,
+};
 use crate::special::fung_continuous_many;
 
-pub(in crate::laws) const DESCRIPTION: Description = Description {
-    title: "Fung, continuous spectrum",
-    equation: "N [1 + C (E₁(t/τ_long) − E₁(t/τ_short))]/[1 + C ln(τ_long/τ_short)]",
-    source: "Neubert 1963; Fung, Biomechanics, section 7.6",
+pub(in crate::laws) const LAW: LawDefinition = LawDefinition {
+    name: "fung-continuous",
+    description: Description {
+        title: "Fung, continuous spectrum",
+        equation: "N [1 + C (E₁(t/τ_long) − E₁(t/τ_short))]/[1 + C ln(τ_long/τ_short)]",
+        source: "Neubert 1963; Fung, Biomechanics, section 7.6",
+    },
+    relaxation: Some(Composition::with_constant(&[BasisFunction::FungContinuous])),
+    creep: None,
+    contains_exponential: true,
 };
 
 /// [E₁(λt) − E₁(ϱλt)]/ln ϱ in θ = (ln λ, ln ϱ).

@@ -8,13 +8,21 @@
 //! | amplitude Δ | of y | any | change per e-fold of time |
 //! | time 1/λ | s | above 0 | where the logarithm begins |
 
-use crate::laws::{Description, Kernel, ShapeParameter, TIME};
+use crate::laws::{BasisFunction, Composition, Description, Kernel, LawDefinition, ShapeParameter, TIME};
 use crate::vector::logarithm_columns;
 
-pub(in crate::laws) const DESCRIPTION: Description = Description {
-    title: "logarithmic",
-    equation: "y₀ − Δ ln(1 + t/t₀)",
-    source: "Guiu and Pratt 1964; Kubát 1965",
+const FORM: Composition = Composition::with_constant(&[BasisFunction::Logarithm]);
+
+pub(in crate::laws) const LAW: LawDefinition = LawDefinition {
+    name: "logarithmic",
+    description: Description {
+        title: "logarithmic",
+        equation: "y₀ − Δ ln(1 + t/t₀)",
+        source: "Guiu and Pratt 1964; Kubát 1965",
+    },
+    relaxation: Some(FORM),
+    creep: Some(FORM),
+    contains_exponential: false,
 };
 
 /// ln(1 + λt).

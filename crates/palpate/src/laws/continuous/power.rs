@@ -11,12 +11,20 @@
 //! | exponent α | 1 | 0.005 to 5; in creep 0.01 to 2 | 0: elastic, 1: viscous |
 
 use crate::latency::{decay_columns, decay_many};
-use crate::laws::{Description, Kernel, REFERENCE, ShapeParameter, TIME, two};
+use crate::laws::{
+    BasisFunction, Composition, Description, Kernel, LawDefinition, REFERENCE, ShapeParameter, TIME, two,
+};
 
-pub(in crate::laws) const DESCRIPTION: Description = Description {
-    title: "power law",
-    equation: "Δ (1 + t/t₀)^(−α)",
-    source: "Nutting 1921; Fabry et al. 2001; as latency without equilibrium: NIST's Bennett5",
+pub(in crate::laws) const LAW: LawDefinition = LawDefinition {
+    name: "power",
+    description: Description {
+        title: "power law",
+        equation: "Δ (1 + t/t₀)^(−α)",
+        source: "Nutting 1921; Fabry et al. 2001; as latency without equilibrium: NIST's Bennett5",
+    },
+    relaxation: Some(Composition::of(&[BasisFunction::PowerDecay])),
+    creep: Some(Composition::with_constant(&[BasisFunction::PowerGrowth])),
+    contains_exponential: false,
 };
 
 /// (1 + λt)^(−α).

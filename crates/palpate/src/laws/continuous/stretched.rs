@@ -9,13 +9,21 @@
 //! | time τ = 1/λ | s | above 0 | where e⁻¹ of it is left |
 //! | stretching β | 1 | 0.05 to 2 | 1: exponential; smaller: wider |
 
-use crate::laws::{Description, Kernel, ShapeParameter, TIME, two};
+use crate::laws::{BasisFunction, Composition, Description, Kernel, LawDefinition, ShapeParameter, TIME, two};
 use crate::vector::stretched_columns;
 
-pub(in crate::laws) const DESCRIPTION: Description = Description {
-    title: "stretched exponential",
-    equation: "y_e + Δ exp(−(t/τ)^β)",
-    source: "Kohlrausch 1854; Williams and Watts 1970",
+const FORM: Composition = Composition::with_constant(&[BasisFunction::Stretched]);
+
+pub(in crate::laws) const LAW: LawDefinition = LawDefinition {
+    name: "stretched",
+    description: Description {
+        title: "stretched exponential",
+        equation: "y_e + Δ exp(−(t/τ)^β)",
+        source: "Kohlrausch 1854; Williams and Watts 1970",
+    },
+    relaxation: Some(FORM),
+    creep: Some(FORM),
+    contains_exponential: true,
 };
 
 /// exp(−(λt)^β).

@@ -9,10 +9,16 @@
 //! | time τ | s | above 0 | retardation time |
 //! | flow rate | of y per s | any | slope of the flow that never comes back |
 
-use crate::laws::basis::Description;
+use crate::laws::{BasisFunction, Composition, Description, LawDefinition};
 
-pub(in crate::laws) const DESCRIPTION: Description = Description {
-    title: "Burgers",
-    equation: "y₀ + Δ (1 − exp(−t/τ)) + rate · t",
-    source: "Burgers 1935; Findley, Lai, Onaran, Creep and Relaxation of Nonlinear Viscoelastic Materials, chapter 5",
+pub(in crate::laws) const LAW: LawDefinition = LawDefinition {
+    name: "burgers",
+    description: Description {
+        title: "Burgers",
+        equation: "y₀ + Δ (1 − exp(−t/τ)) + rate · t",
+        source: "Burgers 1935; Findley, Lai, Onaran, Creep and Relaxation of Nonlinear Viscoelastic Materials, chapter 5",
+    },
+    relaxation: Some(Composition::of(&[BasisFunction::Exponential, BasisFunction::Exponential])),
+    creep: Some(Composition::with_constant(&[BasisFunction::Exponential, BasisFunction::Straight])),
+    contains_exponential: false,
 };

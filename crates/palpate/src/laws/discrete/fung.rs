@@ -11,7 +11,7 @@
 //!
 //! It is Prony's series in other parameters: N = y_e + Σ Δᵢ, c₀ = y_e/N, cᵢ = Δᵢ/N, νᵢ = 1/τᵢ.
 
-use crate::laws::basis::Description;
+use crate::laws::Description;
 
 pub(in crate::laws) const DESCRIPTION: Description = Description {
     title: "Fung, reduced relaxation function",

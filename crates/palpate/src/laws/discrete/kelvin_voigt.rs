@@ -7,10 +7,16 @@
 //! | amplitude Δ | of y | any | what the creep tends to |
 //! | time τ | s | above 0 | retardation time, viscosity over stiffness |
 
-use crate::laws::basis::Description;
+use crate::laws::{BasisFunction, Composition, Description, LawDefinition};
 
-pub(in crate::laws) const DESCRIPTION: Description = Description {
-    title: "Kelvin–Voigt",
-    equation: "Δ (1 − exp(−t/τ))",
-    source: "Voigt 1892; Ferry, Viscoelastic Properties of Polymers, chapter 1",
+pub(in crate::laws) const LAW: LawDefinition = LawDefinition {
+    name: "kelvin-voigt",
+    description: Description {
+        title: "Kelvin–Voigt",
+        equation: "Δ (1 − exp(−t/τ))",
+        source: "Voigt 1892; Ferry, Viscoelastic Properties of Polymers, chapter 1",
+    },
+    relaxation: None,
+    creep: Some(Composition::of(&[BasisFunction::Exponential])),
+    contains_exponential: false,
 };

@@ -9,12 +9,18 @@
 //! | instantaneous y₀ (creep) | of y | any | elastic part |
 //! | flow rate (creep) | of y per s | any | slope of the flow |
 
-use crate::laws::{Description, Kernel, REFERENCE, ShapeParameter};
+use crate::laws::{BasisFunction, Composition, Description, Kernel, LawDefinition, REFERENCE, ShapeParameter};
 
-pub(in crate::laws) const DESCRIPTION: Description = Description {
-    title: "Maxwell",
-    equation: "Δ exp(−t/τ)",
-    source: "Maxwell 1867; Ferry, Viscoelastic Properties of Polymers, chapter 1",
+pub(in crate::laws) const LAW: LawDefinition = LawDefinition {
+    name: "maxwell",
+    description: Description {
+        title: "Maxwell",
+        equation: "Δ exp(−t/τ)",
+        source: "Maxwell 1867; Ferry, Viscoelastic Properties of Polymers, chapter 1",
+    },
+    relaxation: Some(Composition::of(&[BasisFunction::Exponential])),
+    creep: Some(Composition::with_constant(&[BasisFunction::Straight])),
+    contains_exponential: false,
 };
 
 /// λt with λ one over the duration of the fit: flow.

@@ -1,7 +1,7 @@
 //! Laws of few relaxation times, or many on a grid: springs and dashpots, sums of exponentials.
 //!
-//! Each file states its law, its parameters and where it comes from; `law.rs` says of which basis functions it is made, `exponential.rs` and
-//! `maxwell.rs` hold those.
+//! Each file states its law, its parameters and where it comes from; and the basis functions that it is composed of; `exponential.rs` and `maxwell.rs` hold
+//! those.
 
 pub(super) mod burgers;
 pub(super) mod exponential;

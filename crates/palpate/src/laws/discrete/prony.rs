@@ -11,7 +11,7 @@
 //! With one term it is the standard linear solid. Two terms whose times lie too close for the data to part, and terms that
 //! vanish, are no terms: the fit reports them.
 
-use crate::laws::basis::Description;
+use crate::laws::Description;
 
 pub(in crate::laws) const DESCRIPTION: Description = Description {
     title: "Prony series",

@@ -11,10 +11,18 @@
 //!
 //! It is Prony with one term, the latency law with n = 1 and the fractional Zener solid of order 1.
 
-use crate::laws::basis::Description;
+use crate::laws::{BasisFunction, Composition, Description, LawDefinition};
 
-pub(in crate::laws) const DESCRIPTION: Description = Description {
-    title: "standard linear solid",
-    equation: "y_e + Δ exp(−t/τ)",
-    source: "Zener 1948; Ferry, Viscoelastic Properties of Polymers, chapter 3",
+const FORM: Composition = Composition::with_constant(&[BasisFunction::Exponential]);
+
+pub(in crate::laws) const LAW: LawDefinition = LawDefinition {
+    name: "standard-linear-solid",
+    description: Description {
+        title: "standard linear solid",
+        equation: "y_e + Δ exp(−t/τ)",
+        source: "Zener 1948; Ferry, Viscoelastic Properties of Polymers, chapter 3",
+    },
+    relaxation: Some(FORM),
+    creep: Some(FORM),
+    contains_exponential: false,
 };

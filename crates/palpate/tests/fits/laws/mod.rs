@@ -4,5 +4,6 @@ mod choosing;
 mod inputs;
 mod limits;
 mod options;
+mod outside;
 mod prony_terms;
 mod spectrum;
