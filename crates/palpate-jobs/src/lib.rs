@@ -40,7 +40,7 @@ mod watch_log;
 mod written_by_batch;
 
 pub use analyze::{Analyze, Analyzed};
-pub use batch::{Batch, Batched, Refused};
+pub use batch::{Batch, BatchAnswer, Batched, Refused, Spread};
 pub use calibrate::{Calibrate, Calibrated, Equilibrium};
 pub use compare::{Compare, Compared};
 pub use convert::{Convert, Converted};

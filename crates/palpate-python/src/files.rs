@@ -3,16 +3,20 @@
 use std::path::{Path, PathBuf};
 
 use palpate::laws::Law;
-use palpate_files::description::{parse_test, read_material};
+use palpate_files::description::{NamedColumns, parse_test, read_material};
 use palpate_jobs::input::{Described, NamedRecords, OpenedFile};
 use palpate_jobs::output::write_bundle;
-use palpate_jobs::{Batch, Convert, HoldObserved, Inspect, Observed, Reproduce, Sweep, WatchLog};
+use palpate_jobs::{Batch, BatchAnswer, Convert, HoldObserved, Inspect, Observed, Reproduce, Sweep, WatchLog};
 use palpate_report::document::{WatchDocument, WatchSummaryDocument};
 use palpate_report::study::{Pictures, reproduction_bundle};
 use pyo3::prelude::*;
+use pyo3::types::{IntoPyDict, PyDict, PyMapping};
+use serde::{Deserialize, Serialize};
 
 use crate::errors::{OptionError, failed, of_mapping, refused_plainly, undescribed};
 use crate::fits::fit;
+use crate::shown::shown;
+use crate::table::{Table, columns};
 use crate::work::{job, plain};
 
 /// An argument of Python of several kinds.
@@ -28,6 +32,23 @@ pub(crate) fn described(test: Given<'_, '_>, part: Given<'_, '_>) -> PyResult<(D
     let part = part.map(|part| part.str()?.extract::<String>()).transpose()?;
     let (path, text) = test.map(|test| stated("_described", test)).transpose()?.unwrap_or_default();
     Ok((read_or_parsed(path.as_deref(), text, part.as_deref())?, path))
+}
+
+/// The columns that an argument names: a text as the command takes it, or a mapping from quantities to "name:unit".
+pub(crate) fn named_columns(columns: Given<'_, '_>) -> PyResult<Option<NamedColumns>> {
+    let Some(columns) = columns else { return Ok(None) };
+    let text = match columns.cast::<PyMapping>() {
+        Ok(mapping) => {
+            let entry = |item: Bound<'_, PyAny>| {
+                let (quantity, column): (String, String) = item.extract()?;
+                Ok(format!("{quantity}={column}"))
+            };
+            let entries: PyResult<Vec<String>> = mapping.items()?.iter().map(entry).collect();
+            entries?.join(",")
+        }
+        Err(_) => columns.extract()?,
+    };
+    NamedColumns::parse(&text).map(Some).map_err(refused_plainly::<OptionError>)
 }
 
 /// The description in a file or in a text.
@@ -56,7 +77,7 @@ pub(crate) fn all_laws(names: &[String]) -> PyResult<Vec<Law>> {
 ///
 /// Parameters
 /// ----------
-/// path, test, part
+/// path, test, part, columns
 ///     As for `read`.
 ///
 /// Returns
@@ -68,9 +89,15 @@ pub(crate) fn all_laws(names: &[String]) -> PyResult<Vec<Law>> {
 /// RecordError, OptionError, OSError
 ///     As for `read`.
 #[pyfunction]
-#[pyo3(signature = (path, *, test=None, part=None))]
-pub(crate) fn inspect(py: Python<'_>, path: PathBuf, test: Given<'_, '_>, part: Given<'_, '_>) -> PyResult<String> {
-    let (described, _) = described(test, part)?;
+#[pyo3(signature = (path, *, test=None, part=None, columns=None))]
+pub(crate) fn inspect(
+    py: Python<'_>,
+    path: PathBuf,
+    test: Given<'_, '_>,
+    part: Given<'_, '_>,
+    columns: Given<'_, '_>,
+) -> PyResult<String> {
+    let described = described(test, part)?.0.with_columns(named_columns(columns)?.as_ref());
     job(py, move |watch| {
         let found = Inspect::default().run(&OpenedFile::open(&path, &described)?, watch)?.result;
         found.refused.map_or(Ok(found.text), Err)
@@ -81,7 +108,7 @@ pub(crate) fn inspect(py: Python<'_>, path: PathBuf, test: Given<'_, '_>, part: 
 ///
 /// Parameters
 /// ----------
-/// path, test, part
+/// path, test, part, columns
 ///     As for `read`.
 /// out
 ///     A file ending in .csv, .parquet or .json; it appears whole or not at all.
@@ -96,15 +123,16 @@ pub(crate) fn inspect(py: Python<'_>, path: PathBuf, test: Given<'_, '_>, part: 
 /// RecordError, OptionError, OSError
 ///     As for `read`; also a name that says no format.
 #[pyfunction]
-#[pyo3(signature = (path, out, *, test=None, part=None))]
+#[pyo3(signature = (path, out, *, test=None, part=None, columns=None))]
 pub(crate) fn convert(
     py: Python<'_>,
     path: PathBuf,
     out: PathBuf,
     test: Given<'_, '_>,
     part: Given<'_, '_>,
+    columns: Given<'_, '_>,
 ) -> PyResult<PathBuf> {
-    let (described, _) = described(test, part)?;
+    let described = described(test, part)?.0.with_columns(named_columns(columns)?.as_ref());
     job(py, move |watch| {
         Convert {}.run(&OpenedFile::open(&path, &described)?, watch)?.result.write(&out)?;
         Ok(out)
@@ -123,6 +151,8 @@ pub(crate) fn convert(
 ///     A table ending in .parquet or .csv.
 /// test
 ///     Test description of all of them.
+/// columns
+///     As for `read`.
 /// laws
 ///     Laws to fit besides the latency law.
 /// intervals
@@ -134,29 +164,28 @@ pub(crate) fn convert(
 ///
 /// Returns
 /// -------
-/// rows : int
-///     How many rows the table has.
-/// failures : list of str
-///     Why tests gave no rows, a sentence each.
+/// BatchResult
+///     The law recommended on the most holds, its parameters over them, the most frequent findings, and the tests without rows.
 ///
 /// Raises
 /// ------
 /// OptionError, OSError
 ///     A description or a law that is wrong, a table that cannot be written.
 #[pyfunction]
-#[pyo3(signature = (paths, out, *, test=None, laws=None, intervals=None, fit_until_s=None, restart=false))]
+#[pyo3(signature = (paths, out, *, test=None, columns=None, laws=None, intervals=None, fit_until_s=None, restart=false))]
 #[expect(clippy::too_many_arguments, reason = "keywords of Python")]
 pub(crate) fn batch(
     py: Python<'_>,
     paths: Vec<PathBuf>,
     out: PathBuf,
     test: Given<'_, '_>,
+    columns: Given<'_, '_>,
     laws: Option<Vec<String>>,
     intervals: Option<&str>,
     fit_until_s: Option<f64>,
     restart: bool,
-) -> PyResult<(usize, Vec<String>)> {
-    let (described, _) = described(test, None)?;
+) -> PyResult<BatchResult> {
+    let described = described(test, None)?.0.with_columns(named_columns(columns)?.as_ref());
     let question = Batch {
         laws: laws.map(|laws| all_laws(&laws)).transpose()?,
         intervals: intervals.map(fit::intervals).transpose()?,
@@ -165,7 +194,55 @@ pub(crate) fn batch(
         ..Batch::default()
     };
     let done = job(py, move |watch| question.run(NamedRecords::find(&paths, described)?, &out, watch))?.result;
-    Ok((done.rows, done.failures.into_iter().map(|refused| refused.message).collect()))
+    Ok(BatchResult {
+        answer: done.answer,
+        rows: done.rows,
+        failures: done.failures.into_iter().map(|refused| refused.message).collect(),
+    })
+}
+
+/// What a batch found over all holds; ``print(result)`` shows what ``palpate batch`` prints.
+#[pyclass(frozen, eq, name = "BatchResult", module = "palpate")]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub(crate) struct BatchResult {
+    answer: BatchAnswer,
+    rows: usize,
+    failures: Vec<String>,
+}
+
+shown! {
+    BatchResult: self
+    values {
+        /// The law that is recommended on the most holds; None where none was fitted.
+        law: Option<&str> = self.answer.laws.first().map(|(law, _)| law.as_str()),
+        /// Every recommended law with the number of holds that it is recommended for, the most first.
+        laws<'py>(py): PyResult<Bound<'py, PyDict>> = self.answer.laws.clone().into_py_dict(py),
+        /// The parameters of that law over those holds, a row each: ``parameter``, ``unit``, ``median``, ``lower_quartile``,
+        /// ``upper_quartile``, ``holds``.
+        parameters: PyResult<Table> = Table::of(columns!(&self.answer.parameters, spread =>
+            parameter = spread.name.clone(), unit = spread.unit.clone(), median = spread.quartiles[1],
+            lower_quartile = spread.quartiles[0], upper_quartile = spread.quartiles[2], holds = spread.holds
+        )),
+        /// The most frequent findings by code, with the number of holds that have them.
+        findings<'py>(py): PyResult<Bound<'py, PyDict>> = self.answer.findings.clone().into_py_dict(py),
+        /// Holds in all.
+        holds: usize = self.answer.holds,
+        /// Holds without a fitted law.
+        unfitted: usize = self.answer.unfitted,
+        /// Rows of the table.
+        rows: usize = self.rows,
+        /// Why tests gave no rows, a sentence each.
+        failures: Vec<String> = self.failures.clone(),
+    }
+
+    fn __str__(&self) -> String {
+        self.answer.text()
+    }
+
+    fn __repr__(&self) -> String {
+        let law = self.law().unwrap_or("none");
+        format!("<palpate.BatchResult of {} holds: law {law}, {} failures>", self.holds(), self.failures.len())
+    }
 }
 
 /// Simulate the runs of a protocol with a table ``[sweep]`` into one table: ``palpate sweep``.
@@ -246,7 +323,7 @@ pub(crate) fn reproduce(py: Python<'_>, folder: PathBuf, png: bool) -> PyResult<
 ///
 /// Parameters
 /// ----------
-/// path, test, part
+/// path, test, part, columns
 ///     As for `read`.
 /// material
 ///     Path of a material file; the excess strain is then known from first touch on.
@@ -270,7 +347,7 @@ pub(crate) fn reproduce(py: Python<'_>, folder: PathBuf, png: bool) -> PyResult<
 ///     As for `read` and `Observer`.
 #[pyfunction]
 #[pyo3(signature = (
-    path, *, test=None, part=None, material=None, exponent=None, slip_force_n=None, warn_before_s=None, every_s=None,
+    path, *, test=None, part=None, columns=None, material=None, exponent=None, slip_force_n=None, warn_before_s=None, every_s=None,
 ))]
 #[expect(clippy::too_many_arguments, reason = "keywords of Python")]
 pub(crate) fn watch<'py>(
@@ -278,13 +355,14 @@ pub(crate) fn watch<'py>(
     path: PathBuf,
     test: Given<'py, '_>,
     part: Given<'py, '_>,
+    columns: Given<'py, '_>,
     material: Option<PathBuf>,
     exponent: Option<f64>,
     slip_force_n: Option<f64>,
     warn_before_s: Option<f64>,
     every_s: Option<f64>,
 ) -> PyResult<Bound<'py, PyAny>> {
-    let (described, _) = described(test, part)?;
+    let described = described(test, part)?.0.with_columns(named_columns(columns)?.as_ref());
     let usual = WatchLog::default();
     let log = WatchLog {
         exponent: exponent.unwrap_or(usual.exponent),

@@ -41,7 +41,7 @@ mod _palpate {
         contacts::simulate::{Trajectory, simulate},
         contacts::simulate_many::simulate_many,
         errors::{FitError, ModelError, OptionError, PalpateError, PalpateWarning, RecordError},
-        files::{batch, convert, inspect, reproduce, sweep, watch},
+        files::{BatchResult, batch, convert, inspect, reproduce, sweep, watch},
         fits::fit::{PyEstimate, PyFit, fit_hold},
         fits::fit_many::fit_many,
         fits::laws::{latency, law_names},

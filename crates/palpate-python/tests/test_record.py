@@ -186,3 +186,16 @@ def test_a_missing_number_in_a_table_is_named() -> None:
     table = pyarrow.table({"time_s": [0.0, 1.0, 2.0], "force_n": [0.0, None, 1.0]})
     with pytest.raises(palpate.RecordError, match="force_n: expected a number in every row, found none in row 1"):
         palpate.Record.from_arrow(table)
+
+
+def test_columns_are_named_by_a_keyword_as_on_the_command_line(tmp_path: Path) -> None:
+    path = tmp_path / "presse.csv"
+    rows = "\n".join(f"{0.1 * i:.1f};{min(0.5 * i, 5.0):.2f};{2.0 if i < 10 else 1 + 0.9**(i - 9):.4f}" for i in range(60))
+    path.write_text("Zeit;Weg;Kraft\n" + rows)
+    with pytest.raises(palpate.RecordError):
+        palpate.read(path)
+    by_text = palpate.read(path, columns="time=Zeit:s,displacement=Weg:mm,force=Kraft:N")
+    assert by_text == palpate.read(path, columns={"time": "Zeit:s", "displacement": "Weg:mm", "force": "Kraft:N"})
+    assert by_text.displacement_m.max() == pytest.approx(5e-3) and len(palpate.read_all(path, columns="force=Kraft:N,time=Zeit:s")) == 1
+    with pytest.raises(palpate.OptionError, match="force=Kraft:N"):
+        palpate.read(path, columns="Kraft")

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import pickle
 import subprocess
 import sys
 from pathlib import Path
@@ -117,9 +118,12 @@ def test_sweep(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("ending", ["csv", "parquet"])
 def test_batch(tmp_path: Path, ending: str) -> None:
-    command("batch", RECORD, "--test", TEST, "--out", tmp_path / f"its.{ending}")
-    rows, failures = palpate.batch([RECORD], tmp_path / f"own.{ending}", test=TEST)
-    assert rows > 0 and failures == []
+    printed = command("batch", RECORD, "--test", TEST, "--out", tmp_path / f"its.{ending}")
+    found = palpate.batch([RECORD], tmp_path / f"own.{ending}", test=TEST)
+    assert found.rows > 0 and found.failures == [] and str(found) == printed
+    assert found.law == "latency:5" and sum(found.laws.values()) == found.holds - found.unfitted
+    assert "exponent" in found.parameters["parameter"] or "equilibrium" in found.parameters["parameter"]
+    assert pickle.loads(pickle.dumps(found)) == found
     assert (tmp_path / f"own.{ending}").read_bytes() == (tmp_path / f"its.{ending}").read_bytes()
 
 

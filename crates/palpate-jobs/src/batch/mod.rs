@@ -2,10 +2,12 @@
 //!
 //! | file | what |
 //! |---|---|
+//! | `answer.rs` | what was found over all holds |
 //! | `rows.rs` | an analysed record as rows |
 //! | `parameters.rs` | its parameters as rows of a tidy table |
 //! | `table.rs` | the rows as files |
 
+mod answer;
 mod parameters;
 mod rows;
 mod table;
@@ -33,6 +35,7 @@ use crate::store::{Store, beside};
 use crate::threads::{Share, over_threads};
 use crate::written_by_batch::is_written_by_batch;
 use crate::{ErrorKind, JobError, Outcome};
+pub use answer::{BatchAnswer, Spread};
 use table::Format;
 
 /// Analyse many records into one table, one row per hold and law.
@@ -77,8 +80,10 @@ pub struct Batch {
 }
 
 /// A table with a row per hold and law.
-#[derive(Debug, Clone, Default, PartialEq, Eq)]
+#[derive(Debug, Clone, Default, PartialEq)]
 pub struct Batched {
+    /// What was found, over all holds.
+    pub answer: BatchAnswer,
     /// How many rows it has.
     pub rows: usize,
     /// Number of tests in the files.

@@ -12,7 +12,7 @@ struct Line<'a> {
     hold: &'a HoldDocument,
     law: LawRow<'a>,
     /// Whether it is the law to use.
-    preferred: bool,
+    is_recommended: bool,
 }
 
 /// A law on a hold.
@@ -28,14 +28,11 @@ enum LawRow<'a> {
 /// A column: what it holds, its name, which ends in its unit, and where that stands.
 type Column = (Kind, &'static str, fn(&Line<'_>) -> Value);
 
-/// Columns that say which hold of which record it is, and how the force went.
-const HOLD: [Column; 19] = [
-    (Text, "record", |line| line.document.input.path.clone().into()),
-    (Text, "part", |line| line.document.input.part.clone().into()),
+/// Columns of the record and the hold, and how the force changed.
+const HOLD: [Column; 16] = [
     (Text, "record_sha256", |line| line.document.input.sha256.clone().into()),
     (Count, "rows", |line| line.document.input.rows.into()),
     (Count, "rows_averaged", |line| line.document.input.rows_averaged.into()),
-    (Count, "hold", |line| line.hold.index.into()),
     (Number, "start_s", |line| line.hold.start_s.into()),
     (Number, "end_s", |line| line.hold.end_s.into()),
     (Number, "fit_start_s", |line| line.hold.fit_start_s.into()),
@@ -51,21 +48,30 @@ const HOLD: [Column; 19] = [
     (Text, "findings", |line| codes(line).into()),
 ];
 
-/// Columns of the law, whichever it is.
-const LAW: [Column; 8] = [
+/// The answer: which hold of which record, its law with the values put in, and how well that predicts.
+const ANSWER: [Column; 9] = [
+    (Text, "record", |line| line.document.input.path.clone().into()),
+    (Text, "part", |line| line.document.input.part.clone().into()),
+    (Count, "hold", |line| line.hold.index.into()),
     (Text, "law", |line| line.name().into()),
-    (Count, "preferred", |line| i64::from(line.preferred).into()),
-    (Number, "rmse", |line| line.of_law(|fit| fit.rmse.into(), |_| Value::Null)),
-    (Number, "relative_rmse", |line| line.of_law(|fit| fit.relative_rmse.into(), |law| law.rmse.into())),
-    (Number, "delta_bic", |line| line.of_law(|fit| fit.delta_bic.into(), |law| law.delta_bic.into())),
-    (Text, "termination", |line| line.of_law(|fit| fit.termination.clone().into(), ending)),
+    (Count, "recommended", |line| i64::from(line.is_recommended).into()),
+    (Text, "formula", |line| {
+        line.of_law(|fit| fit.formula.clone().into(), |law| law.formula.clone().into())
+    }),
     (Text, "parameters", |line| {
         let written = |parameters: &Parameters| serde_json::to_string(parameters).ok().into();
         line.parameters().map_or(Value::Null, written)
     }),
-    (Text, "formula", |line| {
-        line.of_law(|fit| fit.formula.clone().into(), |law| law.formula.clone().into())
-    }),
+    (Number, "holdout_error", |line| line.compared().and_then(|law| law.forward_score).into()),
+    (Text, "indistinguishable", |line| line.indistinguishable().into()),
+];
+
+/// Columns of the fit, of whichever law it is.
+const FIT: [Column; 4] = [
+    (Number, "rmse", |line| line.of_law(|fit| fit.rmse.into(), |_| Value::Null)),
+    (Number, "relative_rmse", |line| line.of_law(|fit| fit.relative_rmse.into(), |law| law.rmse.into())),
+    (Number, "delta_bic", |line| line.of_law(|fit| fit.delta_bic.into(), |law| law.delta_bic.into())),
+    (Text, "termination", |line| line.of_law(|fit| fit.termination.clone().into(), ending)),
 ];
 
 /// Parameters of the latency law, each with its uncertainty, in the unit of the signal where they have one.
@@ -93,31 +99,36 @@ pub(super) fn fields() -> Vec<Field> {
     let uncertain = LATENCY.iter().flat_map(|name| {
         ["", "_standard_error", "_low", "_high"].map(|end| Field::new(format!("{name}{end}"), Kind::Number))
     });
-    plain(&HOLD).chain(plain(&LAW)).chain(uncertain).chain(plain(&LAST)).collect()
+    plain(&ANSWER).chain(plain(&HOLD)).chain(plain(&FIT)).chain(uncertain).chain(plain(&LAST)).collect()
 }
 
-/// The rows of a record, in the order of its holds; of each the latency law first, n given before free.
+/// The rows of a record, in the order of its holds; of each the recommended law first, then the latency law, n given before free.
 pub(super) fn rows(document: &AnalysisDocument) -> Vec<Vec<Value>> {
     document.holds.iter().flat_map(|hold| of_hold(document, hold)).collect()
 }
 
 fn of_hold<'a>(document: &'a AnalysisDocument, hold: &'a HoldDocument) -> impl Iterator<Item = Vec<Value>> {
-    let in_time = hold.fits.iter().enumerate().filter(|(_, fit)| fit.domain == "time");
-    let latency = in_time.map(|(index, fit)| (LawRow::Latency(fit), hold.preferred == Some(index)));
-    let chosen = hold.comparison.as_ref().and_then(|found| found.verdict.as_ref()).map(|verdict| &verdict.law);
-    let others = hold.comparison.iter().flat_map(|found| &found.laws).filter(|law| !law.law.starts_with("latency"));
-    let others = others.map(move |law| (LawRow::Other(law), chosen == Some(&law.law)));
-    let mut laws: Vec<(LawRow<'_>, bool)> = latency.chain(others).collect();
+    let in_time = hold.fits.iter().filter(|fit| fit.domain == "time");
+    let known = |law: &LawDocument| in_time.clone().any(|fit| fit.law == law.law);
+    let others = hold.comparison.iter().flat_map(|found| &found.laws).filter(|law| !known(law));
+    let mut laws: Vec<LawRow<'_>> = in_time.clone().map(LawRow::Latency).chain(others.map(LawRow::Other)).collect();
     if laws.is_empty() {
-        laws.push((LawRow::None, false));
+        laws.push(LawRow::None);
     }
-    let line = move |(law, preferred)| Line {
-        document,
-        hold,
-        law,
-        preferred,
+    let chosen = hold.recommended_law();
+    let line = |law| {
+        let mut line = Line {
+            document,
+            hold,
+            law,
+            is_recommended: false,
+        };
+        line.is_recommended = chosen.is_some() && line.name().as_deref() == chosen;
+        line
     };
-    laws.into_iter().map(move |law| row(&line(law)))
+    let mut lines: Vec<Line<'_>> = laws.into_iter().map(line).collect();
+    lines.sort_by_key(|line| !line.is_recommended);
+    lines.into_iter().map(|line| row(&line))
 }
 
 fn row(line: &Line<'_>) -> Vec<Value> {
@@ -130,7 +141,7 @@ fn row(line: &Line<'_>) -> Vec<Value> {
         let [low, high] = [0, 1].map(|end| found.and_then(|parameter| parameter.interval?[end]));
         [value.into(), error.into(), low.into(), high.into()]
     });
-    plain(&HOLD).chain(plain(&LAW)).chain(uncertain).chain(plain(&LAST)).collect()
+    plain(&ANSWER).chain(plain(&HOLD)).chain(plain(&FIT)).chain(uncertain).chain(plain(&LAST)).collect()
 }
 
 impl Line<'_> {
@@ -150,6 +161,20 @@ impl Line<'_> {
             LawRow::Other(law) => Some(&law.parameters),
             LawRow::None => None,
         }
+    }
+
+    /// The law as the comparison has it, if it was compared.
+    fn compared(&self) -> Option<&LawDocument> {
+        let name = self.name()?;
+        self.hold.comparison.as_ref()?.laws.iter().find(|law| law.law == name)
+    }
+
+    /// Of the recommended law: the other laws that the data do not distinguish from the best.
+    fn indistinguishable(&self) -> Option<String> {
+        let verdict = self.hold.comparison.as_ref()?.verdict.as_ref().filter(|_| self.is_recommended)?;
+        let others: Vec<&str> =
+            verdict.indistinguishable.iter().filter(|law| **law != verdict.law).map(String::as_str).collect();
+        Some(others.join(" "))
     }
 
     /// The name of the law as `--laws` takes it.

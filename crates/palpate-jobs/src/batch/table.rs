@@ -8,6 +8,7 @@ use std::path::{Path, PathBuf};
 use palpate_files::parquet_table::{Field, TableError, TableWriter};
 use serde_json::Value;
 
+use super::answer::Tally;
 use super::parameters;
 use super::rows::{self, table_rows};
 use super::{Batched, Entry};
@@ -42,6 +43,7 @@ pub(super) fn write<'a>(
     settings: &str,
 ) -> Result<Batched, JobError> {
     let mut batched = Batched::default();
+    let mut tally = Tally::new();
     let of_parameters = of_parameters(out);
     let refused = |error: TableError| unwritten_table(out, &error);
     // In the folder of the store, where the next batch clears away what a kill leaves behind.
@@ -53,6 +55,7 @@ pub(super) fn write<'a>(
             let mut parameters = Sink::new(format, BufWriter::new(file), fields, settings).map_err(refused)?;
             for place in places {
                 let entry: Entry = serde_json::from_slice(&store.read(place)?)?;
+                tally.add(&entry);
                 batched.rows += entry.rows.len();
                 batched.tests += entry.tests;
                 batched.failures.extend(entry.failures);
@@ -63,6 +66,7 @@ pub(super) fn write<'a>(
         })?;
         sink.finish(settings).map_err(refused)
     })?;
+    batched.answer = tally.answer();
     Ok(batched)
 }
 

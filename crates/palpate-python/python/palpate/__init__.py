@@ -24,6 +24,7 @@ from palpate import laws
 from palpate._palpate import (
     Analysis,
     BackOff,
+    BatchResult,
     Calibration,
     Comparison,
     ContactState,
@@ -67,6 +68,7 @@ from palpate._palpate import simulate_many as _simulate_many
 __all__ = [
     "Analysis",
     "BackOff",
+    "BatchResult",
     "Calibration",
     "Comparison",
     "ContactState",

@@ -57,6 +57,7 @@ __all__ = [
 _Doubles: TypeAlias = NDArray[np.float64]
 _Path: TypeAlias = str | os.PathLike[str]
 _Described: TypeAlias = _Path | Mapping[str, Any] | Material
+_Columns: TypeAlias = str | Mapping[str, str]
 # Numbers are arrays, texts and truths are lists; which of them only the name of the column tells.
 _Cells: TypeAlias = Any
 
@@ -164,6 +165,17 @@ class Record(_Series):
         confidence: float | None = None,
         profile: bool = False,
     ) -> Calibration: ...
+
+@final
+class BatchResult(_Value):
+    law: Final[str | None]
+    laws: Final[dict[str, int]]
+    parameters: Final[Table]
+    findings: Final[dict[str, int]]
+    holds: Final[int]
+    unfitted: Final[int]
+    rows: Final[int]
+    failures: Final[list[str]]
 
 @final
 class Finding(_Value):
@@ -490,8 +502,10 @@ class ContactStates(_Moved):
     is_touching: Final[NDArray[np.bool_]]
     def __len__(self) -> int: ...
 
-def read(path: _Path, *, test: _Described | None = None, part: str | int | None = None) -> Record: ...
-def read_all(path: _Path, *, test: _Described | None = None) -> list[Record]: ...
+def read(
+    path: _Path, *, test: _Described | None = None, part: str | int | None = None, columns: _Columns | None = None
+) -> Record: ...
+def read_all(path: _Path, *, test: _Described | None = None, columns: _Columns | None = None) -> list[Record]: ...
 def fit_hold(
     time_s: ArrayLike, signal: ArrayLike, weights: ArrayLike | None, keywords: Mapping[str, Any]
 ) -> Fit: ...
@@ -524,20 +538,28 @@ def simulate_many(
     times_s: ArrayLike | None,
     progress: Callable[[int], None] | None,
 ) -> Table: ...
-def inspect(path: _Path, *, test: _Described | None = None, part: str | int | None = None) -> str: ...
+def inspect(
+    path: _Path, *, test: _Described | None = None, part: str | int | None = None, columns: _Columns | None = None
+) -> str: ...
 def convert(
-    path: _Path, out: _Path, *, test: _Described | None = None, part: str | int | None = None
+    path: _Path,
+    out: _Path,
+    *,
+    test: _Described | None = None,
+    part: str | int | None = None,
+    columns: _Columns | None = None,
 ) -> Path: ...
 def batch(
     paths: Sequence[_Path],
     out: _Path,
     *,
     test: _Described | None = None,
+    columns: _Columns | None = None,
     laws: Sequence[str] | None = None,
     intervals: str | None = None,
     fit_until_s: float | None = None,
     restart: bool = False,
-) -> tuple[int, list[str]]: ...
+) -> BatchResult: ...
 def sweep(
     protocol: _Path, out: _Path, *, figure: _Path | None = None, show: str | None = None, restart: bool = False
 ) -> tuple[int, int]: ...
@@ -547,6 +569,7 @@ def watch(
     *,
     test: _Described | None = None,
     part: str | int | None = None,
+    columns: _Columns | None = None,
     material: _Path | None = None,
     exponent: float | None = None,
     slip_force_n: float | None = None,

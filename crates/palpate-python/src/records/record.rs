@@ -22,7 +22,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::arrays::doubles;
 use crate::errors::{OptionError, RecordError, choice, refused, refused_plainly};
-use crate::files::{self, Given, all_laws, described, read_or_parsed};
+use crate::files::{self, Given, all_laws, described, named_columns, read_or_parsed};
 use crate::fits::fit;
 use crate::materials::calibration::Calibration;
 use crate::materials::material::{Material, rising_times};
@@ -78,6 +78,9 @@ impl PartialEq for Record {
 ///     Test description that says what the file cannot know: path of a TOML file, or a mapping with its tables.
 /// part
 ///     The one test of a file that holds several: its name (a sheet, a curve, a ``test_id``), or its number from 1.
+/// columns
+///     Columns with their units, before what ``test`` says of them: "force=Kraft:N,displacement=Weg:mm,time=Zeit:s", or a mapping
+///     ``{"force": "Kraft:N", ...}``.
 ///
 /// Returns
 /// -------
@@ -94,16 +97,23 @@ impl PartialEq for Record {
 /// OSError
 ///     The operating system does not hand the file out.
 #[pyfunction]
-#[pyo3(signature = (path, *, test=None, part=None))]
-pub(crate) fn read(py: Python<'_>, path: PathBuf, test: Given<'_, '_>, part: Given<'_, '_>) -> PyResult<Record> {
-    Ok(read_parts(py, path, &described(test, part)?.0, true)?.remove(0))
+#[pyo3(signature = (path, *, test=None, part=None, columns=None))]
+pub(crate) fn read(
+    py: Python<'_>,
+    path: PathBuf,
+    test: Given<'_, '_>,
+    part: Given<'_, '_>,
+    columns: Given<'_, '_>,
+) -> PyResult<Record> {
+    let described = described(test, part)?.0.with_columns(named_columns(columns)?.as_ref());
+    Ok(read_parts(py, path, &described, true)?.remove(0))
 }
 
 /// Read all tests in a file: the sheets of a workbook, the curves of a map, the ``test_id`` of a table.
 ///
 /// Parameters
 /// ----------
-/// path, test
+/// path, test, columns
 ///     As for `read`.
 ///
 /// Returns
@@ -116,9 +126,15 @@ pub(crate) fn read(py: Python<'_>, path: PathBuf, test: Given<'_, '_>, part: Giv
 /// RecordError, OptionError, OSError
 ///     As for `read`, for the first test that makes no record.
 #[pyfunction]
-#[pyo3(signature = (path, *, test=None))]
-pub(crate) fn read_all(py: Python<'_>, path: PathBuf, test: Given<'_, '_>) -> PyResult<Vec<Record>> {
-    read_parts(py, path, &described(test, None)?.0, false)
+#[pyo3(signature = (path, *, test=None, columns=None))]
+pub(crate) fn read_all(
+    py: Python<'_>,
+    path: PathBuf,
+    test: Given<'_, '_>,
+    columns: Given<'_, '_>,
+) -> PyResult<Vec<Record>> {
+    let described = described(test, None)?.0.with_columns(named_columns(columns)?.as_ref());
+    read_parts(py, path, &described, false)
 }
 
 /// The records in a file, `only` one of them or all.

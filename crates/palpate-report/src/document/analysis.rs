@@ -223,6 +223,15 @@ pub(super) fn tables(analysis: &Analysis) -> Option<TablesDocument> {
     Some(TablesDocument::new(analysis, n))
 }
 
+impl HoldDocument {
+    /// The law to use: the verdict of the comparison, or the exponent that the data prefer where no other laws were compared.
+    #[must_use]
+    pub fn recommended_law(&self) -> Option<&str> {
+        let verdict = self.comparison.as_ref().and_then(|found| found.verdict.as_ref()).map(|verdict| &verdict.law);
+        verdict.or_else(|| self.fits.get(self.preferred?).map(|fit| &fit.law)).map(String::as_str)
+    }
+}
+
 impl AnalysisDocument {
     /// Every parameter of every law on every hold, a row each: the latency law in both domains, then the laws compared.
     #[must_use]
@@ -233,7 +242,7 @@ impl AnalysisDocument {
     fn parameters_on(&self, hold: &HoldDocument) -> Vec<ParameterRow> {
         let record = self.input.called();
         let comparison = hold.comparison.as_ref();
-        let chosen = comparison.and_then(|found| found.verdict.as_ref()).map(|verdict| &verdict.law);
+        let chosen = hold.recommended_law();
         let row = |fit: &FitDocument, name: &String, parameter: &ParameterDocument| ParameterRow {
             record: record.clone(),
             hold: Some(hold.index),
@@ -242,7 +251,7 @@ impl AnalysisDocument {
             parameter: parameter.clone(),
             termination: fit.termination.clone(),
             domain: fit.domain.clone(),
-            is_recommended: fit.domain == "time" && chosen == Some(&fit.law),
+            is_recommended: fit.domain == "time" && chosen == Some(fit.law.as_str()),
         };
         let of_fit = |fit: &FitDocument| -> Vec<ParameterRow> {
             fit.parameters.iter().map(|(name, parameter)| row(fit, name, parameter)).collect()

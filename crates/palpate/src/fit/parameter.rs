@@ -180,7 +180,10 @@ impl TryFrom<String> for ParameterName {
 
 impl PartialEq<str> for ParameterName {
     fn eq(&self, name: &str) -> bool {
-        self.to_string() == name
+        match self.term {
+            None => self.kind.word() == name,
+            Some(term) => term_of_name(self.kind.word(), name) == Some(term),
+        }
     }
 }
 

@@ -1,0 +1,185 @@
+//! What a batch found, over all holds: which laws, their parameters, the findings.
+
+use std::collections::{BTreeMap, HashMap};
+
+use palpate::number::{counted, significant};
+use palpate_files::parquet_table::Field;
+use palpate_report::table::{Cell, Table};
+use serde::{Deserialize, Serialize};
+use serde_json::Value;
+
+use super::{Entry, parameters, rows};
+
+/// Findings that the answer states.
+const MOST_FINDINGS: usize = 2;
+
+/// What is counted of the holds of a batch while its table is written.
+pub(super) struct Tally {
+    holds: usize,
+    /// Holds without a fitted law.
+    unfitted: usize,
+    /// How many holds each law is recommended for.
+    laws: HashMap<String, usize>,
+    /// Values of each parameter of each recommended law, by law, name and unit.
+    values: HashMap<(String, String, String), Vec<f64>>,
+    /// How many holds have each finding.
+    findings: HashMap<String, usize>,
+    hold: [usize; 6],
+    parameter: [usize; 6],
+}
+
+/// Over all holds of a batch: which law is recommended for how many, its parameters, and what was found most often.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+pub struct BatchAnswer {
+    /// Holds in all.
+    pub holds: usize,
+    /// Holds without a fitted law.
+    pub unfitted: usize,
+    /// The laws with the number of holds that each is recommended for, the most first.
+    pub laws: Vec<(String, usize)>,
+    /// Parameters of the first of these laws over the holds that it is recommended for.
+    pub parameters: Vec<Spread>,
+    /// The codes of the findings on the most holds, with their number.
+    pub findings: Vec<(String, usize)>,
+}
+
+/// A parameter over many holds.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Spread {
+    /// Its name.
+    pub name: String,
+    /// Its unit, `1` of a dimensionless parameter.
+    pub unit: String,
+    /// Holds with a value.
+    pub holds: usize,
+    /// Lower quartile, median and upper quartile.
+    pub quartiles: [f64; 3],
+}
+
+fn columns(fields: &[Field], names: [&str; 6]) -> [usize; 6] {
+    names.map(|name| fields.iter().position(|field| field.name == name).unwrap_or(usize::MAX))
+}
+
+fn text(row: &[Value], column: usize) -> &str {
+    row.get(column).and_then(Value::as_str).unwrap_or_default()
+}
+
+fn is_set(row: &[Value], column: usize) -> bool {
+    row.get(column).and_then(Value::as_i64) == Some(1)
+}
+
+impl Tally {
+    pub(super) fn new() -> Self {
+        let hold = ["record", "part", "hold", "law", "recommended", "findings"];
+        let parameter = ["law", "parameter", "unit", "value", "recommended", "role"];
+        Self {
+            holds: 0,
+            unfitted: 0,
+            laws: HashMap::new(),
+            values: HashMap::new(),
+            findings: HashMap::new(),
+            hold: columns(&rows::fields(), hold),
+            parameter: columns(&parameters::fields(), parameter),
+        }
+    }
+
+    /// Counts the holds of a file.
+    pub(super) fn add(&mut self, entry: &Entry) {
+        let [record, part, hold, law, recommended, findings] = self.hold;
+        let key = |row: &[Value]| (text(row, record).to_owned(), text(row, part).to_owned(), row[hold].as_i64());
+        let mut last = None;
+        for row in &entry.rows {
+            if is_set(row, recommended) {
+                *self.laws.entry(text(row, law).to_owned()).or_default() += 1;
+            }
+            let of = Some(key(row));
+            if last != of {
+                last = of;
+                self.holds += 1;
+                self.unfitted += usize::from(text(row, law).is_empty());
+                for code in text(row, findings).split_whitespace() {
+                    *self.findings.entry(code.to_owned()).or_default() += 1;
+                }
+            }
+        }
+        let [law, name, unit, value, recommended, role] = self.parameter;
+        for row in entry.parameters.iter().filter(|row| is_set(row, recommended) && text(row, role) != "given") {
+            if let Some(value) = row[value].as_f64() {
+                let key = [law, name, unit].map(|column| text(row, column).to_owned());
+                self.values.entry(key.into()).or_default().push(value);
+            }
+        }
+    }
+
+    pub(super) fn answer(self) -> BatchAnswer {
+        let laws = most(self.laws, usize::MAX);
+        let first = laws.first().map(|(law, _)| law.clone());
+        let of_first = self.values.into_iter().filter(|((law, ..), _)| Some(law) == first.as_ref());
+        let parameters: BTreeMap<(String, String), Vec<f64>> =
+            of_first.map(|((_, name, unit), values)| ((name, unit), values)).collect();
+        let spread = |((name, unit), mut values): ((String, String), Vec<f64>)| {
+            values.sort_by(f64::total_cmp);
+            let at = |share: f64| values[((values.len() - 1) as f64 * share).round() as usize];
+            Spread {
+                name,
+                unit,
+                holds: values.len(),
+                quartiles: [at(0.25), at(0.5), at(0.75)],
+            }
+        };
+        BatchAnswer {
+            holds: self.holds,
+            unfitted: self.unfitted,
+            laws,
+            parameters: parameters.into_iter().map(spread).collect(),
+            findings: most(self.findings, MOST_FINDINGS),
+        }
+    }
+}
+
+/// The most frequent first, of equals by name.
+fn most(counts: HashMap<String, usize>, count: usize) -> Vec<(String, usize)> {
+    let mut counts: Vec<(String, usize)> = counts.into_iter().collect();
+    counts.sort_by(|a, b| b.1.cmp(&a.1).then_with(|| a.0.cmp(&b.0)));
+    counts.truncate(count);
+    counts
+}
+
+impl BatchAnswer {
+    /// The answer in sentences and a table.
+    #[must_use]
+    pub fn text(&self) -> String {
+        let Some((law, count)) = self.laws.first() else {
+            return match self.holds {
+                0 => String::new(),
+                holds => format!("No law could be fitted to any of {}.\n", counted(holds, "hold")),
+            };
+        };
+        let mut text = format!("Law recommended most often: {law}, on {count} of {}.", counted(self.holds, "hold"));
+        let others: Vec<String> = self.laws[1..].iter().map(|(law, count)| format!("{law} on {count}")).collect();
+        if !others.is_empty() {
+            text.push_str(&format!(" Others: {}.", others.join(", ")));
+        }
+        if self.unfitted > 0 {
+            text.push_str(&format!(" No law was fitted to {}.", counted(self.unfitted, "hold")));
+        }
+        text.push('\n');
+        let caption = format!("Parameters of {law} over the holds that it is recommended for.");
+        let quartile = |index: usize| move |spread: &Spread| Cell::Text(significant(spread.quartiles[index], 4));
+        let table = Table::of("spread", caption, &self.parameters)
+            .column("Parameter", "parameter", "", |spread| Cell::text(&spread.name))
+            .column("Unit", "unit", "", |spread| Cell::text(&spread.unit))
+            .column("Median", "median", "", quartile(1))
+            .column("Lower quartile", "lower_quartile", "", quartile(0))
+            .column("Upper quartile", "upper_quartile", "", quartile(2))
+            .column("Holds", "holds", "", |spread| Cell::Integer(spread.holds as i64))
+            .unless_empty();
+        text.extend(table.map(|table| format!("\n{}", table.to_plain_text())));
+        if !self.findings.is_empty() {
+            let found: Vec<String> =
+                self.findings.iter().map(|(code, count)| format!("{code} on {}", counted(*count, "hold"))).collect();
+            text.push_str(&format!("\nFindings on the most holds: {}.\n", found.join(", ")));
+        }
+        text
+    }
+}
