@@ -46,38 +46,6 @@ pub fn counted(count: usize, what: &str) -> String {
     format!("{count} {what}{plural}")
 }
 
-/// `value ± error`, both rounded to the digits the error warrants, for people.
-///
-/// The error has one significant digit, or two when it starts with 1. Without a usable error
-/// (not finite, or not positive) only the value is written, to four digits.
-///
-/// ```
-/// use palpate::number::with_error;
-/// assert_eq!(with_error(12.3456, 0.0321), "12.35 ± 0.03");
-/// assert_eq!(with_error(1.2345e-5, 1.4e-7), "(1.234 ± 0.014)×10⁻⁵");
-/// ```
-#[must_use]
-pub fn with_error(value: f64, error: f64) -> String {
-    if !error.is_finite() || error <= 0.0 || !value.is_finite() {
-        return significant(value, 4);
-    }
-    let (one_digit, error_exponent) = rounded_parts(error, 1);
-    let leading_one = one_digit == "1" || rounded_parts(error, 2).0.starts_with('1');
-    let last = error_exponent - i32::from(leading_one);
-    let (value, error) = (rounded_to(value, last), rounded_to(error, last));
-    let (_, exponent) = rounded_parts(if value.abs() > error { value } else { error }, MOST_DIGITS);
-    let text = if (-3..4).contains(&exponent) || (exponent == 4 && last <= 0) {
-        let places = usize::try_from(-last).unwrap_or(0);
-        format!("{value:.places$} ± {error:.places$}")
-    } else {
-        let places = usize::try_from(exponent - last).unwrap_or(0);
-        let scale = 10f64.powi(exponent);
-        let (v, e) = (value / scale, error / scale);
-        format!("({v:.places$} ± {e:.places$})×10{}", superscript(exponent))
-    };
-    without_negative_zero(&text).replace('-', "−")
-}
-
 /// `value [low, high]`, rounded to two significant digits of the nearer half of the interval, for people.
 ///
 /// An end that is open reads `∞` and stands behind a round bracket. An interval that is open on both sides, as is (0, ∞) for a
@@ -210,11 +178,10 @@ fn rounded_to(value: f64, place: i32) -> f64 {
     format!("{value:.places$}").parse().unwrap_or(value)
 }
 
-/// `-0.00 ± …` without its misleading sign.
+/// `-0.00` without its misleading sign.
 fn without_negative_zero(text: &str) -> String {
-    let (head, tail) = text.split_at(text.find(" ± ").unwrap_or(text.len()));
-    let is_zero = head.contains('-') && !head.chars().any(|c| ('1'..='9').contains(&c));
-    if is_zero { format!("{}{tail}", head.replace('-', "")) } else { text.to_owned() }
+    let is_zero = !text.chars().any(|c| ('1'..='9').contains(&c));
+    if is_zero { text.replace('-', "") } else { text.to_owned() }
 }
 
 #[cfg(test)]
@@ -232,22 +199,6 @@ mod tests {
         assert_eq!(significant(0.0, 3), "0");
         assert_eq!(significant(f64::NAN, 3), "–");
         assert_eq!(significant(f64::NEG_INFINITY, 3), "−∞");
-    }
-
-    #[test]
-    fn errors_decide_the_digits() {
-        assert_eq!(with_error(0.123_456, 0.004_56), "0.123 ± 0.005");
-        assert_eq!(with_error(-3.0, 0.12), "−3.00 ± 0.12");
-        assert_eq!(with_error(2.0, 0.096), "2.00 ± 0.10");
-        assert_eq!(with_error(-0.001, 0.3), "0.0 ± 0.3");
-        assert_eq!(with_error(5.4321e6, 2e4), "(5.43 ± 0.02)×10⁶");
-        assert_eq!(with_error(1234.0, 60.0), "1230 ± 60");
-        assert_eq!(with_error(70.0, 41.0), "70 ± 40");
-        assert_eq!(with_error(999.8, 41.0), "1000 ± 40");
-        assert_eq!(with_error(9.998e5, 4.1e3), "(1.000 ± 0.004)×10⁶");
-        assert_eq!(with_error(12_346.0, 20.0), "(1.235 ± 0.002)×10⁴");
-        assert_eq!(with_error(1.5, f64::NAN), "1.500");
-        assert_eq!(with_error(1.5, 0.0), "1.500");
     }
 
     #[test]

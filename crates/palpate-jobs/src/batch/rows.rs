@@ -49,7 +49,7 @@ const HOLD: [Column; 16] = [
 ];
 
 /// The answer: which hold of which record, its law with the values put in, and how well that predicts.
-const ANSWER: [Column; 9] = [
+const ANSWER: [Column; 8] = [
     (Text, "record", |line| line.document.input.path.clone().into()),
     (Text, "part", |line| line.document.input.part.clone().into()),
     (Count, "hold", |line| line.hold.index.into()),
@@ -58,20 +58,20 @@ const ANSWER: [Column; 9] = [
     (Text, "formula", |line| {
         line.of_law(|fit| fit.formula.clone().into(), |law| law.formula.clone().into())
     }),
-    (Text, "parameters", |line| {
-        let written = |parameters: &Parameters| serde_json::to_string(parameters).ok().into();
-        line.parameters().map_or(Value::Null, written)
-    }),
     (Number, "holdout_error", |line| line.compared().and_then(|law| law.forward_score).into()),
     (Text, "indistinguishable", |line| line.indistinguishable().into()),
 ];
 
 /// Columns of the fit, of whichever law it is.
-const FIT: [Column; 4] = [
+const FIT: [Column; 5] = [
     (Number, "rmse", |line| line.of_law(|fit| fit.rmse.into(), |_| Value::Null)),
     (Number, "relative_rmse", |line| line.of_law(|fit| fit.relative_rmse.into(), |law| law.rmse.into())),
     (Number, "delta_bic", |line| line.of_law(|fit| fit.delta_bic.into(), |law| law.delta_bic.into())),
     (Text, "termination", |line| line.of_law(|fit| fit.termination.clone().into(), ending)),
+    (Text, "parameters", |line| {
+        let written = |parameters: &Parameters| serde_json::to_string(parameters).ok().into();
+        line.parameters().map_or(Value::Null, written)
+    }),
 ];
 
 /// Parameters of the latency law, each with its uncertainty, in the unit of the signal where they have one.

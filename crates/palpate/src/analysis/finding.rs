@@ -52,6 +52,8 @@ pub enum Finding {
         /// Whether the criterion is still lowest at the largest exponent that a fit allows.
         open: bool,
     },
+    /// The record has no ramp; it is one hold from its first sample to its last.
+    OneHold,
     /// The relative rate of a fit is at its bound.
     RateAtBound {
         /// The exponent of that fit.

@@ -1,11 +1,6 @@
 //! What defines a law: its name, what it is in words, and the basis functions that it is composed of.
 
-use std::fmt;
-
-use serde::de::Error;
-use serde::{Deserialize, Deserializer, Serialize, Serializer};
-
-use super::{BasisFunction, Kernel};
+use super::BasisFunction;
 
 /// A law in words: what tables, figures and help show of it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -83,41 +78,5 @@ pub struct LawDefinition {
 impl PartialEq for LawDefinition {
     fn eq(&self, other: &Self) -> bool {
         self.name == other.name
-    }
-}
-
-/// A basis function that another crate defines.
-///
-/// It is written to JSON by its name and cannot be read from there.
-#[derive(Clone, Copy)]
-pub struct CustomKernel {
-    /// Its name; two functions of one name are one function.
-    pub name: &'static str,
-    /// The function with its derivatives.
-    pub kernel: &'static dyn Kernel,
-}
-
-impl PartialEq for CustomKernel {
-    fn eq(&self, other: &Self) -> bool {
-        self.name == other.name
-    }
-}
-
-impl fmt::Debug for CustomKernel {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(self.name)
-    }
-}
-
-impl Serialize for CustomKernel {
-    fn serialize<S: Serializer>(&self, to: S) -> Result<S::Ok, S::Error> {
-        to.serialize_str(self.name)
-    }
-}
-
-impl<'de> Deserialize<'de> for CustomKernel {
-    fn deserialize<D: Deserializer<'de>>(from: D) -> Result<Self, D::Error> {
-        let name = String::deserialize(from)?;
-        Err(D::Error::custom(format!("the basis function {name} is defined outside palpate and cannot be read")))
     }
 }

@@ -1,5 +1,10 @@
 //! What a shape must be able to do.
 
+use std::fmt;
+
+use serde::de::Error;
+use serde::{Deserialize, Deserializer, Serialize, Serializer};
+
 /// What a nonlinear parameter of a shape is, and between which bounds it is sought.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum ShapeParameterKind {
@@ -98,5 +103,41 @@ pub trait Kernel: Sync {
     fn formula(&self, theta: &[f64]) -> Option<String> {
         let _ = theta;
         None
+    }
+}
+
+/// A basis function that another crate defines.
+///
+/// It is written to JSON by its name and cannot be read from there.
+#[derive(Clone, Copy)]
+pub struct CustomKernel {
+    /// Its name; two functions of one name are one function.
+    pub name: &'static str,
+    /// The function with its derivatives.
+    pub kernel: &'static dyn Kernel,
+}
+
+impl PartialEq for CustomKernel {
+    fn eq(&self, other: &Self) -> bool {
+        self.name == other.name
+    }
+}
+
+impl fmt::Debug for CustomKernel {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.name)
+    }
+}
+
+impl Serialize for CustomKernel {
+    fn serialize<S: Serializer>(&self, to: S) -> Result<S::Ok, S::Error> {
+        to.serialize_str(self.name)
+    }
+}
+
+impl<'de> Deserialize<'de> for CustomKernel {
+    fn deserialize<D: Deserializer<'de>>(from: D) -> Result<Self, D::Error> {
+        let name = String::deserialize(from)?;
+        Err(D::Error::custom(format!("the basis function {name} is defined outside palpate and cannot be read")))
     }
 }

@@ -39,9 +39,9 @@ mod superposition;
 
 pub use basis::{BasisFunction, ExponentChoice, Response};
 pub use curve::{LawCurve, Term};
-pub use definition::{Composition, CustomKernel, Description, LawDefinition};
+pub use definition::{Composition, Description, LawDefinition};
 pub(crate) use form::{Column, Form};
-pub use kernel::{Kernel, ShapeParameter, ShapeParameterKind};
+pub use kernel::{CustomKernel, Kernel, ShapeParameter, ShapeParameterKind};
 use kernel::{REFERENCE, TIME, two};
 pub(crate) use kernel::{name_of_term, term_of_name};
 pub use law::{Law, MOST_TERMS, UnknownLaw};

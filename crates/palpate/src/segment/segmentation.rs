@@ -176,4 +176,10 @@ impl Segmentation {
     pub fn holds(&self) -> impl Iterator<Item = &Segment> {
         self.segments.iter().filter(|segment| segment.phase == Phase::Hold)
     }
+
+    /// Whether the record is one hold from its first sample to its last.
+    #[must_use]
+    pub fn is_one_hold(&self) -> bool {
+        matches!(self.segments[..], [Segment { phase: Phase::Hold, .. }])
+    }
 }

@@ -1,6 +1,7 @@
 //! Holds found in records whose truth is known: fast ramps, slow ramps, coarse encoders, servos, cyclic tests.
 #![expect(clippy::unwrap_used, reason = "a test that cannot run has failed")]
 
+use palpate::analysis::{AnalysisOptions, Finding, analyze};
 use palpate::record::Record;
 use palpate::segment::{After, HoldMode, Phase, SegmentError, SegmentOptions, Segmentation, find_phases};
 use palpate::test_problems::Rng;
@@ -151,7 +152,18 @@ fn a_record_that_is_one_hold_is_that_hold() {
         (Some(creeping.clone()), &pressed, HoldMode::ForceHeld),
         (Some(creeping), &hunted, HoldMode::ForceHeld),
     ] {
-        let found = phases(&Record::new(time.clone(), displacement, force.clone()).unwrap()).unwrap();
+        let record = Record::new(time.clone(), displacement, force.clone()).unwrap();
+        if mode == HoldMode::DisplacementHeld {
+            // That the force falls from the first sample on is what it does in a hold, and no wrong sign.
+            let options = AnalysisOptions {
+                compare: None,
+                ..AnalysisOptions::default()
+            };
+            let findings = analyze(&record, &options).unwrap().findings;
+            let codes: Vec<&str> = findings.iter().map(Finding::code).collect();
+            assert!(codes.contains(&"one_hold") && !codes.contains(&"sign_suspicious"), "{codes:?}");
+        }
+        let found = phases(&record).unwrap();
         let hold = found.segments[0];
         assert_eq!((found.segments.len(), hold.phase, hold.start, hold.end), (1, Phase::Hold, 0, 1000), "{found:?}");
         assert_eq!((hold.mode, hold.fit_start < 10), (Some(mode), true), "{found:?}");

@@ -4,7 +4,7 @@ use super::Finding;
 use super::Severity::{self, Caution, Info, Warning};
 use crate::fit::TrendVerdict;
 use crate::forecast::listed;
-use crate::number::{counted, significant, with_error};
+use crate::number::{counted, significant, with_interval};
 use crate::record::Column;
 
 /// Code, severity, observation, meaning and remedy.
@@ -79,6 +79,12 @@ impl Finding {
                     )
                 }
             }
+            Self::OneHold => info(
+                "one_hold",
+                "the record has no ramp; it was taken as one hold from its first sample to its last".to_owned(),
+                "first touch and the loading are unknown; the laws describe the force from the first sample on",
+                "give the limits of the hold with [[phases.hold]] in the test description if they differ",
+            ),
             Self::RateAtBound { exponent } => warning(
                 "rate_at_bound",
                 format!("in the fit with n = {exponent:.3} the relative rate is at its bound"),
@@ -299,7 +305,10 @@ impl Finding {
                 "modulus_estimated",
                 format!(
                     "no modulus was given; the equilibrium forces imply {} kPa",
-                    with_error(modulus / 1e3, standard_error.map_or(f64::NAN, |error| error / 1e3))
+                    standard_error.map_or_else(
+                        || significant(modulus / 1e3, 4),
+                        |error| with_standard_error(modulus / 1e3, error / 1e3)
+                    )
                 ),
                 "strains and v depend on this estimate; n and the relative rate do not",
                 "give the modulus in the test description if it is known",
@@ -317,7 +326,7 @@ impl Finding {
             Self::TouchUncertain { error, hold, shift, interval } => caution(
                 "touch_uncertain",
                 format!(
-                    "an error of {} mm in first touch shifts the equilibrium strain of hold {hold} by {:.2} %; its interval is ± {:.2} %",
+                    "an error of {} mm in first touch shifts the equilibrium strain of hold {hold} by {:.2} %, more than the {:.2} % from the estimate to the ends of its interval",
                     significant(1e3 * error, 2),
                     100.0 * shift,
                     100.0 * interval
@@ -345,7 +354,7 @@ impl Finding {
                 "clocks_skewed",
                 format!(
                     "at the starts and ends of ramps the force bends {} ms {} than the displacement",
-                    with_error(1e3 * skew.abs(), 1e3 * standard_error),
+                    with_standard_error(1e3 * skew.abs(), 1e3 * standard_error),
                     if *skew > 0.0 { "later" } else { "earlier" }
                 ),
                 "two clocks or a filter delay one column; fits of holds are unaffected, but forces in ramps have the wrong displacement",
@@ -358,7 +367,7 @@ impl Finding {
                 "clocks_open",
                 format!(
                     "one clock stamps force and displacement, though the starts and ends of ramps seem {} ms apart",
-                    with_error(1e3 * skew, 1e3 * error)
+                    with_standard_error(1e3 * skew, 1e3 * error)
                 ),
                 "one clock needs no skew taken away: nothing was moved",
                 "nothing, unless the force did come late by that much: then give the skew in [clock] of the test description as a time",
@@ -368,7 +377,7 @@ impl Finding {
                 match skew {
                     Some((skew, error)) => format!(
                         "the skew of the clocks is not determined; the starts and ends of ramps give {} ms",
-                        with_error(1e3 * skew, 1e3 * error)
+                        with_standard_error(1e3 * skew, 1e3 * error)
                     ),
                     None => {
                         "the skew of the clocks is not determined; fewer than three starts and ends of ramps appear in both columns"
@@ -446,6 +455,12 @@ impl Finding {
             ),
         }
     }
+}
+
+/// A value with its 95 % interval.
+fn with_standard_error(value: f64, error: f64) -> String {
+    const NORMAL: f64 = 1.959_964;
+    with_interval(value, (value - NORMAL * error, value + NORMAL * error))
 }
 
 /// Numbers as people write a list.

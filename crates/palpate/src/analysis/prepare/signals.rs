@@ -2,7 +2,7 @@
 
 use crate::analysis::{Corrected, Finding, Prepared};
 use crate::record::{Column, Correction, Record, SignalReport, Values};
-use crate::segment::{ContactChoice, ContactPoint, Segmentation};
+use crate::segment::{ContactChoice, ContactPoint, SegmentOptions, Segmentation, find_phases};
 use crate::statistics::{median, noise};
 
 /// Levels between the smallest and the largest value below which rounding is worth a word.
@@ -31,6 +31,9 @@ pub(in crate::analysis) fn signal_findings(
     findings.extend(corrected.skew_finding());
     if !segmentation.settings.from_displacement {
         findings.push(Finding::PhasesFromForce);
+    }
+    if segmentation.is_one_hold() {
+        findings.push(Finding::OneHold);
     }
     findings.extend(segmentation.ripple.map(Finding::JawHunts));
     findings.extend(segmentation.ruptures.iter().copied().map(Finding::Ruptured));
@@ -109,7 +112,12 @@ pub fn suspicious_signs(record: &Record) -> Vec<Finding> {
         let most = values.iter().fold(0.0, |most: f64, value| most.max((value - start).abs()));
         let first = values.iter().find(|value| (**value - start).abs() >= 0.5 * most)?;
         let fall = start - values.iter().copied().fold(f64::MAX, f64::min);
-        (*first < start && fall > least).then(|| Finding::SignSuspicious {
+        // A force relaxes from the first sample of a record that is one hold.
+        let relaxes = || {
+            let found = find_phases(record, &SegmentOptions::default());
+            column == "force" && start > 0.0 && found.is_ok_and(|found| found.is_one_hold())
+        };
+        (*first < start && fall > least && !relaxes()).then(|| Finding::SignSuspicious {
             column: column.to_owned(),
             fall,
         })
