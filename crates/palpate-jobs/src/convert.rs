@@ -34,7 +34,7 @@ pub struct Converted {
 
 impl Convert {
     /// Reads the one record of a file, and corrects it as its description asks; without any corrections requested, not even dropouts are
-    /// mended.
+    /// repaired.
     ///
     /// # Errors
     /// [`JobError`] where it cannot be read or corrected, or the watch ends it.

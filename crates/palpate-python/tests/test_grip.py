@@ -104,7 +104,7 @@ def test_every_number_of_the_document_is_an_attribute(least: palpate.Grip) -> No
 
     def held(found: palpate.PositionHold, expected: dict[str, Any]) -> None:
         for key, value in expected.items():
-            if key == "lasts":
+            if key == "time_to_slip":
                 assert found.time_to_slip_s == seconds(value)
             elif key == "interval":
                 assert found.time_to_slip_interval_s == tuple(seconds(end) for end in value)
@@ -128,7 +128,7 @@ def test_every_number_of_the_document_is_an_attribute(least: palpate.Grip) -> No
     for table, rows in [
         (least.schedule.moves, schedule["moves"]),
         (least.back_off.sensitivities, document["back_off"]["sensitivities"]),
-        (least.neighbours, [{"displacement_m": row["displacement_m"], "time_to_slip_s": seconds(row["lasts"])} for row in document["neighbours"]]),
+        (least.neighbours, [{"displacement_m": row["displacement_m"], "time_to_slip_s": seconds(row["time_to_slip"])} for row in document["neighbours"]]),
     ]:
         assert len(table) == len(rows) > 1
         for name in table.column_names:

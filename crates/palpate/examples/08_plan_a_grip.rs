@@ -50,7 +50,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
             1e3 * squeeze,
             holding.start_force,
             holding.needed_force,
-            reported(holding.lasts),
+            reported(holding.time_to_slip),
             reported(low),
             reported(high)
         );

@@ -200,6 +200,15 @@ fn silicone_steps_are_predicted_from_their_first_part() {
     assert!(holdout < 3.0, "{holdout} % of the peak: {text}");
 }
 
+/// Fung's rates, far faster than the motion, had the contact lost and regained without end: the command never returned.
+#[test]
+fn a_calibration_on_the_first_hold_ends_for_every_law() {
+    let folder = tempfile::tempdir().unwrap();
+    let (record, test) = (example("records/ball.csv"), example("records/ball.toml"));
+    let printed = done(folder.path(), &["calibrate", &record, "--test", &test, "--fit-until", "10 s"]);
+    assert!(printed.contains("Held-out error beyond the fitted part"), "{printed}");
+}
+
 /// Where much is left over the bottom is steeper than the first derivatives say; the search went from one side of it to the other until its
 /// steps were spent. And the ends of intervals of 80 decades were numbers.
 #[test]

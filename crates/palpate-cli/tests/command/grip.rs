@@ -32,7 +32,7 @@ fn the_verdict_is_the_exit_code() {
         (code, found["schema"].as_str(), found["holds"].as_bool()),
         (Some(0), Some("palpate.grip/1"), Some(true))
     );
-    let time = number(&found["squeeze"]["lasts"], "seconds");
+    let time = number(&found["squeeze"]["time_to_slip"], "seconds");
     // The ball was simulated with n = 5 and 2e4 /s, with which the closed form says 0.611 s.
     assert!((time - 0.611).abs() < 0.03, "{time}");
     assert!(number(&found["squeeze"]["interval"][0], "seconds") < time);
@@ -40,9 +40,9 @@ fn the_verdict_is_the_exit_code() {
     assert_eq!((code, found["holds"].as_bool()), (Some(1), Some(false)));
     let (code, found) = json(&["--hold", "10 s"]);
     assert_eq!(code, Some(0));
-    assert!((number(&found["squeeze"]["lasts"], "seconds") / 10.0 - 1.0).abs() < 1e-6);
+    assert!((number(&found["squeeze"]["time_to_slip"], "seconds") / 10.0 - 1.0).abs() < 1e-6);
     let (code, found) = json(&["--hold", "always", "--objective", "peak-force"]);
-    assert_eq!((code, found["squeeze"]["lasts"]["always"].as_bool()), (Some(0), Some(true)));
+    assert_eq!((code, found["squeeze"]["time_to_slip"]["always"].as_bool()), (Some(0), Some(true)));
     let (code, found) = json(&["--hold", "10 s", "--most-force", "2.5 N", "--close-within", "0.5 s"]);
     assert_eq!((code, found["holds"].as_bool()), (Some(1), Some(false)));
     assert!(found["verdict"].as_str().unwrap().starts_with("No: no squeeze within the limits holds"), "{found}");

@@ -31,6 +31,8 @@ pub(super) struct Tally {
 /// Over all holds of a batch: which law is recommended for how many, its parameters, and what was found most often.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct BatchAnswer {
+    /// Whether other laws than the latency law were compared.
+    pub compared: bool,
     /// Holds in all.
     pub holds: usize,
     /// Holds without a fitted law.
@@ -111,7 +113,7 @@ impl Tally {
         }
     }
 
-    pub(super) fn answer(self) -> BatchAnswer {
+    pub(super) fn answer(self, compared: bool) -> BatchAnswer {
         let laws = most(self.laws, usize::MAX);
         let first = laws.first().map(|(law, _)| law.clone());
         let of_first = self.values.into_iter().filter(|((law, ..), _)| Some(law) == first.as_ref());
@@ -128,6 +130,7 @@ impl Tally {
             }
         };
         BatchAnswer {
+            compared,
             holds: self.holds,
             unfitted: self.unfitted,
             laws,
@@ -156,6 +159,9 @@ impl BatchAnswer {
             };
         };
         let mut text = format!("Law recommended most often: {law}, on {count} of {}.", counted(self.holds, "hold"));
+        if !self.compared {
+            text.push_str(" Only exponents of the latency law were compared, by BIC, without held-out samples.");
+        }
         let others: Vec<String> = self.laws[1..].iter().map(|(law, count)| format!("{law} on {count}")).collect();
         if !others.is_empty() {
             text.push_str(&format!(" Others: {}.", others.join(", ")));
@@ -165,7 +171,12 @@ impl BatchAnswer {
         }
         text.push('\n');
         let caption = format!("Parameters of {law} over the holds that it is recommended for.");
-        let quartile = |index: usize| move |spread: &Spread| Cell::Text(significant(spread.quartiles[index], 4));
+        let quartile = |index: usize| {
+            move |spread: &Spread| match spread.holds {
+                1 if index != 1 => Cell::missing("one hold has no quartiles"),
+                _ => Cell::Text(significant(spread.quartiles[index], 4)),
+            }
+        };
         let table = Table::of("spread", caption, &self.parameters)
             .column("Parameter", "parameter", "", |spread| Cell::text(&spread.name))
             .column("Unit", "unit", "", |spread| Cell::text(&spread.unit))

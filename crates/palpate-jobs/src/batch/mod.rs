@@ -146,7 +146,8 @@ impl Batch {
             share.advance(1)?;
             Ok(place)
         })?;
-        let batched = table::write(out, format, &store, places.iter().map(|(place, _)| place), &settings)?;
+        let how = (settings.as_str(), options.compare.is_some());
+        let batched = table::write(out, format, &store, places.iter().map(|(place, _)| place), how)?;
         let before = places.iter().filter(|(_, before)| *before).count();
         let (all, notes) = (batched.failures.is_empty(), batched.notes(out, paths.len(), before, started));
         Ok(Outcome::of(batched).answered(all).noted(notes))
@@ -255,6 +256,10 @@ impl Batched {
         hints.dedup();
         if let [hint] = hints[..] {
             notes.push(format!("hint: {hint}"));
+            if failures.len() < self.tests {
+                // A description or an option for the files that failed would be one for the others too.
+                notes.push("hint: options and descriptions apply to all files; run files that need others as a batch of their own".to_owned());
+            }
         }
         let kept = if before > 0 { format!(" ({before} done before)") } else { String::new() };
         let failed = match failures.len() {

@@ -40,7 +40,7 @@ pub(super) fn write<'a>(
     format: Format,
     store: &Store,
     places: impl Iterator<Item = &'a Range<u64>>,
-    settings: &str,
+    (settings, compared): (&str, bool),
 ) -> Result<Batched, JobError> {
     let mut batched = Batched::default();
     let mut tally = Tally::new();
@@ -66,7 +66,7 @@ pub(super) fn write<'a>(
         })?;
         sink.finish(settings).map_err(refused)
     })?;
-    batched.answer = tally.answer();
+    batched.answer = tally.answer(compared);
     Ok(batched)
 }
 

@@ -76,14 +76,10 @@ pub(super) fn signal_facts(file: &RecordFile, aligned: Option<&SignalReport>) ->
         let (low, high) = values.iter().fold((f64::MAX, f64::MIN), |(low, high), v| (low.min(*v), high.max(*v)));
         format!("{} to {}", significant(low * factor, 4), significant(high * factor, 4))
     };
-    let mut out = format!(
-        "{} rows over {} s, every {} s (from {} to {} s)\n",
-        file.rows,
-        significant(time[time.len() - 1] - time[0], 5),
-        significant(record.sample_interval(), 3),
-        significant(low, 3),
-        significant(high, 3)
-    );
+    let [low, usual, high] = [low, record.sample_interval(), high].map(|step| significant(step, 3));
+    let varying = if low == high { String::new() } else { format!(" (from {low} to {high} s)") };
+    let duration = significant(time[time.len() - 1] - time[0], 5);
+    let mut out = format!("{} rows over {duration} s, every {usual} s{varying}\n", file.rows);
     if let Some(start) = file.start {
         let _ = writeln!(out, "time 0 is {start} s since 1970");
     }

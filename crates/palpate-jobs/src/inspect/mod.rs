@@ -102,7 +102,7 @@ impl Inspected {
         let about = &opened.contents.parts[part];
         out.push_str(&part_facts(about, opened.contents.format));
         let file = opened.read(part, watch).inspect_err(|_| {
-            // The columns help to mend what is wrong.
+            // The columns help to repair what is wrong.
             out.push_str(&columns_table(about, None).to_plain_text());
             self.description = Some(describe(&opened.contents, part, None, None));
         })?;

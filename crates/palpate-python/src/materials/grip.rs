@@ -89,7 +89,7 @@ shown! {
         /// Displacement of that squeeze, m.
         squeeze_m: Option<f64> = self.of_squeeze(|found| found.displacement_m),
         /// From the start of its hold until it slips, s; infinite for always (longer than ten years), 0 if it slips at once.
-        time_to_slip_s: Option<f64> = self.of_squeeze(|found| seconds(found.lasts)),
+        time_to_slip_s: Option<f64> = self.of_squeeze(|found| seconds(found.time_to_slip)),
         /// Ends of the interval of that time by what the calibration leaves open, s; None where it says nothing.
         time_to_slip_interval_s: Option<(f64, f64)> = self.of_squeeze(slip_interval).flatten(),
         /// Overshoot and back off (a preconditioning squeeze), so that the hold begins relaxed; None if there is none.
@@ -100,7 +100,7 @@ shown! {
         schedule: Option<Schedule> = Some(Schedule::new(self.document.schedule.clone()?, self.schedule.clone()?)),
         /// How long squeezes a little less and more deep hold: ``displacement_m`` and ``time_to_slip_s``.
         neighbours: PyResult<Table> =
-            Table::of(columns!(self.document.neighbours, row => displacement_m, time_to_slip_s = seconds(row.lasts))),
+            Table::of(columns!(self.document.neighbours, row => displacement_m, time_to_slip_s = seconds(row.time_to_slip))),
         /// Grips that there are not, by name, each with the reason and what would help.
         refused<'py>(py): PyResult<Bound<'py, PyDict>> = self.document.refused.iter()
             .map(|made| (&made.grip, format!("{}\nhint: {}", made.reason, made.hint)))

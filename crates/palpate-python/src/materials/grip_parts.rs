@@ -4,7 +4,9 @@
 
 use palpate::calibrate::Prediction as Predicted;
 use palpate::number::significant;
-use palpate_report::document::{BackOffDocument, HoldingDocument, LastsDocument, PressedDocument, ScheduleDocument};
+use palpate_report::document::{
+    BackOffDocument, HoldingDocument, PressedDocument, ScheduleDocument, TimeToSlipDocument,
+};
 use pyo3::prelude::*;
 use serde::{Deserialize, Serialize};
 
@@ -13,7 +15,7 @@ use crate::shown::shown;
 use crate::table::{Table, columns};
 
 /// A time, s; infinite for always.
-pub(crate) fn seconds(lasts: LastsDocument) -> f64 {
+pub(crate) fn seconds(lasts: TimeToSlipDocument) -> f64 {
     lasts.seconds.unwrap_or(f64::INFINITY)
 }
 
@@ -86,7 +88,7 @@ part! {
         /// How sharply the time depends on the squeeze, d ln(time)/d(displacement), 1/m; None where it slips at once or never.
         sharpness_per_m: Option<f64>,
         /// From the start of the hold until it slips, s; infinite for always (longer than ten years), 0 if it slips at once.
-        time_to_slip_s: f64 = seconds(self.found.lasts),
+        time_to_slip_s: f64 = seconds(self.found.time_to_slip),
         /// Ends of the interval of that time by what the calibration leaves open, s; None where it says nothing.
         time_to_slip_interval_s: Option<(f64, f64)> = slip_interval(&self.found),
         /// Force and displacement over time, with intervals; None for the plain squeeze beside a retreat.
@@ -95,8 +97,8 @@ part! {
 
     fn __repr__(&self) -> String {
         let found = &self.found;
-        let may_slip_at_once = slip_interval(found).is_some_and(|(low, _)| low == 0.0) && seconds(found.lasts) > 0.0;
-        let time = match found.lasts.seconds {
+        let may_slip_at_once = slip_interval(found).is_some_and(|(low, _)| low == 0.0) && seconds(found.time_to_slip) > 0.0;
+        let time = match found.time_to_slip.seconds {
             _ if may_slip_at_once => "for a time that is uncertain, from 0 s on".to_owned(),
             None => "always".to_owned(),
             Some(time) => format!("for {} s", significant(time, 3)),

@@ -455,7 +455,7 @@ shown! {
     /// Returns
     /// -------
     /// Calibration
-    ///     The material, what is left over of the record, and the alternatives.
+    ///     The material, the residuals of the record, and the alternatives.
     ///
     /// Raises
     /// ------

@@ -49,7 +49,7 @@ documents! {
 
     /// Time to slip.
     #[derive(Copy)]
-    LastsDocument(lasts: TimeToSlip) {
+    TimeToSlipDocument(lasts: TimeToSlip) {
         /// Longer than ten years.
         always: bool = lasts == TimeToSlip::Never,
         /// Time to slip, s; `null` for always.
@@ -89,9 +89,9 @@ documents! {
         /// Work of the jaws while they close, J.
         work_j: f64 = found.work,
         /// Time to slip.
-        lasts: LastsDocument = LastsDocument::new(found.lasts),
+        time_to_slip: TimeToSlipDocument = TimeToSlipDocument::new(found.time_to_slip),
         /// Ends of the interval of that time.
-        interval: Option<[LastsDocument; 2]> = found.interval.map(|(low, high)| [low, high].map(LastsDocument::new)),
+        interval: Option<[TimeToSlipDocument; 2]> = found.interval.map(|(low, high)| [low, high].map(TimeToSlipDocument::new)),
         /// d ln(time)/d(displacement), 1/m.
         sharpness_per_m: Option<f64> = found.sharpness,
     }
@@ -101,7 +101,7 @@ documents! {
         /// Displacement, m.
         displacement_m: f64 = displacement,
         /// Time to slip.
-        lasts: LastsDocument = LastsDocument::new(lasts),
+        time_to_slip: TimeToSlipDocument = TimeToSlipDocument::new(lasts),
     }
 
     /// Sensitivity of overshoot and back off to a parameter of the material that is 1 % larger.
@@ -231,7 +231,7 @@ documents! {
         /// What is held: `position` or `force`.
         control: String = word(question.control),
         /// Required duration; `null` where the time to slip is computed.
-        duration: Option<LastsDocument> = question.duration.map(|time| LastsDocument::new(wanted(time))),
+        duration: Option<TimeToSlipDocument> = question.duration.map(|time| TimeToSlipDocument::new(wanted(time))),
         /// The minimised quantity: `squeeze`, `peak_force` or `work`; `null` where a squeeze was given.
         objective: Option<String> = question.squeeze.is_none().then(|| word(question.objective)),
         /// Level at which the verdict has to hold; `null` where the best estimate decides.

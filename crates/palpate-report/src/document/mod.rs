@@ -61,7 +61,7 @@ pub use comparison::{
     ComparisonDocument, ComparisonSettingsDocument, HoldComparisonDocument, LawDocument, VerdictDocument,
 };
 pub use fit::FitDocument;
-pub use grip::{BackOffDocument, GripDocument, HoldingDocument, LastsDocument, PressedDocument, ScheduleDocument};
+pub use grip::{BackOffDocument, GripDocument, HoldingDocument, PressedDocument, ScheduleDocument, TimeToSlipDocument};
 pub use reproduction::ReproductionDocument;
 pub use software::Software;
 pub use watch::{ObservationDocument, WatchDocument, WatchSummaryDocument, WatchedHoldDocument};

@@ -164,11 +164,11 @@ fn sentence(law: Option<Law>, agreeing: usize, compared: usize) -> String {
     };
     let name = name_in_words(law);
     let which = match (agreeing, compared) {
-        (_, 1) => "On the one hold compared no other law is".to_owned(),
-        (agreeing, compared) if agreeing == compared => format!("On none of the {compared} holds is another law"),
-        (agreeing, compared) => format!("On {agreeing} of {compared} holds no other law is"),
+        (_, 1) => "On the one hold compared".to_owned(),
+        (agreeing, compared) if agreeing == compared => format!("On all {compared} holds"),
+        (agreeing, compared) => format!("On {agreeing} of {compared} holds"),
     };
-    format!("Law for this record: {law}, {name}. {which} distinguishably better.")
+    format!("Law for this record: {law}, {name}. {which} it is the best law or not distinguishable from the best.")
 }
 
 /// The most severe findings in words, cautions and warnings alone.

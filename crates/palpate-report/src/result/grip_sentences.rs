@@ -7,6 +7,7 @@ use palpate::grip::{
 use palpate::number::significant;
 
 use super::gripped::GrippedBody;
+use super::parameters::parameter_title;
 use super::words::percent;
 
 /// How long a least squeeze has to hold if no time is requested, s.
@@ -54,7 +55,23 @@ impl GrippedBody<'_> {
             Control::Position => of_squeeze(self, &answer.squeeze.as_ref()?.found, holds),
             Control::Force => of_pressed(&answer.force_hold.as_ref()?.found, holds),
         };
-        Ok(format!("{}: {stated}", if holds { "Yes" } else { "No" }))
+        let verdict = match holds {
+            true if self.rests_on_estimate() => "Yes by the best estimate, not with the confidence of its interval",
+            true => "Yes",
+            false => "No",
+        };
+        Ok(format!("{verdict}: {stated}"))
+    }
+
+    /// Whether the squeeze holds as long as requested by the best estimate, but not at the lower end of the interval of its time.
+    fn rests_on_estimate(&self) -> bool {
+        let question = &self.answer.question;
+        let is_short = |low: TimeToSlip| match question.duration {
+            Some(wanted) if wanted.is_finite() => !low.covers(wanted),
+            _ => low != TimeToSlip::Never,
+        };
+        let low = self.answer.squeeze.as_ref().ok().and_then(|squeeze| squeeze.found.interval).map(|(low, _)| low);
+        question.control == Control::Position && question.confidence.is_none() && low.is_some_and(is_short)
     }
 
     /// What the tables mean, in sentences: the advice of both ways of control beside each other, retreat, schedule, limits of the test.
@@ -104,7 +121,7 @@ pub(crate) fn lasted(seconds: f64) -> String {
     format!("{} {unit}", significant(seconds / length, 3))
 }
 
-fn lasts(time: TimeToSlip) -> String {
+fn time_to_slip(time: TimeToSlip) -> String {
     time.seconds().map_or_else(|| "always".to_owned(), lasted)
 }
 
@@ -155,20 +172,21 @@ fn of_squeeze(body: &GrippedBody<'_>, found: &PositionHold, holds: bool) -> Stri
         }
     };
     let share = percent(body.grip.confidence());
-    let interval = found
-        .interval
-        .map_or_else(String::new, |(low, high)| format!(" ({share}: {} to {})", lasts(low), lasts(high)));
+    let interval = found.interval.map_or_else(String::new, |(low, high)| {
+        format!(" ({share} interval {} to {})", time_to_slip(low), time_to_slip(high))
+    });
     if let Some(stated) = with_confidence(body, found, &what, holds) {
         return stated;
     }
-    match found.lasts {
+    match found.time_to_slip {
         TimeToSlip::After(0.0) => format!(
             "{what} slips at once: {} are needed, {} are there when the jaws stop.",
             newton(found.needed_force),
             newton(found.start_force)
         ),
         _ if found.may_slip_at_once() => {
-            let (low, high) = found.interval.map(|(low, high)| (lasts(low), lasts(high))).unwrap_or_default();
+            let (low, high) =
+                found.interval.map(|(low, high)| (time_to_slip(low), time_to_slip(high))).unwrap_or_default();
             format!(
                 "{what} may hold: the best estimate of the force is enough, but the {share} interval of the time is {low} to {high}."
             )
@@ -213,10 +231,15 @@ fn at_length(found: &PositionHold, time: TimeToSlip) -> String {
 fn with_confidence(body: &GrippedBody<'_>, found: &PositionHold, what: &str, holds: bool) -> Option<String> {
     let question = &body.answer.question;
     let (level, (low, high)) = (percent(question.confidence?), found.interval?);
-    if found.lasts == TimeToSlip::After(0.0) {
+    if found.time_to_slip == TimeToSlip::After(0.0) {
         return None;
     }
-    let best = format!("best estimate {}, interval {} to {}", lasts(found.lasts), lasts(low), lasts(high));
+    let best = format!(
+        "best estimate {}, interval {} to {}",
+        time_to_slip(found.time_to_slip),
+        time_to_slip(low),
+        time_to_slip(high)
+    );
     let wanted = question.duration.or((question.squeeze.is_none()).then_some(MINUTE));
     Some(match wanted {
         _ if low == TimeToSlip::After(0.0) => {
@@ -261,18 +284,18 @@ fn on_squeeze(found: &PositionHold) -> Option<String> {
 fn both_ways(squeeze: &PositionHold, pressed: &ForceHold, shown: f64) -> String {
     let surplus = 100.0 * (squeeze.peak_force / squeeze.needed_force - 1.0);
     let standing = if surplus > 0.0 {
-        format!("they squeeze {} % harder than is needed, and wait", significant(surplus, 2))
+        format!("this squeeze starts with a force {} % above the needed one", significant(surplus, 2))
     } else {
-        "these have too little from the start".to_owned()
+        "this squeeze starts below the needed force".to_owned()
     };
     let (from, to) = (mm(pressed.displacement_start), mm(pressed.displacement_end));
     let creep = match (pressed.stroke_ends, pressed.displacement_relaxed) {
         (Some(time), _) => format!("from {from} to the end of the stroke at {to} after {}", lasted(time)),
-        (None, Some(end)) => format!("from {from} to {to} in {}, to {} in the end", lasted(shown), mm(end)),
+        (None, Some(end)) => format!("from {from} to {to} in {}, and finally to {}", lasted(shown), mm(end)),
         (None, None) => format!("from {from} to {to} in {}", lasted(shown)),
     };
     format!(
-        "Jaws that stand lose force: {standing}. A force that is held stays, and {} do: the body gives way instead, {creep}.",
+        "With the position held the force relaxes: {standing}. With the force held {} are enough, and the jaws close further as the body creeps: {creep}.",
         newton(pressed.force),
     )
 }
@@ -286,27 +309,27 @@ fn on_back_off(found: &BackOff) -> String {
         .max_by(|a, b| a.1.total_cmp(&b.1));
     let open = worst.map_or_else(String::new, |(one, missed)| {
         format!(
-            " Of what is open the {} matters most: a standard error of it is {} N.",
-            one.name.replace('_', " "),
+            " The uncertainty of the {} matters most: one standard error of it shifts the force by {} N.",
+            parameter_title(&one.name),
             significant(missed, 2)
         )
     });
     // The excesses of several linear terms cancel, and part again.
     let how = if found.drift.abs() < 1e-3 * found.backed.start_force {
-        format!("the hold begins relaxed, and {} stay", newton(found.backed.start_force))
+        format!("the hold begins at the equilibrium force, {}", newton(found.backed.start_force))
     } else {
         format!(
-            "the hold begins with the equilibrium force of {}, and drifts, for each term goes its own way",
+            "the hold begins at the equilibrium force, {}, and then drifts, since each term of the series relaxes at its own rate",
             newton(found.backed.start_force)
         )
     };
     let uncertain = if found.backed.may_slip_at_once() {
-        " It may slip at once all the same: the interval of the time starts at 0 s, and a verdict with a confidence needs more squeeze."
+        " It may still slip at once: the interval of the time to slip starts at 0 s; a deeper squeeze is needed to hold with confidence."
     } else {
         ""
     };
     format!(
-        "Overshoot and back off (a preconditioning squeeze): squeeze to {} and go back to {}: {how} ({} N in {}; {lost} N after a plain squeeze to the same position).{uncertain}{open}",
+        "Overshoot and back off (a preconditioning squeeze): squeeze to {} and go back to {}: {how}. The force changes by {} N in {}, against {lost} N after a plain squeeze to the same position.{uncertain}{open}",
         mm(found.over),
         mm(found.backed.displacement),
         // A drift of rounding alone is none.

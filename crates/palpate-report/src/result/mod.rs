@@ -34,7 +34,7 @@ pub(crate) use grip_sentences::lasted;
 pub use gripped::GrippedBody;
 pub use input::Input;
 pub use parameters::{
-    PARAMETER_COLUMNS, ParameterColumn, ParameterDocument, ParameterRow, Parameters, parameters_of,
+    PARAMETER_COLUMNS, ParameterColumn, ParameterDocument, ParameterRow, Parameters, parameter_title, parameters_of,
     parameters_of_material, parameters_table, si_unit,
 };
 pub use reproduced::{ReproducedTest, Reproduction};

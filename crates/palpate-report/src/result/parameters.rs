@@ -29,6 +29,13 @@ pub struct ParameterDocument {
     pub interval: Option<[Option<f64>; 2]>,
 }
 
+/// A parameter as people name it: without the unit, which stands beside it. `time_constant_1_s` is "time constant 1".
+#[must_use]
+pub fn parameter_title(name: &str) -> String {
+    let stem = ["_per_s", "_pa", "_n", "_m", "_s"].into_iter().find_map(|unit| name.strip_suffix(unit));
+    stem.unwrap_or(name).replace('_', " ")
+}
+
 /// Parameters by their names.
 pub type Parameters = BTreeMap<String, ParameterDocument>;
 

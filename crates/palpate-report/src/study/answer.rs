@@ -7,7 +7,8 @@ use super::findings::Gathered;
 use crate::number::significant;
 use crate::page::Block;
 use crate::result::{
-    Answer, ComparedHold, ComparedRecord, HoldAnswer, ParameterDocument, Parameters, parameters_of, percent, word,
+    Answer, ComparedHold, ComparedRecord, HoldAnswer, ParameterDocument, Parameters, parameter_title, parameters_of,
+    percent, word,
 };
 use crate::table::{Cell, Table};
 use crate::wrap::{indented, width, wrapped};
@@ -66,10 +67,10 @@ fn formula_line(hold: &HoldAnswer) -> Option<String> {
 
 /// Parameters, a line each.
 fn listed(parameters: &Parameters) -> String {
-    let longest = parameters.keys().map(String::len).max().unwrap_or(0);
+    let longest = parameters.keys().map(|name| parameter_title(name).len()).max().unwrap_or(0);
     let line = |(name, parameter): (&String, &ParameterDocument)| {
         let (value, unit) = parameter.shown();
-        format!("    {}\n", format!("{name:<longest$}  {value} {unit}").trim_end())
+        format!("    {}\n", format!("{:<longest$}  {value} {unit}", parameter_title(name)).trim_end())
     };
     parameters.iter().map(line).collect()
 }
@@ -125,7 +126,7 @@ pub(super) fn parameters_of_holds(record: &ComparedRecord, answer: &Answer) -> O
 
 /// A parameter as a heading names it: without its unit, which stands behind it.
 fn heading(name: &str) -> String {
-    let name = name.trim_end_matches("_per_s").trim_end_matches("_s").replace('_', " ");
+    let name = parameter_title(name);
     let mut letters = name.chars();
     letters.next().map_or(String::new(), |first| first.to_uppercase().chain(letters).collect())
 }

@@ -1,7 +1,9 @@
 //! Tables as aligned text for a terminal.
 //!
 //! A table that is wider than the terminal breaks its headings over several lines; where that is not enough it goes on below itself
-//! with its first column again.
+//! with the columns again that tell its rows apart.
+
+use std::collections::HashSet;
 
 use super::{Cell, Table, mark};
 use crate::wrap::{extent, indented};
@@ -76,8 +78,25 @@ fn columns(table: &Table, reasons: &[&str], width: usize) -> Vec<Column> {
     columns
 }
 
-/// Which columns stand beside each other: all of them where they fit, otherwise the first one with as many as fit, again and again.
+/// Most columns that a table repeats where it goes on below.
+const MOST_KEYS: usize = 3;
+
+/// How many of the first columns differ from row to row taken together, and leave half the width to others; one where none do.
+fn keys(columns: &[Column], width: usize) -> usize {
+    let rows = columns.first().map_or(0, |column| column.cells.len());
+    let differs = |count: &usize| {
+        let key = |row: usize| columns[..*count].iter().map(|column| column.cells[row].as_str()).collect::<Vec<_>>();
+        let distinct: HashSet<Vec<&str>> = (0..rows).map(key).collect();
+        let repeated: Vec<usize> = (0..*count).collect();
+        distinct.len() == rows && 2 * extent_of(columns, &repeated) <= width
+    };
+    (1..=MOST_KEYS.min(columns.len())).find(differs).unwrap_or(1)
+}
+
+/// Which columns stand beside each other: all of them where they fit, otherwise those that identify a row with as many as fit, again
+/// and again.
 fn blocks(columns: &[Column], width: usize) -> Vec<Vec<usize>> {
+    let keys = keys(columns, width);
     let mut blocks: Vec<Vec<usize>> = vec![Vec::new()];
     for index in 0..columns.len() {
         let fits = |block: &[usize]| {
@@ -85,8 +104,8 @@ fn blocks(columns: &[Column], width: usize) -> Vec<Vec<usize>> {
             extent_of(columns, &with) <= width
         };
         match blocks.last_mut() {
-            Some(block) if block.len() < 2 || fits(block) => block.push(index),
-            _ => blocks.push(vec![0, index]),
+            Some(block) if block.len() <= keys || fits(block) => block.push(index),
+            _ => blocks.push((0..keys).chain([index]).collect()),
         }
     }
     blocks
@@ -179,6 +198,21 @@ mod tests {
         assert!(narrow.contains("Force") && narrow.contains("(N)"), "{narrow}");
         let narrower = write(&table, 14);
         assert_eq!(narrower.lines().filter(|line| line.starts_with("   1")).count(), 2, "{narrower}");
+    }
+
+    /// Rows of several laws on one hold could not be matched: only the number of the hold was repeated.
+    #[test]
+    fn what_goes_on_below_repeats_the_columns_that_identify_a_row() {
+        let row = |law: &str| vec![Cell::Integer(1), Cell::text(law), Cell::Number(2.0, 3), Cell::Number(3.0, 3)];
+        let table = Table::new("t", "")
+            .column("Hold", "hold", "")
+            .column("Law", "law", "")
+            .column("Equilibrium", "equilibrium", "")
+            .column("Amplitude", "amplitude", "")
+            .row(row("power"))
+            .row(row("maxwell"));
+        let narrow = write(&table, 28);
+        assert_eq!((narrow.matches("power").count(), narrow.matches("Hold").count()), (2, 2), "{narrow}");
     }
 
     #[test]

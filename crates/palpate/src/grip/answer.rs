@@ -171,7 +171,7 @@ impl Answer {
                 let found = &self.squeeze.as_ref().map_err(Clone::clone)?.found;
                 let lasts = match found.interval {
                     Some((low, _)) if self.question.confidence.is_some() => low,
-                    _ => found.lasts,
+                    _ => found.time_to_slip,
                 };
                 let wanted = self.question.duration.or((self.question.squeeze.is_none()).then_some(MINUTE));
                 Ok(match wanted {
@@ -205,7 +205,7 @@ fn followed<T>(found: T, course: impl Fn(&T) -> Result<Prediction, GripError>) -
 /// How long courses are: the time that is requested, beyond the slip if none is, an hour for always.
 fn shown(question: &Question, squeeze: Option<&PositionHold>) -> f64 {
     const HOUR: f64 = 3600.0;
-    match (question.duration, squeeze.map(|found| found.lasts)) {
+    match (question.duration, squeeze.map(|found| found.time_to_slip)) {
         (Some(wanted), _) if wanted.is_finite() => wanted,
         (None, Some(TimeToSlip::After(time))) if question.squeeze.is_some() => (1.5 * time).max(1.0),
         (None, _) if question.squeeze.is_none() => MINUTE,

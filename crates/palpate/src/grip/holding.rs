@@ -35,7 +35,7 @@ use crate::watch::{Cancelled, Progress, Stages};
 /// let grip = Grip::new(&ball, Grasp::new(0.25, 0.6)?, Limits::new(0.5 / 60.0)?, 0.95)?;
 /// let holding = grip.holding(&Plan::squeeze(0.005, 0.5 / 60.0))?;
 /// assert!((holding.needed_force - 2.043_052).abs() < 1e-6 && (holding.start_force - 3.035_025).abs() < 1e-6);
-/// let TimeToSlip::After(time) = holding.lasts else { panic!() };
+/// let TimeToSlip::After(time) = holding.time_to_slip else { panic!() };
 /// assert!((time - 0.610_7).abs() < 1e-3, "{time}"); // s until it slips
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
@@ -71,7 +71,7 @@ pub struct PositionHold {
     /// Work that the jaws do while they close, J; what the body gives back is not counted against it.
     pub work: f64,
     /// From the start of the hold until it slips.
-    pub lasts: TimeToSlip,
+    pub time_to_slip: TimeToSlip,
     /// Ends of the interval of that time by what the calibration leaves open; `None` where it says nothing.
     pub interval: Option<(TimeToSlip, TimeToSlip)>,
     /// How sharply the time depends on the squeeze, d ln(time)/d(displacement), 1/m; `None` where it is no plain squeeze, or slips at once or never.
@@ -82,7 +82,8 @@ impl PositionHold {
     /// Whether the interval of the time to slip starts at 0, though the best estimate does not: nothing says that it holds at all.
     #[must_use]
     pub fn may_slip_at_once(&self) -> bool {
-        self.lasts != TimeToSlip::After(0.0) && self.interval.is_some_and(|(low, _)| low == TimeToSlip::After(0.0))
+        self.time_to_slip != TimeToSlip::After(0.0)
+            && self.interval.is_some_and(|(low, _)| low == TimeToSlip::After(0.0))
     }
 }
 
@@ -162,7 +163,7 @@ impl<'a> Grip<'a> {
         };
         self.within_limits(&ends)?;
         let needed_force = self.needed_force(end.displacement);
-        let (lasts, interval) = self.slips(plan, end, needed_force)?;
+        let (time_to_slip, interval) = self.slips(plan, end, needed_force)?;
         Ok(PositionHold {
             closing: end.time,
             displacement: end.displacement,
@@ -171,9 +172,9 @@ impl<'a> Grip<'a> {
             peak_force,
             equilibrium_force: self.equilibrium_force(end.displacement),
             work: self.work(&plan.steps)?,
-            lasts,
+            time_to_slip,
             interval,
-            sharpness: self.sharpness(plan, lasts),
+            sharpness: self.sharpness(plan, time_to_slip),
             plan: plan.clone(),
         })
     }
@@ -203,7 +204,8 @@ impl<'a> Grip<'a> {
     /// How long squeezes to other displacements (m) at the same speed (m/s) hold; those that cannot be made are left out.
     #[must_use]
     pub fn neighbours(&self, displacements: &[f64], speed: f64) -> Vec<(f64, TimeToSlip)> {
-        let lasts = |displacement: &f64| Some((*displacement, self.lasts(&Plan::squeeze(*displacement, speed)).ok()?));
+        let lasts =
+            |displacement: &f64| Some((*displacement, self.time_to_slip(&Plan::squeeze(*displacement, speed)).ok()?));
         displacements.iter().filter_map(lasts).collect()
     }
 
@@ -252,7 +254,7 @@ impl<'a> Grip<'a> {
     }
 
     /// From the start of the hold until a plan slips, with the best parameters.
-    fn lasts(&self, plan: &Plan) -> Result<TimeToSlip, GripError> {
+    fn time_to_slip(&self, plan: &Plan) -> Result<TimeToSlip, GripError> {
         let ends = self.ends(&plan.steps)?;
         let end = ends.last().ok_or(SimulateError::EmptyProgram)?;
         let needed = self.needed_force(end.displacement);
@@ -272,7 +274,7 @@ impl<'a> Grip<'a> {
         end: &StepEnd,
         needed: f64,
     ) -> Result<(TimeToSlip, Option<(TimeToSlip, TimeToSlip)>), GripError> {
-        let lasts = self.lasts(plan)?;
+        let lasts = self.time_to_slip(plan)?;
         if self.material.uncertainty().is_none() {
             return Ok((lasts, None));
         }
@@ -296,7 +298,7 @@ impl<'a> Grip<'a> {
         };
         lasts.seconds().filter(|time| *time > 0.0)?;
         let log = |by: f64| {
-            let time = self.lasts(&Plan::squeeze(displacement * (1.0 + by), speed)).ok()?.seconds()?;
+            let time = self.time_to_slip(&Plan::squeeze(displacement * (1.0 + by), speed)).ok()?.seconds()?;
             (time > 0.0).then(|| time.ln())
         };
         Some((log(STEP)? - log(-STEP)?) / (2.0 * STEP * displacement))

@@ -6,7 +6,7 @@
 //! |---|---|
 //! | `raw.rs` | columns as a file holds them, before anything is checked |
 //! | `signals/` | what such columns are like: stamps, gaps, strays, saturation, rounding |
-//! | `mend.rs` | time stamps that repeat or step back |
+//! | `repair.rs` | time stamps that repeat or step back |
 //! | `checks.rs` | what every record must be: finite, of equal lengths, time rising |
 //! | `measured.rs` | the record itself |
 //! | `correct/` | corrections that make a new record |
@@ -17,9 +17,9 @@ mod checks;
 mod correct;
 mod correction;
 mod measured;
-mod mend;
 mod options;
 mod raw;
+mod repair;
 mod signals;
 
 pub use checks::RecordError;

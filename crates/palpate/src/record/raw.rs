@@ -1,7 +1,7 @@
 //! Columns as a file holds them, before anything is checked.
 
 use super::checks::{self, RecordError};
-use super::mend::{Mended, mended};
+use super::repair::{Repaired, repaired};
 use super::{Clock, Record, SignalReport};
 
 /// Columns in SI as read, without checks or repairs.
@@ -63,19 +63,19 @@ impl RawColumns {
             }
             (displacement, _) => {
                 let columns = displacement.map(|values| ("displacement", values));
-                let mended =
+                let repaired =
                     checked(Clock::Common, self.time, columns.into_iter().chain([("force", self.force)]).collect())?;
-                let mut columns = mended.columns;
+                let mut columns = repaired.columns;
                 let force = columns.pop().unwrap_or_default();
-                let record = Record::new(mended.time, columns.pop(), force)?;
-                Ok(record.corrected_before(mended.done))
+                let record = Record::new(repaired.time, columns.pop(), force)?;
+                Ok(record.corrected_before(repaired.done))
             }
         }
     }
 }
 
-/// Columns of equal lengths and finite numbers with their stamps mended.
-fn checked(clock: Clock, time: Vec<f64>, columns: Vec<(&'static str, Vec<f64>)>) -> Result<Mended, RecordError> {
+/// Columns of equal lengths and finite numbers with their stamps repaired.
+fn checked(clock: Clock, time: Vec<f64>, columns: Vec<(&'static str, Vec<f64>)>) -> Result<Repaired, RecordError> {
     for (name, values) in &columns {
         checks::same_length(time.len(), name, values.len())?;
     }
@@ -84,7 +84,7 @@ fn checked(clock: Clock, time: Vec<f64>, columns: Vec<(&'static str, Vec<f64>)>)
     for (name, values) in &columns {
         checks::finite(name, values)?;
     }
-    mended(clock, time, columns.into_iter().map(|(_, values)| values).collect())
+    repaired(clock, time, columns.into_iter().map(|(_, values)| values).collect())
 }
 
 #[cfg(test)]

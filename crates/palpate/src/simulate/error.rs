@@ -3,10 +3,22 @@
 use crate::contact::SpecimenError;
 use crate::watch::Cancelled;
 
+/// Most events of the contact in one straight piece of motion. A body with a few times has a few; a thousand are a jaw and a surface that
+/// go back together, which neither ends nor changes any force.
+pub(crate) const MOST_EVENTS: usize = 1000;
+
 /// Why a simulation could not run.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum SimulateError {
+    /// A contact that is lost and regained without end while the jaw moves straight: its relaxation is too fast for the motion.
+    #[error(
+        "from t = {time} s on the contact is lost and regained more than {MOST_EVENTS} times while the jaw moves straight"
+    )]
+    Chatter {
+        /// Start of the piece of motion, s.
+        time: f64,
+    },
     /// The motion exceeds the displacement range of the specimen.
     #[error("at t = {time} s the jaw is at {displacement} m: {source}")]
     Displacement {

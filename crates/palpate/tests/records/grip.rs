@@ -122,7 +122,11 @@ fn it_slips_when_the_closed_form_of_the_hold_says_so() {
         let stiffness = 28e3 * std::f64::consts::PI * (2.0 * 0.035 * u - u * u);
         let (start, slip) = (found.start_force / stiffness - u / 0.035, found.needed_force / stiffness - u / 0.035);
         let time = (slip.powi(-4) - start.powi(-4)) / (4.0 * 2e4);
-        assert!((seconds(found.lasts) / time - 1.0).abs() < 1e-9, "{displacement}: {:?} {time}", found.lasts);
+        assert!(
+            (seconds(found.time_to_slip) / time - 1.0).abs() < 1e-9,
+            "{displacement}: {:?} {time}",
+            found.time_to_slip
+        );
         assert_eq!(found.interval, None);
         assert!(found.equilibrium_force < found.needed_force && found.peak_force == found.start_force);
         let (more, less) = (displacement * (1.0 + 1e-5), displacement * (1.0 - 1e-5));
@@ -131,9 +135,13 @@ fn it_slips_when_the_closed_form_of_the_hold_says_so() {
         assert!((found.sharpness.unwrap() / slope - 1.0).abs() < 1e-3);
     }
     let shallow = grip.holding(&Plan::squeeze(0.003, SPEED)).unwrap();
-    assert_eq!((shallow.lasts, shallow.sharpness), (TimeToSlip::After(0.0), None));
+    assert_eq!((shallow.time_to_slip, shallow.sharpness), (TimeToSlip::After(0.0), None));
     let deep = grip.holding(&Plan::squeeze(0.008, SPEED)).unwrap();
-    assert!(deep.lasts == TimeToSlip::Never && deep.equilibrium_force > deep.needed_force && deep.lasts.covers(1e12));
+    assert!(
+        deep.time_to_slip == TimeToSlip::Never
+            && deep.equilibrium_force > deep.needed_force
+            && deep.time_to_slip.covers(1e12)
+    );
 }
 
 #[test]
@@ -143,7 +151,7 @@ fn the_interval_of_the_time_is_where_the_edges_of_the_band_slip() {
     let plan = Plan::squeeze(0.005, SPEED);
     let found = grip.holding(&plan).unwrap();
     let (low, high) = found.interval.unwrap();
-    assert!(low < found.lasts && found.lasts < high, "{found:?}");
+    assert!(low < found.time_to_slip && found.time_to_slip < high, "{found:?}");
     for (time, edge) in [(seconds(low), 0), (seconds(high), 1)] {
         let course = grip.course(&plan, time, 8).unwrap();
         let band = course.force_interval(course.trajectory.len() - 1);
@@ -152,7 +160,7 @@ fn the_interval_of_the_time_is_where_the_edges_of_the_band_slip() {
     }
     // Near to where it holds always, the later end is open.
     let near = grip.holding(&Plan::squeeze(0.0069, SPEED)).unwrap();
-    assert!(near.lasts != TimeToSlip::Never && near.interval.unwrap().1 == TimeToSlip::Never, "{near:?}");
+    assert!(near.time_to_slip != TimeToSlip::Never && near.interval.unwrap().1 == TimeToSlip::Never, "{near:?}");
 }
 
 #[test]
@@ -161,12 +169,12 @@ fn the_least_squeeze_holds_as_long_as_was_requested_and_less_does_not() {
         let grip = grip(&material, 0.25);
         for duration in [1.0, 60.0, f64::INFINITY] {
             let least = grip.least(Objective::Squeeze, duration, None).unwrap();
-            assert!(least.lasts.covers(duration.min(3.1e8) * (1.0 - 1e-6)), "{least:?}");
+            assert!(least.time_to_slip.covers(duration.min(3.1e8) * (1.0 - 1e-6)), "{least:?}");
             let PlanKind::Squeeze { displacement, speed } = least.plan.kind else {
                 panic!("{least:?}")
             };
             let less = grip.holding(&Plan::squeeze(displacement * (1.0 - 1e-4), speed)).unwrap();
-            assert!(!less.lasts.covers(duration.min(3.1e8)), "{less:?}");
+            assert!(!less.time_to_slip.covers(duration.min(3.1e8)), "{less:?}");
             // Of the other objectives none squeezes less, each has least of its own.
             let [peak, work] =
                 [Objective::PeakForce, Objective::Work].map(|objective| grip.least(objective, duration, None).unwrap());
@@ -174,7 +182,7 @@ fn the_least_squeeze_holds_as_long_as_was_requested_and_less_does_not() {
             assert!(peak.peak_force <= least.peak_force && peak.peak_force <= work.peak_force * (1.0 + 1e-9));
             assert!(work.work <= least.work && work.work <= peak.work * (1.0 + 1e-9));
             for found in [&peak, &work] {
-                assert!(found.lasts.covers(duration.min(3.1e8) * (1.0 - 1e-6)), "{found:?}");
+                assert!(found.time_to_slip.covers(duration.min(3.1e8) * (1.0 - 1e-6)), "{found:?}");
                 assert!(found.closing <= 2.0 * (1.0 + 1e-9));
             }
         }
@@ -196,7 +204,7 @@ fn after_a_retreat_the_force_stays_where_it_is() {
     assert!(found.drift.abs() < 1e-9 * found.backed.start_force, "{}", found.drift);
     assert!(found.plain_drift < -0.5 * found.backed.start_force, "{}", found.plain_drift);
     assert!((found.backed.start_force / found.backed.needed_force - 1.0).abs() < 1e-6);
-    assert_eq!(found.backed.lasts, TimeToSlip::Never);
+    assert_eq!(found.backed.time_to_slip, TimeToSlip::Never);
     // Farther and it rises, nearer and it falls; by little, for an excess this small hardly relaxes where n = 5.
     for (by, sign) in [(1.02, 1.0), (0.98, -1.0)] {
         let plan = Plan::back_off(found.over * by, found.backed.displacement, SPEED);

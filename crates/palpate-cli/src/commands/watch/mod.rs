@@ -51,6 +51,12 @@ pub(crate) fn run(arguments: &WatchArguments) -> Result<Verdict, JobError> {
     if record.corrections().contains(&Correction::StressAsForce) {
         note("the log holds stress: forces are those on 1 m²");
     }
+    if material.is_none() && job.exponent_standard_error == 0.0 {
+        note(&format!(
+            "n = {} is assumed exact: the equilibrium and the time to slip depend on it; state n with --exponent and its error with --exponent-standard-error, or a --material",
+            job.exponent
+        ));
+    }
     let on_terminal = io::stdout().is_terminal() && arguments.format == WatchFormat::Text;
     let speed = arguments.speed.or(on_terminal.then_some(10.0)).filter(|times| times.is_finite());
     let mut shown: Box<dyn Shown> = match arguments.format {

@@ -257,7 +257,9 @@ fn quantity(key: &str, error: &UnitError, found: &str) -> String {
             let digits = unit.strip_prefix(',').is_some_and(|rest| rest.starts_with(|c: char| c.is_ascii_digit()));
             let same = dimension.units().iter().find(|(symbol, _)| symbol.eq_ignore_ascii_case(unit));
             let volts = key == "unit" && crate::naming::unit_factor(unit, Dimension::Voltage).is_some();
+            let force = key == "to" && crate::naming::unit_factor(unit, Dimension::Force).is_some();
             match same {
+                _ if force => format!("for a force write to_force = \"{}\"", found.trim_matches('"')),
                 _ if volts => {
                     format!("also give the scale of a volt, such as scale = \"12.5 {}/V\"", usual(*dimension).0)
                 }

@@ -223,7 +223,7 @@ fn rheometers_measure_stress() {
     assert!(file.per_unit_area);
     assert_eq!((numbers(&file), file.record.force()[0]), (vec![2, 4], 21.543));
     let text = refused(&folder.join("creep/CM3_Creep.creep")).to_string();
-    // Its stamps of whole milliseconds repeat, which is mended; its stress is kept constant.
+    // Its stamps of whole milliseconds repeat, which is repaired; its stress is kept constant.
     assert!(text.contains("the force is 10 N in all 279 rows"), "{text}");
     let text = refused(&folder.join("creep/creep_perihepatic_data.csv")).to_string();
     assert!(text.contains("expected a column of force"), "{text}");

@@ -7,7 +7,7 @@ use palpate::units::suited;
 use crate::figure::{Figure, Layer, Panel, Role};
 use crate::number::{counted, significant, with_interval};
 use crate::page::{Block, Page, Section};
-use crate::result::{CalibratedRecord, ParameterDocument, parameters_of_material, percent, word};
+use crate::result::{CalibratedRecord, ParameterDocument, parameter_title, parameters_of_material, percent, word};
 use crate::study::bundle::StudyError;
 use crate::study::grid::displacement_panel;
 use crate::table::{Cell, Table};
@@ -60,7 +60,7 @@ fn law_table(material: &Material, profiles: &[ParameterProfile]) -> Table {
     };
     let caption = format!("Parameters of the law {} with {} intervals.", material.candidate(), percent(share));
     let mut table = Table::of("law", caption, &parameters)
-        .column("Parameter", "parameter", "", |(name, _)| Cell::text(name.as_str()))
+        .column("Parameter", "parameter", "", |(name, _)| Cell::text(parameter_title(name)))
         .column("Value", "value", "", |(_, parameter)| estimate(parameter))
         .column("Unit", "unit", "", |(_, parameter)| Cell::text(parameter.shown().1));
     if !profiles.is_empty() {

@@ -3,7 +3,7 @@
 use palpate::grip::{Move, PositionHold, TimeToSlip};
 
 use crate::number::significant;
-use crate::result::{GrippedBody, lasted, percent};
+use crate::result::{GrippedBody, lasted, parameter_title, percent};
 use crate::table::{Cell, Table};
 use crate::wrap::wrapped;
 
@@ -24,14 +24,14 @@ pub fn grip_table(body: &GrippedBody<'_>) -> Table {
         .column("peak", "peak_force_n", "N")
         .column("at end", "end_force_n", "N")
         .column("needed", "needed_force_n", "N")
-        .column("Holds", "lasts_s", "s")
-        .column(format!("{share} from"), "lasts_low_s", "s")
-        .column("to", "lasts_high_s", "s")
+        .column("Time to slip", "time_to_slip_s", "s")
+        .column(format!("{share} from"), "time_to_slip_low_s", "s")
+        .column("to", "time_to_slip_high_s", "s")
         .column("Work", "work_mj", "mJ");
     let end = |course: &palpate::calibrate::Prediction| course.trajectory.force.last().copied().unwrap_or(0.0);
     let holding = |name: &str, found: &PositionHold, end: f64| {
         let interval = |pick: fn((TimeToSlip, TimeToSlip)) -> TimeToSlip| {
-            found.interval.map_or_else(|| Cell::missing(NO_INTERVAL), |interval| lasts(pick(interval)))
+            found.interval.map_or_else(|| Cell::missing(NO_INTERVAL), |interval| time_to_slip(pick(interval)))
         };
         vec![
             Cell::text(name),
@@ -42,7 +42,7 @@ pub fn grip_table(body: &GrippedBody<'_>) -> Table {
             Cell::Number(found.peak_force, 4),
             Cell::Number(end, 4),
             Cell::Number(found.needed_force, 4),
-            if found.may_slip_at_once() { Cell::text("uncertain") } else { lasts(found.lasts) },
+            if found.may_slip_at_once() { Cell::text("uncertain") } else { time_to_slip(found.time_to_slip) },
             interval(|(low, _)| low),
             interval(|(_, high)| high),
             Cell::Number(1e3 * found.work, 3),
@@ -73,7 +73,7 @@ pub fn grip_table(body: &GrippedBody<'_>) -> Table {
                 Some(_) => Cell::missing("the stroke ends before"),
             },
             Cell::Number(found.needed_force, 4),
-            lasts(until),
+            time_to_slip(until),
             Cell::missing("a held force does not fall"),
             Cell::missing("a held force does not fall"),
             Cell::Number(1e3 * found.work, 3),
@@ -93,13 +93,13 @@ pub fn neighbour_table(body: &GrippedBody<'_>) -> Option<Table> {
         .column("beside it", "change_percent", "%", |(place, _)| {
             Cell::Number((100.0 * (place / squeeze.found.displacement - 1.0)).round(), 2)
         })
-        .column("Holds", "lasts_s", "s", |(_, time)| lasts(*time));
+        .column("Time to slip", "time_to_slip_s", "s", |(_, time)| time_to_slip(*time));
     Some(table.table())
 }
 
 /// How long something holds.
-fn lasts(time: TimeToSlip) -> Cell {
-    time.seconds().map_or_else(|| Cell::text("always"), |seconds| Cell::Number(seconds, 4))
+fn time_to_slip(time: TimeToSlip) -> Cell {
+    time.seconds().map_or_else(|| Cell::text("never"), |seconds| Cell::Number(seconds, 4))
 }
 
 /// What the parameters of the material do to overshoot and back off.
@@ -109,7 +109,7 @@ pub fn sensitivity_table(body: &GrippedBody<'_>) -> Option<Table> {
     let caption =
         "Overshoot and back off: sensitivity to a parameter of the material that is 1 % larger than its estimate.";
     Table::of("sensitivities", caption, found)
-        .column("Parameter", "parameter", "", |one| Cell::text(one.name.replace('_', " ")))
+        .column("Parameter", "parameter", "", |one| Cell::text(parameter_title(&one.name)))
         .column("known to", "standard_error_percent", "%", |one| {
             Cell::number_or(one.error.map(|error| 100.0 * error), 2, "no standard error")
         })

@@ -412,15 +412,15 @@ impl Finding {
                 let (fall, unit) = if column == "force" { (*fall, "N") } else { (1e3 * fall, "mm") };
                 caution(
                     "sign_suspicious",
-                    format!("the {column} falls first, to {} {unit} below its start", significant(fall, 3)),
+                    format!("the sign of the {column} may be reversed: it falls first, to {} {unit} below its start", significant(fall, 3)),
                     "compression, or stretch of a strip, must be positive; with the other sign loading reads as unloading",
                     "if the file has the opposite sign, set sign = -1 for that column in the test description",
                 )
             }
             Self::RateCoefficientTrend { verdict, holds, slope, interval: (low, high) } => {
                 const NEAREST: &str = "use v of the hold whose strain is nearest to the one of interest";
-                let [slope, low, high] = [slope, low, high].map(|value| significant(*value, 3));
-                let observed = format!("over {holds} holds after loading d ln v/dεₑ = {slope} (interval {low} to {high})");
+                let slope = with_interval(*slope, (*low, *high));
+                let observed = format!("over {holds} holds after loading d ln v/dεₑ is {slope}");
                 let (severity, meaning, remedy) = match verdict {
                     TrendVerdict::FallsWithStrain => (
                         Caution,

@@ -80,6 +80,17 @@ impl Moving {
         if self.speed == 0.0 { self.from } else { self.from + self.speed * elapsed }
     }
 
+    /// q̇.
+    fn pushed(&self, elapsed: f64) -> f64 {
+        Stage::within(&self.stages, elapsed, |stage, part| {
+            if stage.is_straight() {
+                stage.slope(part)
+            } else {
+                self.contact.slope(self.jaw(elapsed)) * self.speed
+            }
+        })
+    }
+
     /// Excess strain of the contact layer, and its whole strain rate (1/s).
     pub(super) fn excess_and_rate(&self, elapsed: f64) -> (f64, f64) {
         let (law, specimen) = (&self.contact.law, &self.contact.specimen);
@@ -87,10 +98,7 @@ impl Moving {
         let sum: f64 = memory.iter().sum();
         let relaxing: f64 = memory.iter().zip(law.terms()).map(|(x, term)| term.rate * x).sum();
         let u = self.jaw(elapsed);
-        let pushed = Stage::within(&self.stages, elapsed, |stage, part| {
-            if stage.is_straight() { stage.slope(part) } else { self.contact.slope(u) * self.speed }
-        });
-        let rate = pushed * (1.0 + law.overshoot()) - relaxing;
+        let rate = self.pushed(elapsed) * (1.0 + law.overshoot()) - relaxing;
         match self.contact.memory {
             Memory::Strain => (sum, rate),
             Memory::Force => {
@@ -113,8 +121,12 @@ impl Moving {
     pub(super) fn loss(&self, (start, end): (f64, f64)) -> Option<f64> {
         let look = |time: f64| {
             let elapsed = time - start;
-            let (value, memory) = (self.contact.value(self.jaw(elapsed)), self.excess_at(elapsed));
-            Look { time, value, memory }
+            Look {
+                time,
+                value: self.contact.value(self.jaw(elapsed)),
+                slope: self.pushed(elapsed),
+                memory: self.excess_at(elapsed),
+            }
         };
         let below = self.first_below(&look(start), &look(end), &look)?;
         if self.unsure == 0.0 {
@@ -136,8 +148,27 @@ impl Moving {
         self.first_below(a, &middle, look).or_else(|| self.first_below(&middle, b, look))
     }
 
-    /// A lower bound of q + Σ x_k between two times.
+    /// A lower bound of q + Σ x_k between two times: that of its terms, or that of the sum over its chord, whichever is higher. Where
+    /// large terms cancel, bounds of the terms alone would be halved for ever.
     fn least(&self, a: &Look, b: &Look) -> f64 {
+        self.least_of_terms(a, b).max(a.sum().min(b.sum()) - self.below_chord(a, b))
+    }
+
+    /// By how much q + Σ x_k is below its chord at most, where q̇ goes one way from a to b.
+    ///
+    /// A q whose slope changes by s is within s w/4 of its chord over a width w. The x_k obey ẋ_k = g_k q̇ − λ_k x_k = y_k and so
+    /// ẍ_k = g_k q̈ − λ_k y_k, with y_k no larger than at a but for g_k s.
+    fn below_chord(&self, a: &Look, b: &Look) -> f64 {
+        let (width, change) = (b.time - a.time, (b.slope - a.slope).abs());
+        let bend = |(x, term): (&f64, &super::LinearTerm)| {
+            term.rate * ((term.overshoot * a.slope - term.rate * x).abs() + term.overshoot * change)
+        };
+        let bends: f64 = a.memory.iter().zip(self.contact.law.terms()).map(bend).sum();
+        0.25 * width * change * (1.0 + self.contact.law.overshoot()) + 0.125 * width * width * bends
+    }
+
+    /// A lower bound of every term of q + Σ x_k.
+    fn least_of_terms(&self, a: &Look, b: &Look) -> f64 {
         let fall = (a.value - b.value).max(0.0);
         let is_straight = self.stages.len() == 1 && self.stages[0].is_straight();
         let width = b.time - a.time;
@@ -186,6 +217,8 @@ struct Look {
     /// s
     time: f64,
     value: f64,
+    /// q̇, 1/s times the unit of q.
+    slope: f64,
     memory: Vec<f64>,
 }
 

@@ -86,6 +86,12 @@ impl Recovery {
         self.modes.iter().map(each).sum()
     }
 
+    /// By how much q is above its chord at most between two times: every mode bends ever less.
+    pub(super) fn above_chord(&self, from: f64, until: f64) -> f64 {
+        let bend = |mode: &Mode| mode.rate * mode.rate * (mode.sum * (-mode.rate * from).exp()).abs();
+        0.125 * (until - from).powi(2) * self.modes.iter().map(bend).sum::<f64>()
+    }
+
     /// The excess strains there.
     pub(super) fn excess(&self, elapsed: f64) -> Vec<f64> {
         let count = self.modes.len();
@@ -146,6 +152,12 @@ impl Surface {
         self.contact.place(value).unwrap_or(0.0)
     }
 
+    /// By how much what the jaw, which moves straight, requests differs from its chord at most, where its slope goes one way.
+    fn above_chord(&self, (start, end): (f64, f64), jaw: &impl Fn(f64) -> f64) -> f64 {
+        let (from, to) = (jaw(start), jaw(end));
+        0.25 * (to - from).abs() * (self.contact.slope(to) - self.contact.slope(from)).abs()
+    }
+
     /// When between two times (s) the jaw at `jaw` (m) meets the surface, which is on its own since `since` (s).
     ///
     /// They are compared in what is remembered: the displacement of a body that is soft at first touch is a root of rounding there.
@@ -154,6 +166,12 @@ impl Surface {
         let most = requested(start).max(requested(end));
         let rounding = 4.0 * f64::EPSILON * (most.abs() + self.recovery.size());
         if self.recovery.least(start - since, end - since) - most >= -rounding {
+            return None;
+        }
+        // Large modes that cancel: the surface and the jaw are compared over their chords.
+        let free = |time: f64| self.recovery.value(time - since) - requested(time);
+        let bent = self.recovery.above_chord(start - since, end - since) + self.above_chord((start, end), jaw);
+        if free(start).min(free(end)) - bent >= -rounding {
             return None;
         }
         let middle = 0.5 * (start + end);

@@ -2,6 +2,7 @@
 
 use super::stretch::{ContactEvent, ContactEventKind, Stretch, StretchState};
 use crate::contact::{SimulationWork, Specimen, Stopped, UnderForce};
+use crate::simulate::error::MOST_EVENTS;
 use crate::simulate::layer::{InMotion, Layer, crossing};
 use crate::simulate::{ForceHistory, Motion, Separation, SimulateError};
 
@@ -63,7 +64,11 @@ impl<'a, L: Layer> Walker<'a, L> {
         }
         let speed = (to - from) / (end - begin);
         let mut start = begin;
+        let before = self.events.len();
         while start < end {
+            if self.events.len() - before > MOST_EVENTS {
+                return Err(SimulateError::Chatter { time: begin });
+            }
             let contact_from = if start == begin { from } else { from + speed * (start - begin) };
             let mut stretch = Stretch {
                 start,

@@ -1,4 +1,4 @@
-//! Time stamps that repeat or step back, mended where that is safe.
+//! Time stamps that repeat or step back, repaired where that is safe.
 
 use super::{Clock, Correction, RecordError};
 
@@ -9,7 +9,7 @@ const BACK: f64 = 0.05;
 
 /// Columns with one clock whose stamps rise from row to row, and what was done for it.
 #[derive(Debug)]
-pub(super) struct Mended {
+pub(super) struct Repaired {
     pub(super) time: Vec<f64>,
     pub(super) columns: Vec<Vec<f64>>,
     pub(super) done: Vec<Correction>,
@@ -18,27 +18,27 @@ pub(super) struct Mended {
 /// Sorts the few rows that a buffer wrote too late, then merges rows of equal stamps into their mean.
 ///
 /// A clock that starts again, or goes back far, is an error: nothing says which of the runs is meant.
-pub(super) fn mended(clock: Clock, time: Vec<f64>, columns: Vec<Vec<f64>>) -> Result<Mended, RecordError> {
-    let mut mended = Mended {
+pub(super) fn repaired(clock: Clock, time: Vec<f64>, columns: Vec<Vec<f64>>) -> Result<Repaired, RecordError> {
+    let mut repaired = Repaired {
         time,
         columns,
         done: Vec::new(),
     };
-    if mended.time.windows(2).all(|pair| pair[1] > pair[0]) {
-        return Ok(mended);
+    if repaired.time.windows(2).all(|pair| pair[1] > pair[0]) {
+        return Ok(repaired);
     }
-    if mended.time.len() > 2 && mended.time.iter().all(|stamp| *stamp == mended.time[0]) {
+    if repaired.time.len() > 2 && repaired.time.iter().all(|stamp| *stamp == repaired.time[0]) {
         return Err(RecordError::ClockStands {
-            found: mended.time[0],
-            rows: mended.time.len(),
+            found: repaired.time[0],
+            rows: repaired.time.len(),
         });
     }
-    mended.sort(clock)?;
-    mended.merge(clock);
-    Ok(mended)
+    repaired.sort(clock)?;
+    repaired.merge(clock);
+    Ok(repaired)
 }
 
-impl Mended {
+impl Repaired {
     fn sort(&mut self, clock: Clock) -> Result<(), RecordError> {
         let time = &self.time;
         let (mut latest, mut late, mut largest) = (f64::NEG_INFINITY, 0, 0.0f64);
