@@ -30,4 +30,4 @@ mod word;
 mod wrap;
 
 pub use palpate::number;
-pub use wrap::set_width;
+pub use wrap::{set_width, wrapped};

@@ -24,7 +24,8 @@ pub(crate) fn width() -> usize {
 }
 
 /// A sentence in lines of a terminal.
-pub(crate) fn wrapped(sentence: &str) -> String {
+#[must_use]
+pub fn wrapped(sentence: &str) -> String {
     indented("", 0, width(), sentence)
 }
 

@@ -66,7 +66,15 @@ pub(super) fn of_columns(columns: &[ColumnInfo]) -> String {
         wanted.retain(|quantity| *quantity != Quantity::Force);
         wanted.push(Quantity::Stress);
     }
-    let proposed = proposed(columns, &wanted, &|column| !is_log || in_topic(column));
+    let of = |wanted: &[Quantity]| proposed(columns, wanted, &|column| !is_log || in_topic(column));
+    let is_load = |proposed: &Proposed<'_>| matches!(proposed.quantity, Quantity::Force | Quantity::Stress);
+    let mut proposed = of(&wanted);
+    if !proposed.iter().any(is_load) {
+        // A record needs a force and does without a displacement: the one column beside the time is the force.
+        let without: Vec<Quantity> = wanted.iter().copied().filter(|one| *one != Quantity::Displacement).collect();
+        let again = of(&without);
+        proposed = if again.iter().any(is_load) { again } else { proposed };
+    }
     let mut lines = vec!["[columns]".to_owned()];
     for quantity in &wanted {
         match proposed.iter().find(|proposed| proposed.quantity == *quantity) {

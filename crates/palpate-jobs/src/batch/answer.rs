@@ -4,7 +4,9 @@ use std::collections::{BTreeMap, HashMap};
 
 use palpate::number::{counted, significant};
 use palpate_files::parquet_table::Field;
+use palpate_report::result::parameter_title;
 use palpate_report::table::{Cell, Table};
+use palpate_report::wrapped;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
@@ -169,7 +171,7 @@ impl BatchAnswer {
         if self.unfitted > 0 {
             text.push_str(&format!(" No law was fitted to {}.", counted(self.unfitted, "hold")));
         }
-        text.push('\n');
+        text = wrapped(&text);
         let caption = format!("Parameters of {law} over the holds that it is recommended for.");
         let quartile = |index: usize| {
             move |spread: &Spread| match spread.holds {
@@ -178,7 +180,7 @@ impl BatchAnswer {
             }
         };
         let table = Table::of("spread", caption, &self.parameters)
-            .column("Parameter", "parameter", "", |spread| Cell::text(&spread.name))
+            .column("Parameter", "parameter", "", |spread| Cell::text(parameter_title(&spread.name)))
             .column("Unit", "unit", "", |spread| Cell::text(&spread.unit))
             .column("Median", "median", "", quartile(1))
             .column("Lower quartile", "lower_quartile", "", quartile(0))
@@ -189,7 +191,7 @@ impl BatchAnswer {
         if !self.findings.is_empty() {
             let found: Vec<String> =
                 self.findings.iter().map(|(code, count)| format!("{code} on {}", counted(*count, "hold"))).collect();
-            text.push_str(&format!("\nFindings on the most holds: {}.\n", found.join(", ")));
+            text.push_str(&format!("\n{}", wrapped(&format!("Findings on the most holds: {}.", found.join(", ")))));
         }
         text
     }

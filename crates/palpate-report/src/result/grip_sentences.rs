@@ -56,7 +56,7 @@ impl GrippedBody<'_> {
             Control::Force => of_pressed(&answer.force_hold.as_ref()?.found, holds),
         };
         let verdict = match holds {
-            true if self.rests_on_estimate() => "Yes by the best estimate, not with the confidence of its interval",
+            true if self.rests_on_estimate() => "Yes (best estimate)",
             true => "Yes",
             false => "No",
         };

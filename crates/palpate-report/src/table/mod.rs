@@ -138,14 +138,29 @@ impl Table {
         self.rows.get(row).and_then(|row| row.get(column)).unwrap_or(EMPTY)
     }
 
-    /// The unit in which people read each column, and the factor to it: columns of one unit share it.
+    /// The unit in which people read each column, and the factor to it, by the median size of its values. Columns of one unit share it
+    /// unless their sizes are far apart.
     pub(crate) fn units(&self) -> Vec<(&str, f64)> {
-        let sizes = |column: usize| (0..self.rows.len()).filter_map(move |row| self.cell(row, column).size());
-        let like = |unit: &str| {
-            let columns = (0..self.columns.len()).filter(|column| self.columns[*column].unit == unit);
-            columns.flat_map(sizes).fold(0.0, f64::max)
+        /// Sizes within this factor of the largest are read in one unit.
+        const FAR: f64 = 100.0;
+        let size = |column: usize| {
+            let sizes = (0..self.rows.len()).filter_map(|row| self.cell(row, column).size());
+            let mut sizes: Vec<f64> = sizes.map(f64::abs).filter(|size| *size > 0.0 && size.is_finite()).collect();
+            sizes.sort_by(f64::total_cmp);
+            sizes.get(sizes.len() / 2).copied().unwrap_or(0.0)
         };
-        self.columns.iter().map(|column| suited(&column.unit, like(&column.unit))).collect()
+        let sizes: Vec<f64> = (0..self.columns.len()).map(size).collect();
+        let largest = |unit: &str| {
+            let of_unit = self.columns.iter().zip(&sizes).filter(|(column, _)| column.unit == unit);
+            of_unit.map(|(_, size)| *size).fold(0.0, f64::max)
+        };
+        let columns = self.columns.iter().zip(&sizes);
+        columns
+            .map(|(column, size)| {
+                let largest = largest(&column.unit);
+                suited(&column.unit, if size * FAR >= largest || *size == 0.0 { largest } else { *size })
+            })
+            .collect()
     }
 
     /// Whether a column holds numbers and is set flush right.

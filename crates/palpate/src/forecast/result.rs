@@ -74,7 +74,8 @@ pub struct Comparison {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Certainty {
-    /// Not distinguishable from the best at every cut point, and the error of every distinguishable law is at least twice as large.
+    /// Not distinguishable from the best at every cut point, as is no other law but its generalisations; the error of every other law is
+    /// at least twice as large.
     Clear,
     /// Best in the mean.
     Likely,

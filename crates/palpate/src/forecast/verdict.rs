@@ -61,7 +61,7 @@ pub(super) fn judge(comparison: &Comparison) -> Option<Verdict> {
     let alike_alternatives = alike.iter().filter(|(row, _)| alternative(row.law)).count();
     let certainty = if 2 * alike_alternatives > alternatives {
         Certainty::Open
-    } else if apart && cuts_won == comparison.cuts.len() {
+    } else if apart && alike_alternatives == 0 && cuts_won == comparison.cuts.len() {
         Certainty::Clear
     } else {
         Certainty::Likely

@@ -62,6 +62,8 @@ fn names_that_say_nothing() {
         &["expected a column of time"],
         &["# time: no candidate column remains", "force = { column = 2"],
     );
+    // The one column beside the time was proposed as a displacement, with no force left.
+    says("0,1\n0.1,2\n0.2,3\n", "", &["expected a column of"], &["--columns \"force=2:N,time=1:s\""]);
     says("Zeit (s),U (V)\n0,1\n1,2\n", "columns.stress = {}", &["expected a column of stress"], &[]);
 }
 
