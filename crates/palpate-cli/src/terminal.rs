@@ -6,10 +6,12 @@ use std::path::Path;
 use palpate_jobs::{ErrorKind, JobError};
 use palpate_report::spelling::with_flags;
 
-/// Lays texts out for the terminal that standard output is, if it is one.
+/// Lays texts out for the terminal that standard output is, or for the width that `COLUMNS` states.
 pub(crate) fn measure() {
-    if let Some((width, _)) = terminal_size::terminal_size_of(io::stdout()) {
-        palpate_report::set_width(usize::from(width.0));
+    let measured = || terminal_size::terminal_size_of(io::stdout()).map(|(width, _)| usize::from(width.0));
+    let stated = || std::env::var("COLUMNS").ok()?.parse().ok();
+    if let Some(width) = measured().or_else(stated) {
+        palpate_report::set_width(width);
     }
 }
 

@@ -158,7 +158,7 @@ impl CalibrateError {
     #[must_use]
     pub fn hint(&self) -> String {
         match self {
-            Self::NoGeometry => "describe the body in [specimen] of the test description; `palpate inspect --write-test test.toml` drafts one".to_owned(),
+            Self::NoGeometry => "describe the body in [specimen] of the test description; `palpate inspect` drafts one with ⟨write_test⟩".to_owned(),
             Self::NoDisplacement => {
                 "name the displacement column in [columns]; without it palpate can only fit single holds".to_owned()
             }
