@@ -156,7 +156,7 @@ pub(super) fn option(entries: impl IntoIterator<Item = String>) -> String {
 /// One column as the option takes it: by its name, or by its number where the name has a twin, or is not safe in a list or a shell.
 pub(super) fn entry(quantity: Quantity, column: &NamedColumn, unit: Option<&str>, has_no_twin: bool) -> String {
     let plain = |name: &&String| {
-        let parts = |letter: char| "\"$`\\!:,=".contains(letter) || letter.is_control();
+        let parts = |letter: char| "\"$`\\!:,=\u{FFFD}".contains(letter) || letter.is_control();
         has_no_twin && !name.contains(parts) && name.trim() == *name && name.parse::<f64>().is_err()
     };
     let name = column.name.as_ref().filter(plain).map_or_else(|| column.number.to_string(), String::clone);
