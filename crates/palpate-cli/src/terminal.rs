@@ -6,12 +6,10 @@ use std::path::Path;
 use palpate_jobs::{ErrorKind, JobError};
 use palpate_report::spelling::with_flags;
 
-/// Lays texts out for the terminal that standard output is, or for the width that `COLUMNS` states.
+/// Lays texts out for the terminal that standard output is, if it is one.
 pub(crate) fn measure() {
-    let measured = || terminal_size::terminal_size_of(io::stdout()).map(|(width, _)| usize::from(width.0));
-    let stated = || std::env::var("COLUMNS").ok()?.parse().ok();
-    if let Some(width) = measured().or_else(stated) {
-        palpate_report::set_width(width);
+    if let Some((width, _)) = terminal_size::terminal_size_of(io::stdout()) {
+        palpate_report::set_width(usize::from(width.0));
     }
 }
 
