@@ -34,8 +34,13 @@ pub(crate) fn described(test: Given<'_, '_>, part: Given<'_, '_>) -> PyResult<(D
     Ok((read_or_parsed(path.as_deref(), text, part.as_deref())?, path))
 }
 
+/// Likewise, with columns that are named beside it.
+pub(crate) fn described_with(test: Given<'_, '_>, part: Given<'_, '_>, columns: Given<'_, '_>) -> PyResult<Described> {
+    Ok(described(test, part)?.0.with_columns(named_columns(columns)?.as_ref()))
+}
+
 /// The columns that an argument names: a text as the command takes it, or a mapping from quantities to "name:unit".
-pub(crate) fn named_columns(columns: Given<'_, '_>) -> PyResult<Option<NamedColumns>> {
+fn named_columns(columns: Given<'_, '_>) -> PyResult<Option<NamedColumns>> {
     let Some(columns) = columns else { return Ok(None) };
     let text = match columns.cast::<PyMapping>() {
         Ok(mapping) => {
@@ -97,7 +102,7 @@ pub(crate) fn inspect(
     part: Given<'_, '_>,
     columns: Given<'_, '_>,
 ) -> PyResult<String> {
-    let described = described(test, part)?.0.with_columns(named_columns(columns)?.as_ref());
+    let described = described_with(test, part, columns)?;
     job(py, move |watch| {
         let found = Inspect::default().run(&OpenedFile::open(&path, &described)?, watch)?.result;
         found.refused.map_or(Ok(found.text), Err)
@@ -132,7 +137,7 @@ pub(crate) fn convert(
     part: Given<'_, '_>,
     columns: Given<'_, '_>,
 ) -> PyResult<PathBuf> {
-    let described = described(test, part)?.0.with_columns(named_columns(columns)?.as_ref());
+    let described = described_with(test, part, columns)?;
     job(py, move |watch| {
         Convert {}.run(&OpenedFile::open(&path, &described)?, watch)?.result.write(&out)?;
         Ok(out)
@@ -185,7 +190,7 @@ pub(crate) fn batch(
     fit_until_s: Option<f64>,
     restart: bool,
 ) -> PyResult<BatchResult> {
-    let described = described(test, None)?.0.with_columns(named_columns(columns)?.as_ref());
+    let described = described_with(test, None, columns)?;
     let question = Batch {
         laws: laws.map(|laws| all_laws(&laws)).transpose()?,
         intervals: intervals.map(fit::intervals).transpose()?,
@@ -362,7 +367,7 @@ pub(crate) fn watch<'py>(
     warn_before_s: Option<f64>,
     every_s: Option<f64>,
 ) -> PyResult<Bound<'py, PyAny>> {
-    let described = described(test, part)?.0.with_columns(named_columns(columns)?.as_ref());
+    let described = described_with(test, part, columns)?;
     let usual = WatchLog::default();
     let log = WatchLog {
         exponent: exponent.unwrap_or(usual.exponent),

@@ -22,7 +22,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::arrays::doubles;
 use crate::errors::{OptionError, RecordError, choice, refused, refused_plainly};
-use crate::files::{self, Given, all_laws, described, named_columns, read_or_parsed};
+use crate::files::{self, Given, all_laws, described, described_with, read_or_parsed};
 use crate::fits::fit;
 use crate::materials::calibration::Calibration;
 use crate::materials::material::{Material, rising_times};
@@ -105,8 +105,7 @@ pub(crate) fn read(
     part: Given<'_, '_>,
     columns: Given<'_, '_>,
 ) -> PyResult<Record> {
-    let described = described(test, part)?.0.with_columns(named_columns(columns)?.as_ref());
-    Ok(read_parts(py, path, &described, true)?.remove(0))
+    Ok(read_parts(py, path, &described_with(test, part, columns)?, true)?.remove(0))
 }
 
 /// Read all tests in a file: the sheets of a workbook, the curves of a map, the ``test_id`` of a table.
@@ -133,8 +132,7 @@ pub(crate) fn read_all(
     test: Given<'_, '_>,
     columns: Given<'_, '_>,
 ) -> PyResult<Vec<Record>> {
-    let described = described(test, None)?.0.with_columns(named_columns(columns)?.as_ref());
-    read_parts(py, path, &described, false)
+    read_parts(py, path, &described_with(test, None, columns)?, false)
 }
 
 /// The records in a file, `only` one of them or all.
