@@ -47,7 +47,7 @@ pub enum Format {
     RobotLog,
 }
 
-/// A format, how a file of it is given, and what looks into one.
+/// A format, how a file of it is recognised, and what looks into one.
 type Known = (Format, fn(&Input) -> bool, LookInto);
 type LookInto = fn(&Input, &ReadOptions) -> Result<Found, FileError>;
 

@@ -25,7 +25,7 @@ use crate::shown::shown;
 use crate::table::{Table, columns};
 use crate::work::{Made, job};
 
-/// Stated where intervals know nothing of the parameters.
+/// Reported where intervals know nothing of the parameters.
 const OPEN: &str = "the calibration left a parameter open: the intervals hold noise alone";
 
 /// A calibrated body: shape, law and parameters with their covariance, the range of its test, and where they come from.

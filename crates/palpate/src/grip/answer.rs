@@ -29,7 +29,7 @@ pub struct Question {
     pub squeeze: Option<f64>,
     /// Force that is in question where the force is held, N; the least that is enough if not given.
     pub force: Option<f64>,
-    /// How long it is to hold, s, infinite for always. If not given, a squeeze or force is requested how long it does, and the least is sought for a
+    /// How long it is to hold, s, infinite for always. If not given, the answer for a squeeze or force is how long it does, and the least is sought for a
     /// minute.
     pub duration: Option<f64>,
     /// What the squeeze should have least of.

@@ -145,7 +145,7 @@ impl Observer {
         Ok(stated)
     }
 
-    /// What a material says of readings, but for one that is off the place where the jaw stands: the hold is given of from there until the next
+    /// What a material says of readings, but for one that is off the place where the jaw stands: the hold is reported from there until the next
     /// reading says whether it was left.
     fn believe(&mut self, time: f64, displacement: f64, force: f64) {
         let Some(filter) = &mut self.filter else { return };

@@ -3,7 +3,7 @@
 use super::stand::Change;
 use crate::observe::kept::kept;
 
-/// A hold is given once the force, at the speed of its loading, would have risen this many tolerances above its peak.
+/// A hold is reported once the force, at the speed of its loading, would have risen this many tolerances above its peak.
 const FAR: f64 = 8.0;
 /// Readings off the fitted curve that end a hold.
 const OFF: u32 = 3;

@@ -4,9 +4,9 @@ use crate::observe::kept::kept;
 
 /// Fewest readings of a stand.
 const FEWEST: u32 = 3;
-/// Readings after which a stand is given where no speed is known, at the beginning of a record.
+/// Readings after which a stand is reported where no speed is known, at the beginning of a record.
 const AT_FIRST: u32 = 20;
-/// How many tolerances a signal may wander about a place before it has left it, once the stand was given.
+/// How many tolerances a signal may wander about a place before it has left it, once the stand was reported.
 const LEAVES: f64 = 3.0;
 /// Readings outside that make it leave: one alone may be a dropout.
 const OUTSIDE: u32 = 2;
@@ -32,7 +32,7 @@ pub(in crate::observe) struct Stand {
     fastest: f64,
     /// Whether the last motion went up (1), down (−1), or there was none (0).
     pub(in crate::observe) direction: f64,
-    /// Whether the stand was given.
+    /// Whether the stand was reported.
     pub(in crate::observe) stands: bool,
 }
 kept!(Stand: start, middle, last, place, count, readings, outside, drifts_since, speed, fastest, direction, stands);
@@ -47,7 +47,7 @@ pub(in crate::observe) enum Change {
     Same,
     /// The signal is at a new place, where a stand may begin.
     Moved,
-    /// The stand is given with this reading.
+    /// The stand is reported with this reading.
     Stands,
     /// It left where it stood, at a speed like that with which it came.
     Left,
@@ -57,7 +57,7 @@ pub(in crate::observe) enum Change {
 
 impl Stand {
     /// Takes a reading; `tolerance` is how far the signal may be from a place and still be there, `None` where that is not known yet. A stand
-    /// is given once the signal, at its last speed, would have gone `patience` tolerances.
+    /// is reported once the signal, at its last speed, would have gone `patience` tolerances.
     pub(in crate::observe) fn feed(&mut self, time: f64, value: f64, tolerance: Option<f64>, patience: f64) -> Change {
         if self.readings == 0 {
             self.begin(time, value);
@@ -122,7 +122,7 @@ impl Stand {
         }
     }
 
-    /// Whether the stand was given, and the last reading is off its place: a dropout, or the first of a motion.
+    /// Whether the stand was reported, and the last reading is off its place: a dropout, or the first of a motion.
     pub(in crate::observe) fn is_doubtful(&self) -> bool {
         self.stands && self.outside > 0
     }
