@@ -10,7 +10,7 @@ use crate::watch::{Cancelled, Progress, Stages};
 /// A calibrated body in a gripper.
 ///
 /// ```
-/// use palpate::calibrate::{Body, Candidate, EquilibriumLaw, Material, MaterialParameter, MaterialUnit, CalibrationRange};
+/// use palpate::calibrate::{Body, Candidate, EquilibriumLaw, Material, MaterialParameter, MaterialParts, MaterialUnit, CalibrationRange};
 /// use palpate::contact::{Shape, Sides};
 /// use palpate::grip::{Grasp, Grip, TimeToSlip, Limits, Plan};
 /// use palpate::fit::Estimate;
