@@ -11,6 +11,7 @@ use arrow_ipc::writer::StreamWriter;
 use arrow_schema::DataType;
 use numpy::{PyArray1, PyArrayMethods};
 use palpate::number::significant;
+use palpate_report::result::{PARAMETER_COLUMNS, ParameterColumn, ParameterRow};
 use pyo3::exceptions::{PyKeyError, PyRuntimeError, PyTypeError};
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict, PyList, PyString, PyType};
@@ -87,6 +88,17 @@ macro_rules! columns {
     };
 }
 pub(crate) use columns;
+
+/// The columns of the tidy table of parameters, the same as in reports and batches.
+pub(crate) fn parameter_columns(rows: &[ParameterRow]) -> Vec<(&'static str, ArrayRef)> {
+    let column = |column: ParameterColumn| match column {
+        ParameterColumn::Text(of) => Column::column(rows.iter().map(of)),
+        ParameterColumn::Count(of) => Column::column(rows.iter().map(of)),
+        ParameterColumn::Number(of) => Column::column(rows.iter().map(of)),
+        ParameterColumn::Flag(of) => Column::column(rows.iter().map(of)),
+    };
+    PARAMETER_COLUMNS.iter().map(|(name, of)| (*name, column(*of))).collect()
+}
 
 /// Rows that a notebook shows of each end of a table.
 const ENDS: usize = 5;

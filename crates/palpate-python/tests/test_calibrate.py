@@ -92,8 +92,8 @@ def test_numbers_have_intervals_and_units(material: palpate.Material) -> None:
     truth = {"modulus_pa": 28e3, "exponent": 5.0, "rate_coefficient_per_s": 2e4, "layer_thickness_m": 0.035 / 8}
     units = {"modulus_pa": "Pa", "exponent": "1", "rate_coefficient_per_s": "1/s", "layer_thickness_m": "m"}
     estimates, numbers = material.estimates, polars.DataFrame(material.parameter_table)
-    assert list(estimates) == list(material.parameters) == numbers["name"].to_list() == list(truth)
-    assert numbers.columns == ["name", "unit", "value", "standard_error", "low", "high"]
+    assert list(estimates) == list(material.parameters) == numbers["parameter"].to_list() == list(truth)
+    assert numbers.columns == ["parameter", "unit", "value", "standard_error", "low", "high"]
     for row, (name, estimate) in zip(numbers.rows(), estimates.items(), strict=True):
         assert estimate.interval is not None and estimate.standard_error is not None
         assert row == (name, units[name], estimate.value, estimate.standard_error, *estimate.interval)
@@ -254,7 +254,7 @@ def test_a_rate_coefficient_that_varies_is_one_more_number(record: palpate.Recor
 def test_profile_intervals_stand_beside_the_others(record: palpate.Record) -> None:
     requested = record.calibrate(alternatives=[], profile=True)
     numbers = polars.DataFrame(requested.parameter_table)
-    assert numbers["name"].to_list() == ["modulus_pa", "exponent", "rate_coefficient_per_s", "layer_thickness_m"]
+    assert numbers["parameter"].to_list() == ["modulus_pa", "exponent", "rate_coefficient_per_s", "layer_thickness_m"]
     value, low, high = (numbers[name].to_numpy() for name in ("value", "profile_low", "profile_high"))
     assert (low < value).all() and (value < high).all()
     # The record tells all four: χ² is nearly a parabola of the logarithms, and both intervals nearly agree.

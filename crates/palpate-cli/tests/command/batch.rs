@@ -173,7 +173,7 @@ fn bad_records_are_listed_and_do_not_stop_the_others() {
     assert!(error.contains("failed: curves/empty.csv: the file is empty"), "{error}");
     assert!(error.contains("18 rows of 3 tests in 6 files, 3 of 6 tests failed"), "{error}");
     assert_eq!(lines(folder, "holds.csv").len(), 1 + 3 * 6);
-    // Mended, it is the only one that is read anew; so is a file that changed.
+    // Repaired, it is the only one that is read anew; so is a file that changed.
     file(folder, "curves/empty.csv", ramp_and_hold(3.0, 20.0));
     file(folder, "curves/c001.csv", ramp_and_hold(3.0, 30.0));
     let output = palpate(folder, &["batch", "curves", "--out", "holds.csv"]);

@@ -209,7 +209,7 @@ fn a_calibration_on_the_first_hold_ends_for_every_law() {
     assert!(printed.contains("Held-out error beyond the fitted part"), "{printed}");
 }
 
-/// Where much is left over the bottom is steeper than the first derivatives say; the search went from one side of it to the other until its
+/// Where the residual is large the bottom is steeper than the first derivatives say; the search went from one side of it to the other until its
 /// steps were spent. And the ends of intervals of 80 decades were numbers.
 #[test]
 fn a_record_that_the_law_does_not_describe_ends_at_an_optimum_with_its_numbers_left_open() {

@@ -283,7 +283,7 @@ fn every_dependency_builds_with_our_rust() {
 }
 
 /// Words of this project's own for which the field has one, and that one.
-const REFUSED_WORDS: [(&str, &str); 29] = [
+const REFUSED_WORDS: [(&str, &str); 39] = [
     ("foretell", "predict"),
     ("foretold", "predicted, held-out"),
     ("rival", "alternative"),
@@ -313,6 +313,16 @@ const REFUSED_WORDS: [(&str, &str); 29] = [
     ("asked", "requested"),
     ("seen", "observed"),
     ("as_good", "indistinguishable"),
+    ("left over", "residual"),
+    ("what it leaves", "residual"),
+    ("force at rest", "equilibrium force"),
+    ("keep the place", "position hold"),
+    ("squeeze kept", "position hold"),
+    ("believed", "ModelFilter"),
+    ("surprised", "INNOVATION_LIMIT"),
+    ("swells", "DecompressionLimit"),
+    ("mended", "repaired"),
+    ("lastsdocument", "TimeToSlipDocument"),
 ];
 
 /// Messages, options, identifiers, snapshots and documents speak the language of the field.

@@ -144,7 +144,7 @@ impl Input {
         read.map_err(|error| self.failed(error))?;
         match bytes.len() as u64 {
             length if length <= most => Ok(bytes),
-            _ if most < MOST_IN_MEMORY => Err(self.swells()),
+            _ if most < MOST_IN_MEMORY => Err(self.beyond_limit()),
             _ => Err(self.too_large("the file", most)),
         }
     }
@@ -160,11 +160,11 @@ impl Input {
         if bytes > most {
             return Err(self.too_large(what, most));
         }
-        if bytes > self.warranted() { Err(self.swells()) } else { Ok(()) }
+        if bytes > self.warranted() { Err(self.beyond_limit()) } else { Ok(()) }
     }
 
     /// What is packed here unpacks to more than is [`warranted`](Self::warranted).
-    pub(crate) fn swells(&self) -> FileError {
+    pub(crate) fn beyond_limit(&self) -> FileError {
         self.wrong(FileProblem::DecompressionLimit(MOST_TIMES))
     }
 

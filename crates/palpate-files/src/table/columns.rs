@@ -196,7 +196,7 @@ impl Columns {
         }
     }
 
-    /// Rows left over at the end of the file become a mean of fewer.
+    /// Rows that remain at the end of the file become a mean of fewer.
     fn take_waiting(&mut self) {
         let count = self.waiting as f64;
         if self.waiting == 0 {
@@ -237,7 +237,7 @@ mod tests {
         columns.finish();
         assert_eq!((columns.rows(), columns.averaged), (rows, 4));
         assert_eq!(columns.values[0].len(), rows.div_ceil(4));
-        // Means of 0..4, of 4..8, and of the three rows left over.
+        // Means of 0..4, of 4..8, and of the three rows that remain.
         let last = rows - rows % 4;
         assert_eq!(columns.values[0][..2], [1.5, 5.5]);
         let left = (last..rows).map(|row| row as f64).sum::<f64>() / (rows - last) as f64;

@@ -122,7 +122,7 @@ impl Sweep {
         let found = depends_on(&folder);
         if !self.restart && is_complete(out, &digest, sweep.runs) {
             if found.is_some_and(|found| found == digest) {
-                // Killed after the table was whole: only its parts are left over.
+                // Killed after the table was whole: only its parts remain.
                 Store::open(&folder, "sweep", &digest, false)?.remove()?;
             }
             return Ok(sweep.runs);

@@ -3,6 +3,7 @@
 use palpate_jobs::input::Measurement;
 use palpate_jobs::{Calibrate, Results};
 use palpate_report::document::{CalibratedLawDocument, CalibrationDocument};
+use palpate_report::result::ParameterRow;
 use palpate_report::study::calibration_page;
 use pyo3::prelude::*;
 use serde::{Deserialize, Serialize};
@@ -11,7 +12,7 @@ use crate::errors::{PalpateError, refused_plainly};
 use crate::html::framed;
 use crate::materials::material::{Material, as_toml};
 use crate::shown::shown;
-use crate::table::{Column, Table, columns};
+use crate::table::{Column, Table, columns, parameter_columns};
 use crate::work::{job, plain, printed};
 
 /// One set of parameters for a whole record, ramps and holds alike: a material, the residuals of its law, and its alternatives.
@@ -120,15 +121,13 @@ shown! {
             columns.extend(columns!(laws, law => termination, error));
             Table::of(columns)
         },
-        /// The parameters of the law that was requested, by name and unit as in `to_dict`: ``value``, ``standard_error``, ``low`` and ``high`` of
-        /// the interval and, where profiles were requested, ``profile_low`` and ``profile_high``, NaN where the record leaves them open.
+        /// The parameters of the law that was requested, with the columns of `Analysis.parameter_table` and, where profiles were requested,
+        /// ``profile_low`` and ``profile_high``, NaN where the record leaves them open.
         parameter_table: PyResult<Table> = {
             let parameters = &self.requested().parameters;
-            let mut columns = columns!(parameters, parameter =>
-                name, value = parameter.parameter.value, standard_error = parameter.parameter.standard_error,
-                low = parameter.parameter.interval.and_then(|interval| interval[0]),
-                high = parameter.parameter.interval.and_then(|interval| interval[1])
-            );
+            let rows: Vec<ParameterRow> =
+                self.document.parameter_rows().into_iter().filter(|row| row.is_recommended).collect();
+            let mut columns = parameter_columns(&rows);
             if parameters.iter().any(|parameter| parameter.profile.is_some()) {
                 columns.extend(columns!(parameters, parameter =>
                     profile_low = parameter.profile.as_ref().and_then(|profile| profile.low),

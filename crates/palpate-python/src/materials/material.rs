@@ -112,10 +112,10 @@ shown! {
             EquilibriumLaw::Hertz { .. } => "hertz",
             EquilibriumLaw::Table => "table",
         },
-        /// The parameters, a row each: ``name``, ``unit``, ``value``, ``standard_error``, ``low`` and ``high``, in SI; the latter three are missing
+        /// The parameters, a row each: ``parameter``, ``unit``, ``value``, ``standard_error``, ``low`` and ``high``, in SI; the latter three are missing
         /// for a parameter that was given, or that the record leaves open.
         parameter_table: PyResult<Table> = Table::of(columns!(self.estimated(), parameter =>
-            name, unit = si_unit(parameter.unit), value = parameter.estimate.value,
+            parameter = parameter.name.clone(), unit = si_unit(parameter.unit), value = parameter.estimate.value,
             standard_error = parameter.estimate.standard_error,
             low = parameter.estimate.interval.map(|interval| interval.0),
             high = parameter.estimate.interval.map(|interval| interval.1)

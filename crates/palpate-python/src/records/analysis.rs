@@ -10,8 +10,8 @@ use palpate_jobs::input::Measurement;
 use palpate_jobs::output::write_bundle;
 use palpate_jobs::{Analyze, Analyzed, Outcome, Results};
 use palpate_report::document::{AnalysisDocument, FitDocument};
+use palpate_report::result::ParameterDocument;
 use palpate_report::result::{Input, word};
-use palpate_report::result::{PARAMETER_COLUMNS, ParameterColumn, ParameterDocument, ParameterRow};
 use palpate_report::spelling::{spelled, with_flags};
 use palpate_report::study::Pictures;
 use pyo3::prelude::*;
@@ -22,7 +22,7 @@ use crate::errors::{PalpateError, failed, keyword, refused_plainly, unwritten, w
 use crate::html::framed;
 use crate::records::kept::Kept;
 use crate::shown::shown;
-use crate::table::{Column, Table, columns};
+use crate::table::{Column, Table, columns, parameter_columns};
 use crate::work::{Made, at_length, job, made_again, plain, printed, unpickled};
 
 /// Something about a record, or a hold, that its numbers alone do not tell.
@@ -136,17 +136,6 @@ fn run(py: Python<'_>, requested: &Arc<Requested>) -> PyResult<Outcome<Analyzed>
     job(py, move |watch| requested.job.run(requested.measured.clone(), None, watch))
 }
 
-/// Parameters as a tidy table.
-fn parameter_table(rows: &[ParameterRow]) -> PyResult<Table> {
-    let column = |column: ParameterColumn| match column {
-        ParameterColumn::Text(of) => Column::column(rows.iter().map(of)),
-        ParameterColumn::Count(of) => Column::column(rows.iter().map(of)),
-        ParameterColumn::Number(of) => Column::column(rows.iter().map(of)),
-        ParameterColumn::Flag(of) => Column::column(rows.iter().map(of)),
-    };
-    Table::of(PARAMETER_COLUMNS.iter().map(|(name, of)| (*name, column(*of))).collect())
-}
-
 /// The parameters of fits, a column each with its uncertainty, by the names that any of the fits has.
 fn estimated(fits: &[&FitDocument]) -> Vec<(String, ArrayRef)> {
     let names: BTreeSet<&String> = fits.iter().flat_map(|fit| fit.parameters.keys()).collect();
@@ -194,7 +183,7 @@ shown! {
         },
         /// Every parameter of every law on every hold, a row each: ``record``, ``hold``, ``law``, ``parameter``, ``unit``, ``value``,
         /// ``standard_error``, ``low``, ``high``, ``termination``, ``white_standard_error``, ``role``, ``domain``, ``recommended``.
-        parameter_table: PyResult<Table> = parameter_table(&self.document.parameter_rows()),
+        parameter_table: PyResult<Table> = Table::of(parameter_columns(&self.document.parameter_rows())),
         /// The law to use for the record as a whole, as ``law=`` takes it; None where none can be recommended.
         law: Option<String> = self.document.answer.law.clone(),
         /// Which law to use, in a sentence.

@@ -177,7 +177,7 @@ impl<'a> Problem<'a> {
                         .sum();
                     (theta, residuals) = (next, trial);
                     square = trial_square;
-                    // Where much is left over the bottom is steeper than the model says: undamped steps would go from one side to the other.
+                    // Where the residual is large the bottom is steeper than the model says: undamped steps would go from one side to the other.
                     damping = match gain / predicted {
                         share if share > 0.75 => (damping * 0.1).max(1e-12),
                         share if share > 0.25 => damping,

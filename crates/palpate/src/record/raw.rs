@@ -166,7 +166,7 @@ mod tests {
     }
 
     #[test]
-    fn two_clocks_are_mended_each() {
+    fn two_clocks_are_repaired_each() {
         let raw = RawColumns {
             time: vec![0.0, 1.0, 1.0, 2.0, 3.0],
             displacement: Some(vec![0.0, 1.0, 3.0, 4.0, 4.0]),

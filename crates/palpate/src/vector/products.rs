@@ -342,7 +342,7 @@ fn blocks(column: &[f64]) -> &[[f64; LANES]] {
     column.as_chunks().0
 }
 
-/// What is left over after whole blocks, and zeros.
+/// What remains after whole blocks, and zeros.
 #[inline(always)]
 fn padded(column: &[f64]) -> [f64; LANES] {
     let rest = column.as_chunks::<LANES>().1;

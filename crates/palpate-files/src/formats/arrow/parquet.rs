@@ -117,7 +117,7 @@ fn check_pages(input: &Input, chunks: &Chunks, mut start: u64, end: u64) -> Resu
             return Ok(());
         };
         if page.unpacked > input.warranted() {
-            return Err(input.swells());
+            return Err(input.beyond_limit());
         }
         start = start.saturating_add(page.head).saturating_add(page.packed);
     }

@@ -71,7 +71,7 @@ fn clocks_of_their_own() {
 }
 
 #[test]
-fn what_was_wrong_with_the_stamps_is_mended_and_reported() {
+fn what_was_wrong_with_the_stamps_is_repaired_and_reported() {
     let mut table = String::from("Time (s),Displacement (mm),Force (N)\n");
     let rows: Vec<u32> = (0..100)
         .map(|i| {

@@ -85,7 +85,7 @@ impl Book {
                 "<Relationship Id=\"s{0}\" Type=\"{office}/worksheet\" Target=\"worksheets/sheet{0}.xml\"/>",
                 index + 1
             ));
-            // A dimension that lies: it must not be believed.
+            // A dimension that lies: it must not be trusted.
             put(
                 &format!("xl/worksheets/sheet{}.xml", index + 1),
                 &format!("<worksheet><dimension ref=\"A1:XFD1048576\"/><sheetData>{xml}</sheetData></worksheet>"),

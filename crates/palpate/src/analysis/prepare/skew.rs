@@ -36,7 +36,7 @@ impl ClockSkew {
     }
 }
 
-/// Standard errors from which on a skew is believed.
+/// Standard errors from which on a skew is accepted.
 const OBSERVED: f64 = 3.0;
 /// Fewest edges whose scatter says anything.
 const FEWEST: usize = 3;

@@ -206,7 +206,7 @@ const MANY: usize = 20_000;
 /// Share of what two pieces may cost to be joined up to which they are one without asking their other neighbours.
 const SURELY: f64 = 0.3;
 
-/// The polygon of least cost among those whose corners are corners of a finer one: what it leaves, in units of the noise's
+/// The polygon of least cost among those whose corners are corners of a finer one: its residual, in units of the noise's
 /// square, and a price for every piece.
 ///
 /// What the finer pieces leave, all of them leave; it does not count. What strays slowly strays for a finer piece together, so

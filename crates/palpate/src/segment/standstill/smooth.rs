@@ -4,7 +4,7 @@
 /// without a standstill: a polynomial of the fourth degree, or two lines that meet. In square deviations.
 ///
 /// The standstill itself is a line with a corner at either end, near the ends of the samples; or what the polygon draws there,
-/// given by what it leaves of each sample, at the price of its further pieces.
+/// given by the residual of each sample, at the price of its further pieces.
 pub(super) fn gain_of_corners(
     time: &[f64],
     values: &[f64],

@@ -259,7 +259,7 @@ proptest! {
     /// A jaw that ends where it began, or off the body, has done work on it and not the other way round, whatever the body and however
     /// it went: a body cannot drive an engine.
     ///
-    /// For every term the work is ∮ S x du (of the equilibrium force, along which no work is left over, F_e du). In the plane of u and
+    /// For every term the work is ∮ S x du (of the equilibrium force, along which no work remains, F_e du). In the plane of u and
     /// y = x − g u/depth a motion goes straight, and relaxation alone moves y: down where x > 0, up where x < 0. Where a loop ran
     /// counterclockwise it would at some height y rise on the right, with y < −g u/depth, and fall on the left, with y > −g u/depth, and u
     /// on the left would be greater than on the right. All loops therefore run clockwise, and the area in them, weighted with S ≥ 0, is

@@ -61,7 +61,7 @@ fn one_value_at_a_time() {
 
 #[test]
 fn many_values_at_once() {
-    // Blocks of vector lanes and what is left over take different paths: once alone, once in a row of 19 times.
+    // Blocks of vector lanes and what remains take different paths: once alone, once in a row of 19 times.
     const COPIES: usize = 19;
     let tolerance = |one: f64| one + BATCH_UNDERFLOW;
     let (mut value, mut by_rate, mut by_exponent) = (Score::default(), Score::default(), Score::default());

@@ -9,7 +9,7 @@ use crate::optimise::{
 use crate::vector::dot;
 
 /// The solution carried on to what doubles allow, where normal equations do not reach it: where parameters nearly imitate each other, and
-/// where next to nothing is left over. `inflation` as of the function of that name.
+/// where the residual is next to nothing. `inflation` as of the function of that name.
 pub(crate) fn exact(
     shapes: &Sampled<'_>,
     target: Target<'_>,
