@@ -283,7 +283,7 @@ fn every_dependency_builds_with_our_rust() {
 }
 
 /// Words of this project's own for which the field has one, and that one.
-const REFUSED_WORDS: [(&str, &str); 39] = [
+const REFUSED_WORDS: [(&str, &str); 38] = [
     ("foretell", "predict"),
     ("foretold", "predicted, held-out"),
     ("rival", "alternative"),
@@ -320,7 +320,6 @@ const REFUSED_WORDS: [(&str, &str); 39] = [
     ("squeeze kept", "position hold"),
     ("believed", "ModelFilter"),
     ("surprised", "INNOVATION_LIMIT"),
-    ("swells", "DecompressionLimit"),
     ("mended", "repaired"),
     ("lastsdocument", "TimeToSlipDocument"),
 ];
@@ -335,12 +334,14 @@ fn no_word_of_our_own_stands_where_the_field_has_one() {
         ("crates", "pyi"),
         ("crates", "snap"),
         ("crates", "md"),
+        ("crates/palpate-files/src", "toml"),
         ("docs", "md"),
         ("examples", "toml"),
     ];
     let mut paths: Vec<String> = kinds.iter().flat_map(|(folder, extension)| files(folder, extension)).collect();
     // What changed is described with the names that were.
     paths.extend(documents().into_iter().filter(|path| path != "CHANGELOG.md"));
+    paths.push("crates/palpate-files/tests/corpus/messages.toml".to_owned());
     let mut wrong = Vec::new();
     for path in paths.iter().filter(|path| *path != own) {
         for (index, line) in read(path).to_lowercase().lines().enumerate() {

@@ -123,7 +123,12 @@ impl Tally {
             of_first.map(|((_, name, unit), values)| ((name, unit), values)).collect();
         let spread = |((name, unit), mut values): ((String, String), Vec<f64>)| {
             values.sort_by(f64::total_cmp);
-            let at = |share: f64| values[((values.len() - 1) as f64 * share).round() as usize];
+            // Between the order statistics on both sides, straight.
+            let at = |share: f64| {
+                let place = (values.len() - 1) as f64 * share;
+                let (below, above) = (values[place.floor() as usize], values[place.ceil() as usize]);
+                below + (above - below) * place.fract()
+            };
             Spread {
                 name,
                 unit,
