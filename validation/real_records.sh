@@ -34,21 +34,22 @@ part() {
 cat >"$page" <<'TEXT'
 # Real records
 
-Records of others, measured on other machines, with every law on every hold. Written by one command:
+Every law on every hold of published records, which others measured on other machines. One command writes this page:
 
 ```sh
 validation/real_records.sh "$PALPATE_DATA"
 ```
 
-Each law is fitted to the first quarter, third and half of a hold and held against the rest. The columns are its root mean
-square error there, averaged over the three, **in % of the change of the signal over the hold**; the smallest is bold. In
-brackets: a fit to the whole hold that ended at the edge of its range, or whose terms merge. Δ: the hold is too short to
-predict, and the column is the excess of BIC. *Law to use* is the one with the fewest numbers among those that do as well as
-the best, *sure* says how clear that is, *as good* how many others do as well. What the columns and findings mean:
-[Choose a law](../guides/choose-a-law.md), [Read the report](../guides/reading-the-report.md#findings).
+Each law is fitted to the first quarter, third and half of a hold. The columns give its root mean square held-out error on the
+rest, averaged over the three, **in % of the change of the signal over the hold**; the smallest is bold. Brackets mark a fit to
+the whole hold that ended at the edge of its range, or whose terms merge. Δ: the hold is too short for a prediction, and the
+column is the BIC difference from the best law. *Law to use* is the law with the fewest parameters among those not
+distinguishable from the best, with its certainty and the number of other laws not distinguishable from the best.
+The columns and findings are explained in [Choose a law](../guides/choose-a-law.md) and
+[Read the report](../guides/reading-the-report.md#findings).
 
-The errors contain the noise of the samples that are predicted: no law can be better than that. The records themselves are not
-part of this repository.
+The errors include the noise of the predicted samples, which is a lower bound for every law. The records are not part of this
+repository.
 TEXT
 
 tests="$root/examples/tests"
@@ -56,15 +57,15 @@ part "VHB 4910 tape in tension" "Thirty minutes each, two stretches." vhb4910
 part "Soft foam in compression" "One hold of 60 s, force in steps of 0.1 N with 0.4 N of noise." \
     foam --test "$tests/foam.toml"
 part "Tendon fascicle" "Rat tail at 5 % strain, 180 s." tendon
-part "Cardiac muscle" "Averages of skinned muscle after one stretch of 0.1 s to 100 s; the units of the authors." \
+part "Cardiac muscle" "Averages of skinned muscle after one stretch of 0.1 s to 100 s, in the units of the authors." \
     titin-ramps --test "$root/validation/records/titin.toml"
-part "Silicone strip in steps" "Steps of tension up and down. In one record nothing moves; it has no hold, as it should." \
+part "Silicone strip in steps" "Steps of tension up and down. In one record nothing moves; as expected, it has no hold." \
     silicone-steps --test "$tests/silicone-steps.toml"
 part "Gripper on fruit: creep" "Displacement at a set force. The kiwi was squeezed until it burst." \
     gripper-fruit --test "$tests/gripper.toml" --creep
-part "Polymer in shear" "Stress after a step of shear, sampled every 10 ms: most of it is gone after the first samples." \
+part "Polymer in shear" "Stress after a step of shear, sampled every 10 ms: most of the stress relaxes within the first samples." \
     creep/HC1_stressrelaxation_20C_5.csv
-part "Formats that are not read yet" "Spreadsheets, atomic force microscopy, compliance without a force, repeated time stamps." \
+part "Other formats" "Spreadsheets, atomic force microscopy, compliance without a force, repeated time stamps." \
     afm-jpk zwick-indentation creep/CM3_Creep.creep creep/CM3_CreepRecovery.creep creep/creep_perihepatic_data.csv
 
 mv "$page" "$root/docs/validation/holds.md"
