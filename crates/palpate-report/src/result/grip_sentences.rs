@@ -2,7 +2,8 @@
 
 use palpate::contact::Sides;
 use palpate::grip::{
-    BackOff, Control, ForceHold, Grasp, GripError, Objective, PlanKind, PositionHold, Regrip, Schedule, TimeToSlip,
+    BackOff, Control, ForceHold, Grasp, GripError, Objective, PlanKind, PositionHold, Question, Regrip, Schedule,
+    TimeToSlip,
 };
 use palpate::number::significant;
 
@@ -66,9 +67,10 @@ impl GrippedBody<'_> {
     /// Whether the squeeze holds as long as requested by the best estimate, but not at the lower end of the interval of its time.
     fn rests_on_estimate(&self) -> bool {
         let question = &self.answer.question;
-        let is_short = |low: TimeToSlip| match question.duration {
+        let is_short = |low: TimeToSlip| match wanted(question) {
             Some(wanted) if wanted.is_finite() => !low.covers(wanted),
-            _ => low != TimeToSlip::Never,
+            Some(_) => low != TimeToSlip::Never,
+            None => low == TimeToSlip::After(0.0),
         };
         let low = self.answer.squeeze.as_ref().ok().and_then(|squeeze| squeeze.found.interval).map(|(low, _)| low);
         question.control == Control::Position && question.confidence.is_none() && low.is_some_and(is_short)
@@ -214,6 +216,11 @@ fn of_squeeze(body: &GrippedBody<'_>, found: &PositionHold, holds: bool) -> Stri
     }
 }
 
+/// How long a squeeze is to hold, s: as requested, a minute for the least squeeze; `None` where the question is how long it holds.
+fn wanted(question: &Question) -> Option<f64> {
+    question.duration.or(question.squeeze.is_none().then_some(MINUTE))
+}
+
 /// A time that was requested.
 fn requested(time: f64) -> String {
     if time.is_finite() { lasted(time) } else { "always".to_owned() }
@@ -240,8 +247,7 @@ fn with_confidence(body: &GrippedBody<'_>, found: &PositionHold, what: &str, hol
         time_to_slip(low),
         time_to_slip(high)
     );
-    let wanted = question.duration.or((question.squeeze.is_none()).then_some(MINUTE));
-    Some(match wanted {
+    Some(match wanted(question) {
         _ if low == TimeToSlip::After(0.0) => {
             format!("with {level} confidence nothing is certain of {what}: it may slip at once ({best}).")
         }

@@ -1,6 +1,5 @@
 //! One candidate fitted to a whole record.
 
-use super::material::names;
 use super::prepared::Prepared;
 use super::problem::Problem;
 use super::search::search;
@@ -135,7 +134,7 @@ pub fn calibrate(
         }
         _ => Estimate::fixed(values[index]),
     };
-    let names = names(candidate, prepared.body.levels.len());
+    let names = Material::names(candidate, prepared.body.levels.len());
     let parameters: Vec<MaterialParameter> = names
         .into_iter()
         .enumerate()

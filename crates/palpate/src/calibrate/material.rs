@@ -118,7 +118,7 @@ impl From<Material> for MaterialParts {
 }
 
 impl Body {
-    /// The contact whose parameters are `values`, in the order of [`names`]; `None` where they make none.
+    /// The contact whose parameters are `values`, in the order of [`Material::names`]; `None` where they make none.
     pub(super) fn contact(&self, candidate: Candidate, values: &[f64]) -> Option<Contact> {
         let (stiffness, law) = values.split_at(self.levels.len().max(1));
         let specimen = self.specimen(candidate.equilibrium, stiffness)?;
@@ -176,38 +176,9 @@ impl Body {
     }
 }
 
-/// Names and units of the parameters of a candidate with a table of this many rows.
-pub(super) fn names(candidate: Candidate, rows: usize) -> Vec<(String, MaterialUnit)> {
-    let mut names: Vec<(String, MaterialUnit)> = match candidate.equilibrium {
-        EquilibriumLaw::UniformStrain | EquilibriumLaw::Hertz { .. } => {
-            vec![("modulus_pa".to_owned(), MaterialUnit::Pascal)]
-        }
-        EquilibriumLaw::Table => {
-            (1..=rows).map(|row| (format!("equilibrium_force_{row}_n"), MaterialUnit::Newton)).collect()
-        }
-    };
-    match candidate.law {
-        Law::Latency { .. } => {
-            names.extend([
-                ("exponent".to_owned(), MaterialUnit::One),
-                ("rate_coefficient_per_s".to_owned(), MaterialUnit::PerSecond),
-                ("layer_thickness_m".to_owned(), MaterialUnit::Metre),
-            ]);
-            names.extend(candidate.rate.factor_name().map(|name| (name.to_owned(), MaterialUnit::One)));
-        }
-        _ => {
-            for term in 1..=candidate.terms().unwrap_or(0) {
-                names.push((format!("overshoot_{term}"), MaterialUnit::One));
-                names.push((format!("time_constant_{term}_s"), MaterialUnit::Second));
-            }
-        }
-    }
-    names
-}
-
 impl MaterialParts {
     fn check(&self) -> Result<(), MaterialError> {
-        let expected = names(self.candidate, self.body.levels.len());
+        let expected = Material::names(self.candidate, self.body.levels.len());
         let is_named = expected.len() == self.parameters.len()
             && expected
                 .iter()
@@ -281,7 +252,31 @@ impl Material {
     /// forces, 0 for other laws of it.
     #[must_use]
     pub fn names(candidate: Candidate, rows: usize) -> Vec<(String, MaterialUnit)> {
-        names(candidate, rows)
+        let mut names: Vec<(String, MaterialUnit)> = match candidate.equilibrium {
+            EquilibriumLaw::UniformStrain | EquilibriumLaw::Hertz { .. } => {
+                vec![("modulus_pa".to_owned(), MaterialUnit::Pascal)]
+            }
+            EquilibriumLaw::Table => {
+                (1..=rows).map(|row| (format!("equilibrium_force_{row}_n"), MaterialUnit::Newton)).collect()
+            }
+        };
+        match candidate.law {
+            Law::Latency { .. } => {
+                names.extend([
+                    ("exponent".to_owned(), MaterialUnit::One),
+                    ("rate_coefficient_per_s".to_owned(), MaterialUnit::PerSecond),
+                    ("layer_thickness_m".to_owned(), MaterialUnit::Metre),
+                ]);
+                names.extend(candidate.rate.factor_name().map(|name| (name.to_owned(), MaterialUnit::One)));
+            }
+            _ => {
+                for term in 1..=candidate.terms().unwrap_or(0) {
+                    names.push((format!("overshoot_{term}"), MaterialUnit::One));
+                    names.push((format!("time_constant_{term}_s"), MaterialUnit::Second));
+                }
+            }
+        }
+        names
     }
 
     /// The content, to be changed and checked again.

@@ -6,6 +6,7 @@ use crate::fit::TrendVerdict;
 use crate::forecast::listed;
 use crate::number::{counted, significant, with_interval};
 use crate::record::Column;
+use crate::statistics::coverage_factor;
 
 /// Code, severity, observation, meaning and remedy.
 type Text = (&'static str, Severity, String, &'static str, &'static str);
@@ -459,8 +460,8 @@ impl Finding {
 
 /// A value with its 95 % interval.
 fn with_standard_error(value: f64, error: f64) -> String {
-    const NORMAL: f64 = 1.959_964;
-    with_interval(value, (value - NORMAL * error, value + NORMAL * error))
+    let half = coverage_factor(0.95, f64::INFINITY) * error;
+    with_interval(value, (value - half, value + half))
 }
 
 /// Numbers as people write a list.
