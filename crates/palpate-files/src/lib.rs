@@ -39,4 +39,4 @@ pub mod parquet_table;
 pub mod record;
 pub mod table;
 
-pub use crate::error::{CellPlace, DecimalDoubt, FileError, FileProblem, Foreign};
+pub use crate::error::{CellPosition, DecimalDoubt, FileError, FileProblem, Foreign};

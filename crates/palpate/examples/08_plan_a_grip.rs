@@ -43,7 +43,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let grip = Grip::new(&ball, grasp, Limits::new(PAPER_RATE)?, 0.95)?;
 
     for squeeze in [6.0e-3, 7.0e-3, 8.0e-3] {
-        let holding = grip.holding(&Plan::squeeze(squeeze, PAPER_RATE))?;
+        let holding = grip.position_hold(&Plan::squeeze(squeeze, PAPER_RATE))?;
         let (low, high) = holding.interval.ok_or("no interval")?;
         println!(
             "{:.0} mm: {:.2} N, needs {:.2} N, holds {} ({} to {})",

@@ -43,7 +43,7 @@
 //! let prediction = material.predict(&squeeze, &Sampling::Times(vec![10.0]), 0.95)?;
 //! assert!((prediction.trajectory.force[0] - 1.59).abs() < 0.05);
 //! let grip = Grip::new(&material, Grasp::new(0.1, 0.6)?, Limits::new(0.008)?, 0.95)?;
-//! assert!(matches!(grip.holding(&Plan::squeeze(0.005, 0.008))?.time_to_slip, TimeToSlip::Never));
+//! assert!(matches!(grip.position_hold(&Plan::squeeze(0.005, 0.008))?.time_to_slip, TimeToSlip::Never));
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 

@@ -283,7 +283,7 @@ fn every_dependency_builds_with_our_rust() {
 }
 
 /// Words of this project's own for which the field has one, and that one.
-const REFUSED_WORDS: [(&str, &str); 38] = [
+const REFUSED_WORDS: [(&str, &str); 48] = [
     ("foretell", "predict"),
     ("foretold", "predicted, held-out"),
     ("rival", "alternative"),
@@ -322,6 +322,17 @@ const REFUSED_WORDS: [(&str, &str); 38] = [
     ("surprised", "INNOVATION_LIMIT"),
     ("mended", "repaired"),
     ("lastsdocument", "TimeToSlipDocument"),
+    // Plain English by themselves; as names of types and functions they are not.
+    ("holdingdocument", "PositionHoldDocument"),
+    ("presseddocument", "ForceHoldDocument"),
+    ("fn holding(", "position_hold"),
+    ("cellplace", "CellPosition"),
+    ("keyplace", "KeyPosition"),
+    ("with_deviations", "with_standard_deviations"),
+    ("is_whole", "is_valid, validate"),
+    ("struct shown", "CalibrationRange"),
+    ("that_swells", "that_expands"),
+    ("unasked", "not requested"),
 ];
 
 /// Messages, options, identifiers, snapshots and documents speak the language of the field.

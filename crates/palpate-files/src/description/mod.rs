@@ -37,4 +37,4 @@ pub use test::{
     machines_of, parse_hold_start, parse_test, parse_touch, read_test,
 };
 pub(crate) use text::quoted;
-pub use text::{DescriptionError, DescriptionKind, KeyPlace, KeyProblem};
+pub use text::{DescriptionError, DescriptionKind, KeyPosition, KeyProblem};

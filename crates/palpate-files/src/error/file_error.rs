@@ -14,7 +14,7 @@ use crate::cell::{DecimalMark, Delimiter};
 
 /// Where in a file a cell stands.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct CellPlace {
+pub struct CellPosition {
     /// Line, from 1.
     pub line: usize,
     /// Column, from 1.
@@ -23,7 +23,7 @@ pub struct CellPlace {
     pub name: Option<String>,
 }
 
-impl fmt::Display for CellPlace {
+impl fmt::Display for CellPosition {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let name = self.name.as_ref().map_or_else(String::new, |name| format!(" ({})", shown(name)));
         write!(f, "line {}, column {}{name}", self.line, self.column)
@@ -173,7 +173,7 @@ pub enum FileProblem {
     #[error(", {place}: expected a number with a decimal {decimal}, found `{}`", shown(found))]
     TextInNumbers {
         /// The cell.
-        place: CellPlace,
+        place: CellPosition,
         /// What it holds, shortened.
         found: String,
         /// The decimal mark in force.
@@ -183,13 +183,13 @@ pub enum FileProblem {
     #[error(", {place}: expected a finite number, found `{}`", shown(found))]
     NotFinite {
         /// The cell.
-        place: CellPlace,
+        place: CellPosition,
         /// What it holds.
         found: String,
     },
     /// This cell in a column of numbers holds nothing.
     #[error(", {0}: expected a number, found an empty cell")]
-    EmptyCell(CellPlace),
+    EmptyCell(CellPosition),
     /// A row ends early, or has cells beyond the last column.
     #[error(", line {line}: expected {expected} cells, found {found}")]
     CellCount {

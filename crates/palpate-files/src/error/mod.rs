@@ -13,7 +13,7 @@ mod hint;
 mod shown;
 
 pub(crate) use file_error::shorten;
-pub use file_error::{CellPlace, DecimalDoubt, FileError, FileProblem};
+pub use file_error::{CellPosition, DecimalDoubt, FileError, FileProblem};
 pub use foreign::Foreign;
 pub(crate) use foreign::{mostly_control, recognise_foreign};
 pub(crate) use hint::hint_of_text;

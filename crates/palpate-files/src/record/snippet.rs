@@ -85,9 +85,9 @@ pub(super) fn of_columns(columns: &[ColumnInfo]) -> String {
     }
     let lines = lines.join("\n");
     let has = |quantity| proposed.iter().any(|proposed| proposed.quantity == quantity);
-    let is_whole = (has(Quantity::Force) || has(Quantity::Stress)) && (is_log || has(Quantity::Time));
+    let is_valid = (has(Quantity::Force) || has(Quantity::Stress)) && (is_log || has(Quantity::Time));
     // What a volt stands for is stated in a description alone.
-    if !is_whole || proposed.iter().any(|proposed| is_volts(proposed.unit)) {
+    if !is_valid || proposed.iter().any(|proposed| is_volts(proposed.unit)) {
         return format!("assign the columns in a test description:\n{lines}");
     }
     let entries = proposed.iter().rev().map(|Proposed { quantity, column, unit }| {

@@ -44,8 +44,8 @@ pub(crate) fn is_unseen(block: &Block) -> bool {
 /// The first value that is a thousandth of what comes next to it, in a column that began with whole numbers: 996 and then 1.003, whose
 /// point sets off thousands.
 pub(crate) fn falls_to_a_thousandth(values: &[f64]) -> Option<usize> {
-    let is_whole = |value: f64| value == value.trunc();
-    let first = values.iter().position(|value| !is_whole(*value))?;
+    let is_valid = |value: f64| value == value.trunc();
+    let first = values.iter().position(|value| !is_valid(*value))?;
     let small = |value: f64| {
         let thousandths = 1e3 * value;
         (thousandths - thousandths.round()).abs() < 1e-6 * thousandths.abs().max(1.0)

@@ -342,7 +342,7 @@ impl Keywords {
 }
 
 /// Standard deviations that weights, their inverses, stand for.
-pub(crate) fn deviations(weights: &[f64]) -> Result<Vec<f64>, String> {
+pub(crate) fn standard_deviations(weights: &[f64]) -> Result<Vec<f64>, String> {
     match weights.iter().position(|weight| !(weight.is_finite() && *weight >= 0.0)) {
         Some(index) => {
             let found = weights[index];
@@ -353,20 +353,23 @@ pub(crate) fn deviations(weights: &[f64]) -> Result<Vec<f64>, String> {
 }
 
 /// Those of one column of weights.
-pub(crate) fn deviations_of(weights: Option<&Bound<'_, PyAny>>) -> PyResult<Option<Vec<f64>>> {
+pub(crate) fn standard_deviations_of(weights: Option<&Bound<'_, PyAny>>) -> PyResult<Option<Vec<f64>>> {
     let weights = weights.map(|weights| doubles(weights, "weights")).transpose()?;
-    weights.map(|weights| deviations(&weights).map_err(refused_plainly::<OptionError>)).transpose()
+    weights
+        .map(|weights| standard_deviations(&weights).map_err(refused_plainly::<OptionError>))
+        .transpose()
 }
 
 /// One fit, of samples that are there.
 pub(crate) fn fitted(
     times: &[f64],
     values: &[f64],
-    deviations: Option<&[f64]>,
+    standard_deviations: Option<&[f64]>,
     requested: &Requested,
 ) -> Result<Fit, palpate::fit::FitError> {
     let samples = Samples::new(times, values);
-    let samples = deviations.map_or(samples, |deviations| samples.with_deviations(deviations));
+    let samples = standard_deviations
+        .map_or(samples, |standard_deviations| samples.with_standard_deviations(standard_deviations));
     fit_law(&samples, requested.law, &requested.options)
 }
 
@@ -379,14 +382,16 @@ pub(crate) fn fit_hold<'py>(
     keywords: Keywords,
 ) -> PyResult<PyFit> {
     let (times, values) = (doubles(time_s, "time_s")?, doubles(signal, "signal")?);
-    let deviations = deviations_of(weights)?;
-    if let Some(deviations) = deviations.as_ref().filter(|deviations| deviations.len() != times.len()) {
-        let (weights, times) = (deviations.len(), times.len());
+    let standard_deviations = standard_deviations_of(weights)?;
+    if let Some(standard_deviations) =
+        standard_deviations.as_ref().filter(|standard_deviations| standard_deviations.len() != times.len())
+    {
+        let (weights, times) = (standard_deviations.len(), times.len());
         let message = format!("a fit needs as many weights as times, found {weights} and {times}");
         return Err(refused_plainly::<FitError>(message));
     }
     let requested = keywords.requested()?;
-    let fit = briefly(py, || fitted(&times, &values, deviations.as_deref(), &requested))?;
+    let fit = briefly(py, || fitted(&times, &values, standard_deviations.as_deref(), &requested))?;
     Ok(PyFit {
         fit: fit.map_err(unfitted)?,
     })

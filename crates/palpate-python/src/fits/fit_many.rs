@@ -20,7 +20,7 @@ use pyo3_arrow::input::AnyArray;
 use rayon::prelude::*;
 
 use crate::errors::{OptionError, PalpateError, refused, refused_plainly, unfitted};
-use crate::fits::fit::{Keywords, Requested, deviations, fitted};
+use crate::fits::fit::{Keywords, Requested, fitted, standard_deviations};
 use crate::table::{Column, Table};
 use crate::work::{Heard, at_length_reported};
 
@@ -137,7 +137,7 @@ pub(crate) fn fit_many(
     let one_time = one_for_all(&times, curves, "time_s")?;
     let weights = match weights {
         Some(weights) => {
-            let of_one = |weights: Curve| deviations(&weights?).map(ScalarBuffer::from);
+            let of_one = |weights: Curve| standard_deviations(&weights?).map(ScalarBuffer::from);
             let found: Ragged = ragged(weights, "weights")?.into_iter().map(of_one).collect();
             Some((one_for_all(&found, curves, "weights")?, found))
         }
@@ -148,8 +148,9 @@ pub(crate) fn fit_many(
     let work = move |heard: Heard| -> Result<Vec<Fitted>, Cancelled> {
         let fit = |index: usize| {
             let time = numbers(&times[if one_time { 0 } else { index }])?;
-            let deviations = weights.as_ref().map(|(one, found)| numbers(&found[if *one { 0 } else { index }]));
-            fitted(time, numbers(&values[index])?, deviations.transpose()?, &requested)
+            let standard_deviations =
+                weights.as_ref().map(|(one, found)| numbers(&found[if *one { 0 } else { index }]));
+            fitted(time, numbers(&values[index])?, standard_deviations.transpose()?, &requested)
                 .map_err(|error| error.to_string())
         };
         let one = |index: usize| {

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use palpate::calibrate::Prediction as Predicted;
 use palpate_jobs::output::write_bundle;
 use palpate_jobs::{JobError, MaterialSource, PlanGrip, Results};
-use palpate_report::document::{GripDocument, HoldingDocument};
+use palpate_report::document::{GripDocument, PositionHoldDocument};
 use palpate_report::result::GrippedBody;
 use palpate_report::study::{Bundle, Pictures, StudyError, grip_bundle, grip_figure};
 use pyo3::prelude::*;
@@ -64,7 +64,7 @@ impl Grip {
         Ok(made)
     }
 
-    fn of_squeeze<T>(&self, reported: impl Fn(&HoldingDocument) -> T) -> Option<T> {
+    fn of_squeeze<T>(&self, reported: impl Fn(&PositionHoldDocument) -> T) -> Option<T> {
         self.document.squeeze.as_ref().map(reported)
     }
 }

@@ -5,7 +5,7 @@
 use palpate::calibrate::Prediction as Predicted;
 use palpate::number::significant;
 use palpate_report::document::{
-    BackOffDocument, HoldingDocument, PressedDocument, ScheduleDocument, TimeToSlipDocument,
+    BackOffDocument, ForceHoldDocument, PositionHoldDocument, ScheduleDocument, TimeToSlipDocument,
 };
 use pyo3::prelude::*;
 use serde::{Deserialize, Serialize};
@@ -20,7 +20,7 @@ pub(crate) fn seconds(lasts: TimeToSlipDocument) -> f64 {
 }
 
 /// Ends of the interval of such a time.
-pub(crate) fn slip_interval(found: &HoldingDocument) -> Option<(f64, f64)> {
+pub(crate) fn slip_interval(found: &PositionHoldDocument) -> Option<(f64, f64)> {
     found.interval.map(|[low, high]| (seconds(low), seconds(high)))
 }
 
@@ -60,7 +60,7 @@ macro_rules! part {
 
 part! {
     /// A grip with the displacement held; SI units.
-    PositionHold(HoldingDocument, Option<Predicted>): self {
+    PositionHold(PositionHoldDocument, Option<Predicted>): self {
         /// How the jaws close: "squeeze", "settle" (a force is kept before they are locked) or "back_off".
         kind: String,
         /// Where the jaws turn, m; None but for a retreat.
@@ -146,7 +146,7 @@ part! {
 
 part! {
     /// The force held: it does not relax, the body creeps; SI units.
-    ForceHold(PressedDocument, Predicted): self {
+    ForceHold(ForceHoldDocument, Predicted): self {
         /// The force, N.
         force_n: f64,
         /// How long it is held, s.

@@ -13,7 +13,7 @@ use serde::{Deserialize, Serialize};
 use crate::arrays::doubles;
 use crate::errors::{FitError, OptionError, refused_plainly};
 use crate::files::all_laws;
-use crate::fits::fit::deviations_of;
+use crate::fits::fit::standard_deviations_of;
 use crate::shown::shown;
 use crate::table::{Table, columns};
 use crate::work::{at_length, job, plain, printed};
@@ -62,7 +62,7 @@ pub(crate) fn compare(
     cuts: Option<Vec<f64>>,
 ) -> PyResult<Comparison> {
     let (times, values) = (doubles(time_s, "time_s")?, doubles(signal, "signal")?);
-    let deviations = deviations_of(weights)?;
+    let standard_deviations = standard_deviations_of(weights)?;
     let (quantity, response) = match quantity {
         "force" => (Quantity::Force, Response::Relaxation),
         "strain" => (Quantity::Strain, Response::Relaxation),
@@ -86,7 +86,9 @@ pub(crate) fn compare(
     };
     let compared = at_length(py, move |_| {
         let samples = Samples::new(&times, &values);
-        let samples = deviations.as_deref().map_or(samples, |deviations| samples.with_deviations(deviations));
+        let samples = standard_deviations
+            .as_deref()
+            .map_or(samples, |standard_deviations| samples.with_standard_deviations(standard_deviations));
         compare_laws(&samples, &options)
     })?;
     let compared = compared.map_err(refused_plainly::<FitError>)?;

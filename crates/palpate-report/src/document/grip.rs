@@ -57,7 +57,7 @@ documents! {
     }
 
     /// A position hold.
-    HoldingDocument(found: &PositionHold) with {
+    PositionHoldDocument(found: &PositionHold) with {
         let (kind, over, settling_force, settling) = match found.plan.kind {
             PlanKind::Squeeze { .. } => ("squeeze", None, None, None),
             PlanKind::Settle { force, settling, .. } => ("settle", None, Some(force), Some(settling)),
@@ -119,9 +119,9 @@ documents! {
     /// Overshoot and back off (a preconditioning squeeze).
     BackOffDocument(found: &BackOff) {
         /// The back-off.
-        backed: HoldingDocument = HoldingDocument::new(&found.backed),
+        backed: PositionHoldDocument = PositionHoldDocument::new(&found.backed),
         /// The plain squeeze to the same displacement.
-        plain: HoldingDocument = HoldingDocument::new(&found.plain),
+        plain: PositionHoldDocument = PositionHoldDocument::new(&found.plain),
         /// Time over which the drifts are evaluated, s.
         duration_s: f64 = found.duration,
         /// Change of the force after the back-off, N.
@@ -133,7 +133,7 @@ documents! {
     }
 
     /// The force hold.
-    PressedDocument(found: &ForceHold) {
+    ForceHoldDocument(found: &ForceHold) {
         /// The force, N.
         force_n: f64 = found.force,
         /// How long, s.
@@ -241,14 +241,14 @@ documents! {
         /// The same in a sentence.
         verdict: String = body.verdict(),
         /// The position hold.
-        squeeze: Option<HoldingDocument> = answer.squeeze.as_ref().ok().map(|made| HoldingDocument::new(&made.found)),
+        squeeze: Option<PositionHoldDocument> = answer.squeeze.as_ref().ok().map(|made| PositionHoldDocument::new(&made.found)),
         /// Alternative squeezes.
         neighbours: Vec<NeighbourDocument> = neighbours.collect(),
         /// Overshoot and back off (a preconditioning squeeze).
         back_off: Option<BackOffDocument> = answer.back_off.as_ref().ok().map(|made| BackOffDocument::new(&made.found)),
         /// The force hold.
-        force_held: Option<PressedDocument> =
-            answer.force_hold.as_ref().ok().map(|made| PressedDocument::new(&made.found)),
+        force_held: Option<ForceHoldDocument> =
+            answer.force_hold.as_ref().ok().map(|made| ForceHoldDocument::new(&made.found)),
         /// Schedules of regrips.
         schedule: Option<ScheduleDocument> = schedule.map(|made| ScheduleDocument::new(&made.found)),
         /// Grips without a solution, with reasons.

@@ -61,7 +61,9 @@ pub use comparison::{
     ComparisonDocument, ComparisonSettingsDocument, HoldComparisonDocument, LawDocument, VerdictDocument,
 };
 pub use fit::FitDocument;
-pub use grip::{BackOffDocument, GripDocument, HoldingDocument, PressedDocument, ScheduleDocument, TimeToSlipDocument};
+pub use grip::{
+    BackOffDocument, ForceHoldDocument, GripDocument, PositionHoldDocument, ScheduleDocument, TimeToSlipDocument,
+};
 pub use reproduction::ReproductionDocument;
 pub use software::Software;
 pub use watch::{ObservationDocument, WatchDocument, WatchSummaryDocument, WatchedHoldDocument};

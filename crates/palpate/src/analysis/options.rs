@@ -52,7 +52,7 @@ pub struct AnalysisOptions {
     pub geometry: Option<Geometry>,
     /// How phases are found.
     pub segment: SegmentOptions,
-    /// Corrections of the record that nobody makes unasked.
+    /// Corrections of the record that are made only on request.
     pub corrections: CorrectionOptions,
     /// Holds with given limits; where there are any, no others are sought.
     pub given_holds: Vec<GivenHold>,

@@ -246,13 +246,13 @@ impl Element {
         });
         work.steps += way.taken;
         work.evaluations += way.evaluations;
-        let is_whole = way.taken > 0 && !is_far(way.end.1);
-        if is_first && is_new && is_whole && way.latest < until {
+        let is_valid = way.taken > 0 && !is_far(way.end.1);
+        if is_first && is_new && is_valid && way.latest < until {
             LAST_WAY.set(Some(way.clone()));
         }
         let (steps, end) = (way.steps, way.end);
         let is_longer = is_first || ramps.side != side || side * (ramps.steps[0].from - start) > 0.0;
-        if is_whole && end.0 <= until && (is_longer || reach < ramps.reach) {
+        if is_valid && end.0 <= until && (is_longer || reach < ramps.reach) {
             *ramps = Ramps {
                 side,
                 reach,

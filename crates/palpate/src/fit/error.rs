@@ -27,7 +27,7 @@ pub enum FitError {
     },
     /// An invalid standard deviation.
     #[error("the standard deviation of sample {index} must be above 0, found {found}")]
-    Deviation {
+    StandardDeviation {
         /// Which sample.
         index: usize,
         /// What was given.
@@ -156,9 +156,9 @@ pub enum FitError {
         /// The law.
         law: Law,
     },
-    /// Samples with deviations beside samples without cannot be weighed against each other.
+    /// Samples with standard deviations beside samples without cannot be weighed against each other.
     #[error("either all holds of a joint fit or no hold must have standard deviations; hold {hold} has none")]
-    DeviationsOfSome {
+    StandardDeviationsOfSome {
         /// Number of the first hold without, from 1.
         hold: usize,
     },

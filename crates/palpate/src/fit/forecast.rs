@@ -46,7 +46,7 @@ pub fn forecast(samples: &Samples<'_>, law: Law, options: &LawOptions, cut: f64)
     let first = Samples {
         times: &samples.times[..fitted],
         values: &samples.values[..fitted],
-        deviations: samples.deviations.map(|deviations| &deviations[..fitted]),
+        standard_deviations: samples.standard_deviations.map(|standard_deviations| &standard_deviations[..fitted]),
     };
     let curve = match law {
         Law::Spectrum => spectrum_curve(&first, options)?,

@@ -25,9 +25,9 @@ pub enum Loss {
     /// By their square: least squares.
     #[default]
     Squares,
-    /// By their square up to 1.345 noise deviations, then by their size (Huber).
+    /// By their square up to 1.345 noise standard deviations, then by their size (Huber).
     Huber,
-    /// Less and less, and from 4.685 noise deviations on not at all (Tukey's biweight).
+    /// Less and less, and from 4.685 noise standard deviations on not at all (Tukey's biweight).
     Tukey,
 }
 

@@ -96,7 +96,7 @@ pub struct Fit {
     /// Their covariance s² (JᵀJ)⁻¹ with s² = RSS/(N − p), as if the residuals were white noise; `None` where the data leave a
     /// parameter open.
     pub white_covariance: Option<Vec<Vec<f64>>>,
-    /// χ² = Σ (r/σ)² over the samples fitted, σ = 1 for samples without deviations; under a robust loss too.
+    /// χ² = Σ (r/σ)² over the samples fitted, σ = 1 for samples without standard deviations; under a robust loss too.
     pub residual_square: f64,
     /// Root mean square residual √(Σ r²/N) in the unit of the signal, all samples alike.
     pub rmse: f64,

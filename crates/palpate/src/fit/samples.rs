@@ -25,7 +25,7 @@ pub struct Samples<'a> {
     /// Values.
     pub values: &'a [f64],
     /// Their standard deviations, if they differ.
-    pub deviations: Option<&'a [f64]>,
+    pub standard_deviations: Option<&'a [f64]>,
 }
 
 impl<'a> Samples<'a> {
@@ -35,15 +35,15 @@ impl<'a> Samples<'a> {
         Self {
             times,
             values,
-            deviations: None,
+            standard_deviations: None,
         }
     }
 
     /// The same with a standard deviation for each.
     #[must_use]
-    pub fn with_deviations(self, deviations: &'a [f64]) -> Self {
+    pub fn with_standard_deviations(self, standard_deviations: &'a [f64]) -> Self {
         Self {
-            deviations: Some(deviations),
+            standard_deviations: Some(standard_deviations),
             ..self
         }
     }
@@ -51,16 +51,16 @@ impl<'a> Samples<'a> {
     /// Whether a law with so many parameters can be fitted to these samples at all.
     pub(crate) fn check(&self, parameters: usize) -> Result<(), FitError> {
         FitError::check_lengths(self.times.len(), self.values.len())?;
-        FitError::check_lengths(self.times.len(), self.deviations.map_or(self.times.len(), <[f64]>::len))?;
-        let deviations = self.deviations.unwrap_or(&[]);
-        if let Some(index) = deviations.iter().position(|deviation| deviation.is_nan() || *deviation <= 0.0) {
-            return Err(FitError::Deviation {
+        FitError::check_lengths(self.times.len(), self.standard_deviations.map_or(self.times.len(), <[f64]>::len))?;
+        let standard_deviations = self.standard_deviations.unwrap_or(&[]);
+        if let Some(index) = standard_deviations.iter().position(|deviation| deviation.is_nan() || *deviation <= 0.0) {
+            return Err(FitError::StandardDeviation {
                 index,
-                found: deviations[index],
+                found: standard_deviations[index],
             });
         }
-        let found = match self.deviations {
-            Some(deviations) => deviations.iter().filter(|deviation| deviation.is_finite()).count(),
+        let found = match self.standard_deviations {
+            Some(standard_deviations) => standard_deviations.iter().filter(|deviation| deviation.is_finite()).count(),
             None => self.times.len(),
         };
         FitError::check_samples(parameters, found)?;
@@ -74,10 +74,11 @@ impl<'a> Samples<'a> {
 
     /// These without the samples that may be off by anything, which say nothing; `None` if there is no such sample.
     fn certain(&self) -> Option<[Vec<f64>; 3]> {
-        let deviations = self.deviations.filter(|deviations| !all_finite(deviations))?;
-        let counts = |i: &usize| deviations[*i].is_finite();
+        let standard_deviations =
+            self.standard_deviations.filter(|standard_deviations| !all_finite(standard_deviations))?;
+        let counts = |i: &usize| standard_deviations[*i].is_finite();
         let kept = |column: &[f64]| (0..column.len()).filter(counts).map(|i| column[i]).collect();
-        Some([self.times, self.values, deviations].map(kept))
+        Some([self.times, self.values, standard_deviations].map(kept))
     }
 }
 
@@ -89,7 +90,7 @@ pub(crate) struct Scaled {
     pub(crate) values: Vec<f64>,
     /// Square roots of the weights, one at the root mean square; `None` if all are alike.
     pub(crate) roots: Option<Vec<f64>>,
-    /// Root mean square of 1/σ: what the roots were divided by; 1 without deviations.
+    /// Root mean square of 1/σ: what the roots were divided by; 1 without standard deviations.
     pub(crate) precision: f64,
     /// Time of the first sample, s.
     pub(crate) start: f64,
@@ -105,9 +106,9 @@ impl Scaled {
         let start = samples.times[0];
         let duration = samples.times[samples.times.len() - 1] - start;
         let certain = samples.certain();
-        let samples = certain
-            .as_ref()
-            .map_or(*samples, |[times, values, deviations]| Samples::new(times, values).with_deviations(deviations));
+        let samples = certain.as_ref().map_or(*samples, |[times, values, standard_deviations]| {
+            Samples::new(times, values).with_standard_deviations(standard_deviations)
+        });
         let (times, values) = (samples.times, samples.values);
         let (low, high) = extremes(values);
         FitError::check_change(low, high, values.len())?;
@@ -119,8 +120,8 @@ impl Scaled {
             return Err(FitError::OutOfRange);
         }
         let (per_duration, per_range) = (1.0 / duration, 1.0 / range);
-        let (roots, precision) = samples.deviations.map_or((None, 1.0), |deviations| {
-            let (roots, precision) = roots_of(deviations);
+        let (roots, precision) = samples.standard_deviations.map_or((None, 1.0), |standard_deviations| {
+            let (roots, precision) = roots_of(standard_deviations);
             (Some(roots), precision)
         });
         let mut scaled = shifted(values, center, per_range);
@@ -163,9 +164,9 @@ pub(crate) fn check_finite(columns: [(&'static str, &[f64]); 2]) -> Result<(), F
 }
 
 /// 1/σ over its root mean square, and that, with care for σ near the limits of double precision.
-fn roots_of(deviations: &[f64]) -> (Vec<f64>, f64) {
-    let least = deviations.iter().copied().fold(f64::INFINITY, f64::min);
-    let mut roots: Vec<f64> = deviations.iter().map(|deviation| least / deviation).collect();
+fn roots_of(standard_deviations: &[f64]) -> (Vec<f64>, f64) {
+    let least = standard_deviations.iter().copied().fold(f64::INFINITY, f64::min);
+    let mut roots: Vec<f64> = standard_deviations.iter().map(|deviation| least / deviation).collect();
     let mean_square = roots.iter().map(|root| root * root).sum::<f64>() / roots.len() as f64;
     let size = mean_square.sqrt();
     roots.iter_mut().for_each(|root| *root /= size);

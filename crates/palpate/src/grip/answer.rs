@@ -118,7 +118,7 @@ impl Grip<'_> {
         let squeeze = match question.squeeze {
             Some(displacement) => {
                 super::error::above_zero("squeeze", displacement, " m")?;
-                self.holding(&Plan::squeeze(displacement, self.limits.speed))
+                self.position_hold(&Plan::squeeze(displacement, self.limits.speed))
             }
             None => self.least(question.objective, wanted, question.confidence),
         };

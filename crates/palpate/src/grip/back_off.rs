@@ -71,7 +71,7 @@ impl Grip<'_> {
             None => self.relaxed_squeeze(deepest, by)?,
         };
         let speed = self.limits.speed;
-        let plain = self.holding(&Plan::squeeze(displacement, speed))?;
+        let plain = self.position_hold(&Plan::squeeze(displacement, speed))?;
         let over = self.turning_point(displacement)?;
         let plan = Plan::back_off(over, displacement, speed);
         let drift = |plan: &Plan| -> Result<f64, GripError> {
@@ -82,7 +82,7 @@ impl Grip<'_> {
             drift: drift(&plan)?,
             plain_drift: drift(&plain.plan)?,
             sensitivities: self.sensitivities(displacement, over),
-            backed: self.holding(&plan)?,
+            backed: self.position_hold(&plan)?,
             plain,
             over,
             duration,

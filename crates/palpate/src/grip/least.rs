@@ -81,7 +81,7 @@ impl Grip<'_> {
             }
         }
         match (best, none) {
-            (Some((_, _, plan)), _) => self.holding(&plan),
+            (Some((_, _, plan)), _) => self.position_hold(&plan),
             (None, Some(error)) => Err(error),
             (None, None) => Err(self.no_squeeze(0.0, duration, "nothing was tried".to_owned())),
         }

@@ -6,7 +6,7 @@
 //! | `limits.rs` | what the gripper can do |
 //! | `plan.rs` | ways to close it |
 //! | `time_to_slip.rs` | how long a hold lasts |
-//! | `holding.rs` | how long a squeeze holds, with an interval |
+//! | `position_hold.rs` | how long a squeeze holds, with an interval |
 //! | `least.rs` | the least squeeze, peak force or work that holds long enough |
 //! | `back_off.rs` | squeeze over, go back, and the force stays where it is |
 //! | `force_hold.rs` | the same grasp with the force held |
@@ -22,10 +22,10 @@ mod back_off;
 mod error;
 mod force_hold;
 mod grasp;
-mod holding;
 mod least;
 mod limits;
 mod plan;
+mod position_hold;
 mod regrip;
 mod time_to_slip;
 
@@ -35,12 +35,12 @@ pub use error::GripError;
 use error::{above_zero, at_least, check, check_confidence};
 pub use force_hold::ForceHold;
 pub use grasp::{Grasp, STANDARD_GRAVITY};
-pub use holding::{Grip, PositionHold};
-use holding::{beyond, peak};
 pub use least::Objective;
 use least::{bisected, check_duration};
 pub use limits::Limits;
 pub use plan::{Plan, PlanKind};
+pub use position_hold::{Grip, PositionHold};
+use position_hold::{beyond, peak};
 pub use regrip::{Band, Move, Regrip, Schedule};
 use time_to_slip::ALWAYS;
 pub use time_to_slip::TimeToSlip;

@@ -5,7 +5,7 @@
 //! | file | what | equations |
 //! |---|---|---|
 //! | `options.rs`, `observation.rs`, `error.rs` | options, results, errors | |
-//! | `observer.rs`, `saying.rs` | from tick to tick: phase, hold, fit; the resulting observation and warnings | |
+//! | `observer.rs`, `report.rs` | from tick to tick: phase, hold, fit; the resulting observation and warnings | |
 //! | `signal/` | noise of a signal, the signal without most of it; that a jaw, or a force, stands still | |
 //! | `hold/` | a hold of any length in 64 means, fitted, and the time when its force has fallen to that of slip | (4), (5) |
 //! | `filter.rs` | a calibrated body run beside the record | (10), (11) |
@@ -57,7 +57,7 @@ mod normal;
 mod observation;
 mod observer;
 mod options;
-mod saying;
+mod report;
 mod signal;
 
 pub use error::ObserveError;

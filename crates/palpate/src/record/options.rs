@@ -17,7 +17,7 @@ pub enum SkewChoice {
     Given(f64),
 }
 
-/// Corrections of a record that nobody makes unasked; they are made in this order.
+/// Corrections of a record that are made only on request; they are made in this order.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 #[serde(default)]
 pub struct CorrectionOptions {

@@ -166,7 +166,7 @@ impl Layer for Latency<'_> {
     type Behind = f64;
     type Moving = Parts;
     type Known = Ramps;
-    type Pressed = Forced;
+    type Forced = Forced;
     type Surface = Surface;
 
     fn specimen(&self) -> &Specimen {
@@ -249,7 +249,7 @@ impl Layer for Latency<'_> {
         lost(piece.ends(), end - start, speed, strain, gain).map(|elapsed| start + elapsed)
     }
 
-    fn pressed(
+    fn forced(
         &self,
         forces: (f64, f64),
         &behind: &f64,

@@ -29,7 +29,7 @@ pub(super) trait Layer {
     /// What such pieces leave to later ones.
     type Known: Default;
     /// The layer under a force that goes straight.
-    type Pressed: UnderForce<Excess = Self::Excess, Behind = Self::Behind>;
+    type Forced: UnderForce<Excess = Self::Excess, Behind = Self::Behind>;
     /// The surface without a jaw.
     type Surface: Clone;
 
@@ -74,13 +74,13 @@ pub(super) trait Layer {
     /// When (s) the strain of the layer reaches zero in a piece between two times, with the jaw at `jaw` and going at `speed` (m/s).
     fn loss(&self, piece: &Self::Moving, times: (f64, f64), speed: f64, jaw: &impl Fn(f64) -> f64) -> Option<f64>;
 
-    fn pressed(
+    fn forced(
         &self,
         forces: (f64, f64),
         behind: &Self::Behind,
         duration: f64,
         work: &mut SimulationWork,
-    ) -> Result<Self::Pressed, Stopped>;
+    ) -> Result<Self::Forced, Stopped>;
 
     /// The surface that the jaw leaves at contact displacement `u` (m); `None` if the numbers ran out.
     fn left(&self, excess: &Self::Excess, u: f64) -> Option<Self::Surface>;

@@ -28,7 +28,7 @@ pub(crate) const LAWS: [&str; 17] = [
 const MOST: usize = 60;
 
 /// Whether nothing in a fit is NaN.
-pub(crate) fn is_whole(fit: &Fit) -> bool {
+pub(crate) fn is_valid(fit: &Fit) -> bool {
     let errors = fit.white_covariance.iter().flatten().flatten().copied();
     let numbers = fit.parameters.iter().flat_map(|number| {
         let (low, high) = number.estimate.interval.unwrap_or((0.0, 0.0));
@@ -69,11 +69,11 @@ pub(crate) fn fit_any(bytes: &[u8]) {
             *step = time;
         });
     }
-    let (values, deviations) = (&rest[..count], &rest[count..2 * count]);
+    let (values, standard_deviations) = (&rest[..count], &rest[count..2 * count]);
     let samples = Samples::new(&times, values);
-    let samples = if bit(*form, 1) { samples.with_deviations(deviations) } else { samples };
+    let samples = if bit(*form, 1) { samples.with_standard_deviations(standard_deviations) } else { samples };
     if let Ok(fit) = fit_law(&samples, law, &options) {
-        assert!(fit.termination != Termination::Converged || is_whole(&fit), "{fit:?}");
+        assert!(fit.termination != Termination::Converged || is_valid(&fit), "{fit:?}");
     }
 }
 

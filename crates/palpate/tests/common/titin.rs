@@ -52,7 +52,7 @@ fn read(name: &str) -> Result<Record, String> {
 impl Record {
     /// The hold with its standard deviations.
     pub(crate) fn samples(&self) -> Samples<'_> {
-        Samples::new(&self.hold[0], &self.hold[1]).with_deviations(&self.hold[2])
+        Samples::new(&self.hold[0], &self.hold[1]).with_standard_deviations(&self.hold[2])
     }
 
     /// The loading, linear in the length.

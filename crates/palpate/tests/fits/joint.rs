@@ -171,9 +171,9 @@ fn holds_that_cannot_be_fitted_are_named() {
     let flat = vec![1.0; 40];
     let error = fit_joint(&[Samples::new(&times, &flat), good], sls, &options).unwrap_err();
     assert!(matches!(error, FitError::Hold { hold: 1, .. }), "{error}");
-    let deviations = vec![1.0; 40];
-    let error = fit_joint(&[good.with_deviations(&deviations), good], sls, &options).unwrap_err();
-    assert_eq!(error, FitError::DeviationsOfSome { hold: 2 });
+    let standard_deviations = vec![1.0; 40];
+    let error = fit_joint(&[good.with_standard_deviations(&standard_deviations), good], sls, &options).unwrap_err();
+    assert_eq!(error, FitError::StandardDeviationsOfSome { hold: 2 });
     let creep = JointOptions {
         response: Response::Creep,
         ..options
@@ -187,23 +187,28 @@ fn holds_that_cannot_be_fitted_are_named() {
 fn deviations_and_noisy_holds_count_less() {
     let (_, cases) = cases();
     let case = &cases[2];
-    // All deviations alike change nothing, however large.
-    let deviations: Vec<Vec<f64>> = case.holds.iter().map(|hold| vec![7e5; hold.t.len()]).collect();
-    let same: Vec<Samples<'_>> =
-        case.samples().into_iter().zip(&deviations).map(|(s, d)| s.with_deviations(d)).collect();
+    // All standard deviations alike change nothing, however large.
+    let standard_deviations: Vec<Vec<f64>> = case.holds.iter().map(|hold| vec![7e5; hold.t.len()]).collect();
+    let same: Vec<Samples<'_>> = case
+        .samples()
+        .into_iter()
+        .zip(&standard_deviations)
+        .map(|(s, d)| s.with_standard_deviations(d))
+        .collect();
     let plain = fit_joint(&case.samples(), case.law(), &JointOptions::default()).unwrap();
     let weighed = fit_joint(&same, case.law(), &JointOptions::default()).unwrap();
     let error = plain.shared[0].estimate.white_standard_error.unwrap();
     assert!((plain.shared[0].estimate.value - weighed.shared[0].estimate.value).abs() < 1e-6 * error);
     assert!((weighed.residual_square / plain.residual_square - 1.0).abs() < 1e-9);
-    // A hold that is left out by its deviations leaves the parameter to the others.
+    // A hold that is left out by its standard_deviations leaves the parameter to the others.
     let few: Vec<Vec<f64>> = case
         .holds
         .iter()
         .enumerate()
         .map(|(i, h)| vec![if i == 0 { 1e6 } else { 1.0 }; h.t.len()])
         .collect();
-    let without: Vec<Samples<'_>> = case.samples().into_iter().zip(&few).map(|(s, d)| s.with_deviations(d)).collect();
+    let without: Vec<Samples<'_>> =
+        case.samples().into_iter().zip(&few).map(|(s, d)| s.with_standard_deviations(d)).collect();
     let without = fit_joint(&without, case.law(), &JointOptions::default()).unwrap();
     let others = fit_joint(&case.samples()[1..], case.law(), &JointOptions::default()).unwrap();
     assert!((without.shared[0].estimate.value - others.shared[0].estimate.value).abs() < 1e-4 * error);

@@ -9,7 +9,7 @@ use palpate::test_problems::Rng;
 const NOISE: f64 = 0.01;
 const TRUTH: [f64; 3] = [2.0, 1.0, -0.916_290_731_874_155]; // ln 0.4
 
-/// 2 + exp(−0.4 t) over 10 s with normal noise; every `tenth` sample, if any, is off by 8 to 40 noise deviations, mostly upwards.
+/// 2 + exp(−0.4 t) over 10 s with normal noise; every `tenth` sample, if any, is off by 8 to 40 noise standard deviations, mostly upwards.
 fn hold(seed: u64, tenth: bool) -> (Vec<f64>, Vec<f64>) {
     let mut random = Rng::new(seed);
     let times: Vec<f64> = (0..200).map(|i| f64::from(i) * 0.05).collect();

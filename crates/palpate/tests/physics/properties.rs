@@ -422,7 +422,7 @@ fn columns() -> impl Strategy<Value = (Vec<f64>, Vec<f64>, Vec<f64>)> {
 }
 
 /// No number of a converged fit may be NaN.
-fn is_whole(fit: &LatencyFit) -> bool {
+fn is_valid(fit: &LatencyFit) -> bool {
     let estimates = [fit.exponent(), fit.equilibrium(), fit.amplitude(), fit.relative_rate(), fit.rate_coefficient()];
     let sound = |number: f64| !number.is_nan();
     let whole = estimates.iter().all(|estimate| {
@@ -447,14 +447,14 @@ proptest! {
     #[test]
     fn no_columns_make_a_fit_panic((times, values, _) in columns(), choice in choices()) {
         if let Ok(fit) = fit_hold(&times, &values, choice, &FitOptions::default()) {
-            prop_assert!(fit.termination != Termination::Converged || is_whole(&fit), "{fit:?}");
+            prop_assert!(fit.termination != Termination::Converged || is_valid(&fit), "{fit:?}");
         }
     }
 
     #[test]
     fn no_columns_make_a_fit_of_rates_panic((_, strains, rates) in columns(), choice in choices()) {
         if let Ok(fit) = fit_rates(&strains, &rates, choice, &FitOptions::default()) {
-            prop_assert!(fit.termination != Termination::Converged || is_whole(&fit), "{fit:?}");
+            prop_assert!(fit.termination != Termination::Converged || is_valid(&fit), "{fit:?}");
         }
         let _ = strain_rates(&strains, &rates, &RateWindow::default());
     }
@@ -487,7 +487,7 @@ proptest! {
         let values: Vec<f64> = times.iter().map(value).collect();
         let choice = if free { ExponentChoice::Free } else { ExponentChoice::Fixed(n) };
         if let Ok(fit) = fit_hold(&times, &values, choice, &FitOptions::default()) {
-            prop_assert!(is_whole(&fit) || !fit.termination.is_good(), "{fit:?}");
+            prop_assert!(is_valid(&fit) || !fit.termination.is_good(), "{fit:?}");
             let errors = [fit.equilibrium(), fit.amplitude(), fit.relative_rate()].map(|estimate| estimate.white_standard_error);
             if !fit.termination.is_good() {
                 prop_assert_eq!(errors, [None; 3], "errors on numbers that are not determined");
@@ -505,7 +505,7 @@ fn times_of_any_scale_do_not_panic() {
             let values: Vec<f64> = (0..9).map(|i| unit * (1.0 / (1.0 + f64::from(i)) - 0.5)).collect();
             for choice in [ExponentChoice::Free, ExponentChoice::Fixed(0.5), ExponentChoice::Fixed(5.0)] {
                 if let Ok(fit) = fit_hold(&times, &values, choice, &FitOptions::default()) {
-                    assert!(is_whole(&fit) || !fit.termination.is_good(), "{times:?} {values:?}: {fit:?}");
+                    assert!(is_valid(&fit) || !fit.termination.is_good(), "{times:?} {values:?}: {fit:?}");
                 }
             }
         }

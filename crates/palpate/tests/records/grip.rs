@@ -116,7 +116,7 @@ fn it_slips_when_the_closed_form_of_the_hold_says_so() {
     let material = ball(None);
     let grip = grip(&material, 0.25);
     for displacement in [0.0045, 0.005, 0.006] {
-        let found = grip.holding(&Plan::squeeze(displacement, SPEED)).unwrap();
+        let found = grip.position_hold(&Plan::squeeze(displacement, SPEED)).unwrap();
         // F = E A (ε_e + x) with x from its value at the start of the hold by equation (4).
         let u = displacement / 2.0;
         let stiffness = 28e3 * std::f64::consts::PI * (2.0 * 0.035 * u - u * u);
@@ -134,9 +134,9 @@ fn it_slips_when_the_closed_form_of_the_hold_says_so() {
         let slope = (seconds(times[1].1) / seconds(times[0].1)).ln() / (more - less);
         assert!((found.sharpness.unwrap() / slope - 1.0).abs() < 1e-3);
     }
-    let shallow = grip.holding(&Plan::squeeze(0.003, SPEED)).unwrap();
+    let shallow = grip.position_hold(&Plan::squeeze(0.003, SPEED)).unwrap();
     assert_eq!((shallow.time_to_slip, shallow.sharpness), (TimeToSlip::After(0.0), None));
-    let deep = grip.holding(&Plan::squeeze(0.008, SPEED)).unwrap();
+    let deep = grip.position_hold(&Plan::squeeze(0.008, SPEED)).unwrap();
     assert!(
         deep.time_to_slip == TimeToSlip::Never
             && deep.equilibrium_force > deep.needed_force
@@ -149,7 +149,7 @@ fn the_interval_of_the_time_is_where_the_edges_of_the_band_slip() {
     let material = ball(Some([0.02, 0.01, 0.05, 0.01]));
     let grip = grip(&material, 0.25);
     let plan = Plan::squeeze(0.005, SPEED);
-    let found = grip.holding(&plan).unwrap();
+    let found = grip.position_hold(&plan).unwrap();
     let (low, high) = found.interval.unwrap();
     assert!(low < found.time_to_slip && found.time_to_slip < high, "{found:?}");
     for (time, edge) in [(seconds(low), 0), (seconds(high), 1)] {
@@ -159,7 +159,7 @@ fn the_interval_of_the_time_is_where_the_edges_of_the_band_slip() {
         assert!((force / found.needed_force - 1.0).abs() < 1e-9, "{force} {}", found.needed_force);
     }
     // Near to where it holds always, the later end is open.
-    let near = grip.holding(&Plan::squeeze(0.0069, SPEED)).unwrap();
+    let near = grip.position_hold(&Plan::squeeze(0.0069, SPEED)).unwrap();
     assert!(near.time_to_slip != TimeToSlip::Never && near.interval.unwrap().1 == TimeToSlip::Never, "{near:?}");
 }
 
@@ -173,7 +173,7 @@ fn the_least_squeeze_holds_as_long_as_was_requested_and_less_does_not() {
             let PlanKind::Squeeze { displacement, speed } = least.plan.kind else {
                 panic!("{least:?}")
             };
-            let less = grip.holding(&Plan::squeeze(displacement * (1.0 - 1e-4), speed)).unwrap();
+            let less = grip.position_hold(&Plan::squeeze(displacement * (1.0 - 1e-4), speed)).unwrap();
             assert!(!less.time_to_slip.covers(duration.min(3.1e8)), "{less:?}");
             // Of the other objectives none squeezes less, each has least of its own.
             let [peak, work] =
@@ -242,7 +242,10 @@ fn a_retreat_with_a_confidence_holds_with_the_lower_end_of_its_interval() {
     let grip = grip(&material, 0.25);
     let [best, confident] = [None, Some(0.95)].map(|confidence| grip.back_off(None, 3600.0, confidence).unwrap());
     assert_eq!(best.backed.interval.unwrap().0, TimeToSlip::After(0.0));
-    assert!(grip.holding(&confident.backed.plan).unwrap().interval.unwrap().0.covers(3600.0), "{confident:?}");
+    assert!(
+        grip.position_hold(&confident.backed.plan).unwrap().interval.unwrap().0.covers(3600.0),
+        "{confident:?}"
+    );
     let less = grip.back_off(Some(confident.backed.displacement * (1.0 - 1e-5)), 3600.0, None).unwrap();
     assert!(!less.backed.interval.unwrap().0.covers(3600.0), "{less:?}");
     // Not more than a few standard errors of the equilibrium force, which rises with the square of the squeeze.
@@ -326,7 +329,7 @@ fn impossible_grasps_are_answers_and_wrong_numbers_are_not() {
         careful.back_off(None, 60.0, None),
         Err(GripError::NoBackOff { .. } | GripError::BeyondLimit { .. })
     ));
-    assert!(matches!(careful.holding(&Plan::squeeze(0.008, SPEED)), Err(GripError::BeyondLimit { .. })));
+    assert!(matches!(careful.position_hold(&Plan::squeeze(0.008, SPEED)), Err(GripError::BeyondLimit { .. })));
     let mut parts = ball(None).into_parts();
     parts.body.separation = Separation::Bonded;
     let bonded = Material::new(parts).unwrap();
@@ -442,7 +445,7 @@ fn forces_and_squeezes_beyond_the_body_are_answers() {
         let refused = grip.force_hold(Some(force), 60.0).unwrap_err();
         assert!(matches!(refused, GripError::BeyondLimit { name: "force", limit, .. } if limit > 100.0), "{refused}");
     }
-    let refused = grip.holding(&Plan::squeeze(0.08, SPEED)).unwrap_err();
+    let refused = grip.position_hold(&Plan::squeeze(0.08, SPEED)).unwrap_err();
     assert_eq!(refused.to_string(), "a squeeze of 80.00 mm is beyond the limit of 70.00 mm");
     let heavy = self::grip(&material, 250.0).force_hold(None, 60.0).unwrap_err();
     assert!(matches!(heavy, GripError::NoSqueeze { reached, .. } if reached > 100.0), "{heavy}");

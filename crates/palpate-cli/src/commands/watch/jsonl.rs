@@ -5,11 +5,11 @@ use std::io::{self, Write};
 use palpate_jobs::{HoldObserved, Observed};
 use palpate_report::document::{WatchDocument, WatchSummaryDocument};
 
-use super::Shown;
+use super::Output;
 
 pub(super) struct Jsonl;
 
-impl Shown for Jsonl {
+impl Output for Jsonl {
     fn see(&mut self, out: &mut dyn Write, observed: &Observed) -> io::Result<()> {
         observed.document().map_or(Ok(()), |document| line(out, &document))
     }

@@ -8,14 +8,14 @@ use palpate_report::number::significant;
 use palpate_report::result::word;
 use palpate_report::table::{Cell, Table};
 
-use super::Shown;
+use super::Output;
 use super::words::{slip, state, uncertain, with_normal_interval};
 
 pub(super) struct Lines {
     pub(super) slip_force: Option<f64>,
 }
 
-impl Shown for Lines {
+impl Output for Lines {
     fn see(&mut self, out: &mut dyn Write, observed: &Observed) -> io::Result<()> {
         let observed = match observed {
             Observed::Tick(observed, true) => observed,

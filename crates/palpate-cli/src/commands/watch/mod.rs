@@ -26,7 +26,7 @@ use crate::progress::Bars;
 use crate::terminal::{note, notes, print_with};
 
 /// Where observations go.
-trait Shown {
+trait Output {
     /// A tick, with whether it is one of those that were requested, or something that happened.
     fn see(&mut self, out: &mut dyn Write, observed: &Observed) -> io::Result<()>;
     /// The holds of the log.
@@ -59,7 +59,7 @@ pub(crate) fn run(arguments: &WatchArguments) -> Result<Verdict, JobError> {
     }
     let on_terminal = io::stdout().is_terminal() && arguments.format == WatchFormat::Text;
     let speed = arguments.speed.or(on_terminal.then_some(10.0)).filter(|times| times.is_finite());
-    let mut shown: Box<dyn Shown> = match arguments.format {
+    let mut shown: Box<dyn Output> = match arguments.format {
         WatchFormat::Jsonl => Box::new(jsonl::Jsonl),
         WatchFormat::Text if on_terminal => Box::new(view::View::new(&log, record.time(), speed, arguments.slip_force)),
         WatchFormat::Text => Box::new(lines::Lines {

@@ -10,7 +10,7 @@ use palpate_jobs::{Event, HoldObserved, Observed};
 use palpate_report::number::significant;
 use palpate_report::sparkline::sparkline;
 
-use super::Shown;
+use super::Output;
 use super::lines::{reported, scaled, summary, warning};
 use super::words::{slip, state, uncertain};
 
@@ -124,7 +124,7 @@ impl View {
     }
 }
 
-impl Shown for View {
+impl Output for View {
     fn see(&mut self, out: &mut dyn Write, observed: &Observed) -> io::Result<()> {
         let observed = match observed {
             Observed::Tick(observed, _) => observed,

@@ -1,4 +1,4 @@
-//! The tables `[clock]`, `[force]` and `[machine]` of a test: corrections that nobody makes unasked.
+//! The tables `[clock]`, `[force]` and `[machine]` of a test: corrections that are made only on request.
 
 use palpate::{
     record::{Baseline, Compliance, ComplianceTable, CorrectionOptions, SkewChoice},

@@ -12,7 +12,7 @@ pub(crate) const BELIEVABLE: &str = "as bodies have it";
 
 /// Where in a description a key stands.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct KeyPlace {
+pub struct KeyPosition {
     /// The file.
     pub path: PathBuf,
     /// Line, from 1, where it is known. A key that is missing stands on the line of its table.
@@ -21,7 +21,7 @@ pub struct KeyPlace {
     pub key: String,
 }
 
-impl fmt::Display for KeyPlace {
+impl fmt::Display for KeyPosition {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let line = self.line.map_or_else(String::new, |line| format!(", line {line}"));
         let key = if self.key.is_empty() { String::new() } else { format!(": {}", shown(&self.key)) };
@@ -82,7 +82,7 @@ pub enum DescriptionError {
     #[error("{place}{problem}")]
     Key {
         /// The key.
-        place: KeyPlace,
+        place: KeyPosition,
         /// What is wrong with it.
         problem: KeyProblem,
     },

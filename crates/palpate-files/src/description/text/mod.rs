@@ -16,7 +16,7 @@ pub(super) mod quantity;
 pub(super) mod source;
 pub(super) mod words;
 
-pub use error::{DescriptionError, KeyPlace, KeyProblem};
+pub use error::{DescriptionError, KeyPosition, KeyProblem};
 pub use kind::DescriptionKind;
 
 /// A text as TOML writes it.

@@ -6,7 +6,7 @@ use palpate::units::{self, Dimension, UnitError};
 use serde::de::DeserializeOwned;
 
 use super::{
-    error::{BELIEVABLE, DescriptionError, KeyPlace, KeyProblem},
+    error::{BELIEVABLE, DescriptionError, KeyPosition, KeyProblem},
     kind::DescriptionKind as Kind,
     places::Places,
     quantity::QuantityText,
@@ -70,11 +70,11 @@ impl Source<'_> {
         T::deserialize(tables).map_err(|error| self.unfit(&error))
     }
 
-    pub(crate) fn place(&self, key: impl Into<String>) -> KeyPlace {
+    pub(crate) fn place(&self, key: impl Into<String>) -> KeyPosition {
         let places = Places::of(self.text);
         let key = places.numbered(key.into());
         let start = places.start_of(&key);
-        KeyPlace {
+        KeyPosition {
             path: self.path.to_owned(),
             line: start.map(|start| self.line_and_column(start).0),
             key,

@@ -3,7 +3,7 @@
 use super::curve::Curve;
 use crate::{
     cell::{DecimalMark, number},
-    error::{CellPlace, FileError, FileProblem, shorten},
+    error::{CellPosition, FileError, FileProblem, shorten},
     input::{Encoding, Input, LineReader},
     table::{Columns, Found, ReadPart, SkippedPart},
 };
@@ -57,15 +57,15 @@ impl Rows {
     }
 }
 
-fn place(line: usize, index: usize, name: Option<&String>) -> CellPlace {
-    CellPlace {
+fn place(line: usize, index: usize, name: Option<&String>) -> CellPosition {
+    CellPosition {
         line,
         column: index + 1,
         name: name.cloned(),
     }
 }
 
-fn no_number(cell: &[u8], place: CellPlace) -> FileProblem {
+fn no_number(cell: &[u8], place: CellPosition) -> FileProblem {
     let found = shorten(&String::from_utf8_lossy(cell));
     let decimal = DecimalMark::Point;
     match number::is_not_finite(cell) {

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use crate::{
     cell::{Cell, Fields, date, number},
-    error::{CellPlace, FileError, FileProblem, shorten},
+    error::{CellPosition, FileError, FileProblem, shorten},
     table::{ColumnKind, Layout, block},
 };
 
@@ -203,7 +203,7 @@ impl<'a> RowPlan<'a> {
     }
 
     fn bad_cell(&self, index: usize, line: &[u8], number: usize) -> FileProblem {
-        let place = CellPlace {
+        let place = CellPosition {
             line: number,
             column: index + 1,
             name: self.layout.columns.get(index).and_then(|column| column.name.clone()),

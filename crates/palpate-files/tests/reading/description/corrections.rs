@@ -8,7 +8,7 @@ use palpate::{
 use super::{says, test};
 
 #[test]
-fn nothing_is_corrected_unasked() {
+fn nothing_is_corrected_without_a_request() {
     assert_eq!(test("").unwrap().analysis.corrections, CorrectionOptions::default());
     let nothing = "clock.skew = \"report\"\nforce.baseline = \"none\"";
     assert_eq!(test(nothing).unwrap().analysis.corrections, CorrectionOptions::default());

@@ -35,7 +35,7 @@ use crate::watch::{Cancelled, Progress, Unwatched, Watch};
 /// ```
 ///
 /// # Errors
-/// [`FitError::TooFewHolds`], [`FitError::NothingShared`] (a spectrum has its times given), [`FitError::DeviationsOfSome`], and
+/// [`FitError::TooFewHolds`], [`FitError::NothingShared`] (a spectrum has its times given), [`FitError::StandardDeviationsOfSome`], and
 /// [`FitError::Hold`] with the number of the hold that cannot be fitted and why.
 pub fn fit_joint(holds: &[Samples<'_>], law: Law, options: &JointOptions) -> Result<JointFit, FitError> {
     fit_joint_watched(holds, law, options, &mut Unwatched)
@@ -55,10 +55,10 @@ pub fn fit_joint_watched(
     if holds.len() < 2 {
         return Err(FitError::TooFewHolds { found: holds.len() });
     }
-    if let Some(without) = holds.iter().position(|hold| hold.deviations.is_none())
-        && holds.iter().any(|hold| hold.deviations.is_some())
+    if let Some(without) = holds.iter().position(|hold| hold.standard_deviations.is_none())
+        && holds.iter().any(|hold| hold.standard_deviations.is_some())
     {
-        return Err(FitError::DeviationsOfSome { hold: without + 1 });
+        return Err(FitError::StandardDeviationsOfSome { hold: without + 1 });
     }
     let mut work = Work::default();
     let law_options = law_options(law, options);
@@ -128,16 +128,16 @@ fn joined(samples: &[Samples<'_>], alone: Vec<Fitted>, law: Law, options: &Joint
 fn log_weights(samples: &[Samples<'_>], alone: &[Fitted], weights: HoldWeights) -> Vec<f64> {
     // No hold counts as more exact than this share of its range.
     const FLOOR: f64 = 1e-9;
-    let own = |(hold, fitted): (&Samples<'_>, &Fitted)| match (weights, hold.deviations) {
+    let own = |(hold, fitted): (&Samples<'_>, &Fitted)| match (weights, hold.standard_deviations) {
         (HoldWeights::SeparateVariance, _) => {
             let parameters = fitted.solution.linear.len() + fitted.solution.nonlinear.len();
             let variance = fitted.solution.residual_square / (fitted.scaled.times.len() - parameters) as f64;
             -(variance.sqrt().max(FLOOR)).ln() - fitted.scaled.range.ln()
         }
         // The root mean square of 1/σ, which the hold's own weights were divided by.
-        (HoldWeights::Equal, Some(deviations)) => {
-            let least = deviations.iter().copied().fold(f64::INFINITY, f64::min);
-            let squares: Vec<f64> = deviations.iter().map(|deviation| (least / deviation).powi(2)).collect();
+        (HoldWeights::Equal, Some(standard_deviations)) => {
+            let least = standard_deviations.iter().copied().fold(f64::INFINITY, f64::min);
+            let squares: Vec<f64> = standard_deviations.iter().map(|deviation| (least / deviation).powi(2)).collect();
             0.5 * mean(&squares).ln() - least.ln()
         }
         (HoldWeights::Equal, None) => 0.0,

@@ -91,10 +91,10 @@ impl Chosen {
     fn samples<'a>(&'a self, all: &Samples<'a>) -> Samples<'a> {
         match &self.0 {
             None => *all,
-            Some([times, values, deviations]) => Samples {
+            Some([times, values, standard_deviations]) => Samples {
                 times,
                 values,
-                deviations: all.deviations.map(|_| deviations.as_slice()),
+                standard_deviations: all.standard_deviations.map(|_| standard_deviations.as_slice()),
             },
         }
     }
@@ -118,6 +118,6 @@ fn chosen(samples: &Samples<'_>, choice: SampleChoice) -> Result<Chosen, FitErro
         }
     }
     let pick = |column: &[f64]| kept.iter().map(|i| column[*i]).collect::<Vec<f64>>();
-    let deviations = samples.deviations.map_or_else(Vec::new, pick);
-    Ok(Chosen(Some([pick(times), pick(samples.values), deviations])))
+    let standard_deviations = samples.standard_deviations.map_or_else(Vec::new, pick);
+    Ok(Chosen(Some([pick(times), pick(samples.values), standard_deviations])))
 }

@@ -11,10 +11,10 @@ use crate::fit::{FitError, Fitted, LawOptions, Loss, Scaled, search};
 use crate::optimise::{Ending, Solution, Termination, Work, polished, refine, standing};
 use crate::statistics::mean;
 
-/// Huber's bound, in noise deviations: 95 % efficiency on normal noise.
+/// Huber's bound, in noise standard deviations: 95 % efficiency on normal noise.
 const HUBER: f64 = 1.345;
 
-/// Tukey's bound, in noise deviations: 95 % efficiency on normal noise.
+/// Tukey's bound, in noise standard deviations: 95 % efficiency on normal noise.
 const TUKEY: f64 = 4.685;
 
 /// A median absolute deviation of normal noise is this much of its standard deviation, in the four digits of the literature.
@@ -139,7 +139,7 @@ fn variance(loss: Loss, scale: f64, solution: &Solution) -> f64 {
     (correction * scale / steepness).powi(2) * influence / (count - free)
 }
 
-/// ψ(u)/u: what a residual of u noise deviations counts.
+/// ψ(u)/u: what a residual of u noise standard deviations counts.
 fn weight(loss: Loss, u: f64) -> f64 {
     match loss {
         Loss::Squares => 1.0,

@@ -1,6 +1,6 @@
 //! A linear contact as the walk through a drive asks for it.
 
-use super::{LinearContact, Memory, Moving, Pressed, Surface};
+use super::{Forced, LinearContact, Memory, Moving, Surface};
 use crate::contact::{Specimen, Stopped};
 use crate::simulate::{Layer, Separation, SimulationWork};
 
@@ -11,7 +11,7 @@ impl Layer for LinearContact {
     type Behind = Vec<f64>;
     type Moving = Moving;
     type Known = ();
-    type Pressed = Pressed;
+    type Forced = Forced;
     type Surface = Surface;
 
     fn specimen(&self) -> &Specimen {
@@ -84,14 +84,14 @@ impl Layer for LinearContact {
         piece.loss(times)
     }
 
-    fn pressed(
+    fn forced(
         &self,
         forces: (f64, f64),
         behind: &Vec<f64>,
         duration: f64,
         work: &mut SimulationWork,
-    ) -> Result<Pressed, Stopped> {
-        Pressed::solve(self, forces, behind, duration, work)
+    ) -> Result<Forced, Stopped> {
+        Forced::solve(self, forces, behind, duration, work)
     }
 
     fn left(&self, excess: &Vec<f64>, _: f64) -> Option<Surface> {

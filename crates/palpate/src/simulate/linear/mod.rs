@@ -17,21 +17,21 @@
 //! | `contact.rs` | the body with its law, and what the law remembers |
 //! | `stage.rs` | the memory while q is a polynomial of time: exact |
 //! | `moving.rs` | while the jaw moves at constant speed |
-//! | `pressed.rs` | while the force goes straight |
+//! | `forced.rs` | while the force goes straight |
 //! | `recovery.rs` | what fades while no force changes, and the surface once the jaw has left it |
 //! | `layer.rs` | all of it as the walk through a drive asks for it |
 
 mod contact;
+mod forced;
 mod fractional;
 mod law;
 mod layer;
 mod moving;
-mod pressed;
 mod recovery;
 mod stage;
 
 pub use contact::{LinearContact, Memory};
+use forced::Forced;
 pub use law::{LinearLaw, LinearLawError, LinearTerm};
 use moving::Moving;
-use pressed::Pressed;
 use recovery::Surface;

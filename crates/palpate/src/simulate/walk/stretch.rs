@@ -41,7 +41,7 @@ pub(in crate::simulate) struct Stretch<L: Layer> {
 
 pub(in crate::simulate) enum StretchState<L: Layer> {
     Touching(L::Moving),
-    Forced(L::Pressed),
+    Forced(L::Forced),
     Free { surface: L::Surface, since: f64 },
 }
 

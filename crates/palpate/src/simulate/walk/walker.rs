@@ -142,7 +142,7 @@ impl<'a, L: Layer> Walker<'a, L> {
         behind: &L::Behind,
     ) -> Result<(f64, L::Behind), SimulateError> {
         let duration = end - start;
-        let forced = self.model.pressed((from, to), behind, duration, &mut self.work);
+        let forced = self.model.forced((from, to), behind, duration, &mut self.work);
         let forced = forced.map_err(|stopped| match stopped {
             Stopped::TooMuch { elapsed } => SimulateError::Force {
                 time: start + elapsed,

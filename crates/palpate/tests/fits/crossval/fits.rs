@@ -284,9 +284,9 @@ fn nist_problems() {
             deviation = deviation.max((variance.sqrt() / expected.standard_errors[i] - 1.0).abs());
         }
         let rss = (fit.residual_square / expected.rss - 1.0).abs();
-        println!("{}: parameters {value:.1e}, deviations {deviation:.1e}, rss {rss:.1e}", case.name);
+        println!("{}: parameters {value:.1e}, standard_deviations {deviation:.1e}, rss {rss:.1e}", case.name);
         assert!(value <= tolerance.parameters_relative, "{}: parameters off by {value:e}", case.name);
-        assert!(deviation <= tolerance.sd_relative, "{}: deviations off by {deviation:e}", case.name);
+        assert!(deviation <= tolerance.sd_relative, "{}: standard_deviations off by {deviation:e}", case.name);
         assert!(rss <= tolerance.rss_relative, "{}: rss off by {rss:e}", case.name);
         compared += 1;
     }

@@ -112,7 +112,7 @@ fn every_law_reaches_the_optima_of_the_reference() {
     let mut worst = [0.0f64; 5];
     for case in &cases {
         let samples = Samples::new(&case.t, &case.y);
-        let samples = case.sigma.as_ref().map_or(samples, |sigma| samples.with_deviations(sigma));
+        let samples = case.sigma.as_ref().map_or(samples, |sigma| samples.with_standard_deviations(sigma));
         let law = law(&case.law, &case.parameters, &case.fixed);
         let fit = fit_law(&samples, law, &options(&case.kind, &case.fixed)).unwrap();
         assert_eq!(fit.termination, Termination::Converged, "{}", case.name);
@@ -195,13 +195,13 @@ fn ten_problems_of_nist_are_solved_without_starting_values() {
     for case in &cases {
         // NIST's laws start at x = 0, these at the first sample: a sample without weight puts the start where it belongs.
         let (mut times, mut values) = (case.x.clone(), case.y.clone());
-        let mut deviations = vec![1.0; times.len()];
+        let mut standard_deviations = vec![1.0; times.len()];
         if times[0] > 0.0 {
             times.insert(0, 0.0);
             values.insert(0, 0.0);
-            deviations.insert(0, f64::INFINITY);
+            standard_deviations.insert(0, f64::INFINITY);
         }
-        let samples = Samples::new(&times, &values).with_deviations(&deviations);
+        let samples = Samples::new(&times, &values).with_standard_deviations(&standard_deviations);
         for expected in &case.laws {
             let law = law(&expected.law, &expected.parameters, &expected.fixed);
             let fit = fit_law(&samples, law, &options(&expected.kind, &expected.fixed)).unwrap();

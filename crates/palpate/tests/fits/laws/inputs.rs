@@ -5,7 +5,7 @@
 #[path = "../../any_hold/mod.rs"]
 mod any_hold;
 
-use any_hold::{LAWS, fit_any, is_whole};
+use any_hold::{LAWS, fit_any, is_valid};
 use palpate::fit::{FitError, LawOptions, Loss, Samples, Termination, fit_law};
 use palpate::laws::{Law, Response};
 use palpate::test_problems::Rng;
@@ -69,15 +69,17 @@ fn deviations_that_are_none_are_refused_and_infinite_ones_leave_samples_out() {
     let times = times(60);
     let values = clean(&times);
     for bad in [0.0, -1.0, f64::NAN] {
-        let mut deviations = [0.1; 60];
-        deviations[5] = bad;
-        let samples = Samples::new(&times, &values).with_deviations(&deviations);
-        all_refuse(&samples, |error| matches!(error, FitError::Deviation { index: 5, .. }));
+        let mut standard_deviations = [0.1; 60];
+        standard_deviations[5] = bad;
+        let samples = Samples::new(&times, &values).with_standard_deviations(&standard_deviations);
+        all_refuse(&samples, |error| matches!(error, FitError::StandardDeviation { index: 5, .. }));
     }
-    let (mut spoilt, mut deviations) = (values.clone(), [0.1; 60]);
-    (spoilt[20], deviations[20]) = (1e6, f64::INFINITY);
+    let (mut spoilt, mut standard_deviations) = (values.clone(), [0.1; 60]);
+    (spoilt[20], standard_deviations[20]) = (1e6, f64::INFINITY);
     for (law, options) in forms() {
-        let with = fit_law(&Samples::new(&times, &spoilt).with_deviations(&deviations), law, &options).unwrap();
+        let with =
+            fit_law(&Samples::new(&times, &spoilt).with_standard_deviations(&standard_deviations), law, &options)
+                .unwrap();
         assert_eq!(with.samples, 59);
         let rest = |column: &[f64]| [&column[..20], &column[21..]].concat();
         let without = fit_law(&Samples::new(&rest(&times), &rest(&values)), law, &options).unwrap();
@@ -98,7 +100,7 @@ fn signals_without_a_law_end_with_a_reason() {
     for (name, values) in [("ramp", &ramp), ("step", &step), ("spike", &spike), ("noise", &noise), ("faint", &faint)] {
         for (law, options) in forms() {
             let fit = fit_law(&Samples::new(&times, values), law, &options).unwrap();
-            assert!(fit.termination != Termination::Converged || is_whole(&fit), "{name}, {law}: {fit:?}");
+            assert!(fit.termination != Termination::Converged || is_valid(&fit), "{name}, {law}: {fit:?}");
             let curve = times.iter().map(|t| fit.predict(*t));
             let left: f64 = curve.zip(values).map(|(f, y)| (y - f).powi(2)).sum();
             // Amplitudes of merged terms cancel to their last digits.
@@ -144,13 +146,13 @@ fn columns() -> impl Strategy<Value = [Vec<f64>; 3]> {
         any::<bool>(),
         1e-12..1e12f64,
     )
-        .prop_map(|(times, mut values, mut deviations, smooth, unit)| {
+        .prop_map(|(times, mut values, mut standard_deviations, smooth, unit)| {
             if smooth {
                 values = times.iter().map(|t| unit * (1.0 + (-t).exp())).collect();
             }
             values.resize(times.len(), 1.0);
-            deviations.resize(times.len(), 1.0);
-            [times, values, deviations]
+            standard_deviations.resize(times.len(), 1.0);
+            [times, values, standard_deviations]
         })
 }
 
@@ -158,7 +160,7 @@ proptest! {
     #![proptest_config(ProptestConfig { cases: 400, failure_persistence: None, ..ProptestConfig::default() })]
 
     #[test]
-    fn no_columns_make_the_fit_of_a_law_panic([times, values, deviations] in columns(), weighted in any::<bool>(), robust in 0..4u8, law in 0..LAWS.len(), creep in any::<bool>()) {
+    fn no_columns_make_the_fit_of_a_law_panic([times, values, standard_deviations] in columns(), weighted in any::<bool>(), robust in 0..4u8, law in 0..LAWS.len(), creep in any::<bool>()) {
         let law: Law = LAWS[law].parse().unwrap();
         let options = LawOptions {
             response: if creep { Response::Creep } else { Response::Relaxation },
@@ -167,9 +169,9 @@ proptest! {
             ..LawOptions::default()
         };
         let samples = Samples::new(&times, &values);
-        let samples = if weighted { samples.with_deviations(&deviations) } else { samples };
+        let samples = if weighted { samples.with_standard_deviations(&standard_deviations) } else { samples };
         if let Ok(fit) = fit_law(&samples, law, &options) {
-            prop_assert!(fit.termination != Termination::Converged || is_whole(&fit), "{fit:?}");
+            prop_assert!(fit.termination != Termination::Converged || is_valid(&fit), "{fit:?}");
         }
     }
 

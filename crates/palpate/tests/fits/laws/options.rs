@@ -166,13 +166,13 @@ fn log_spaced_samples_are_few_and_give_the_same_law() {
 fn deviations_weigh_by_their_inverse_square() {
     let (times, mut values) = hold(0.0);
     // One sample in four is off, and known to be.
-    let deviations: Vec<f64> = (0..values.len()).map(|i| if i % 4 == 0 { 1e3 } else { 1e-3 }).collect();
+    let standard_deviations: Vec<f64> = (0..values.len()).map(|i| if i % 4 == 0 { 1e3 } else { 1e-3 }).collect();
     values.iter_mut().step_by(4).for_each(|y| *y += 1.0);
-    let samples = Samples::new(&times, &values).with_deviations(&deviations);
+    let samples = Samples::new(&times, &values).with_standard_deviations(&standard_deviations);
     let fit = fit_law(&samples, Law::StandardLinearSolid, &LawOptions::default()).unwrap();
     assert!((fit.value("time_constant_s").unwrap() - 4.0).abs() < 1e-6);
-    let left_out: Vec<f64> = deviations.iter().map(|d| if *d > 1.0 { f64::INFINITY } else { 1.0 }).collect();
-    let samples = Samples::new(&times, &values).with_deviations(&left_out);
+    let left_out: Vec<f64> = standard_deviations.iter().map(|d| if *d > 1.0 { f64::INFINITY } else { 1.0 }).collect();
+    let samples = Samples::new(&times, &values).with_standard_deviations(&left_out);
     let fit = fit_law(&samples, Law::StandardLinearSolid, &LawOptions::default()).unwrap();
     assert!((fit.value("time_constant_s").unwrap() - 4.0).abs() < 1e-9);
 }

@@ -33,7 +33,7 @@ use crate::watch::{Cancelled, Progress, Stages};
 /// })?;
 /// // 0.25 kg with μ = 0.6 need 2.04 N; 5 mm at 500 mm/min start with 3.04 N and relax to 1.06 N.
 /// let grip = Grip::new(&ball, Grasp::new(0.25, 0.6)?, Limits::new(0.5 / 60.0)?, 0.95)?;
-/// let holding = grip.holding(&Plan::squeeze(0.005, 0.5 / 60.0))?;
+/// let holding = grip.position_hold(&Plan::squeeze(0.005, 0.5 / 60.0))?;
 /// assert!((holding.needed_force - 2.043_052).abs() < 1e-6 && (holding.start_force - 3.035_025).abs() < 1e-6);
 /// let TimeToSlip::After(time) = holding.time_to_slip else { panic!() };
 /// assert!((time - 0.610_7).abs() < 1e-3, "{time}"); // s until it slips
@@ -155,7 +155,7 @@ impl<'a> Grip<'a> {
     ///
     /// # Errors
     /// [`GripError::BeyondLimit`] for a plan that the gripper may not take, [`GripError::Simulate`] for one that cannot be simulated.
-    pub fn holding(&self, plan: &Plan) -> Result<PositionHold, GripError> {
+    pub fn position_hold(&self, plan: &Plan) -> Result<PositionHold, GripError> {
         self.check_reach(plan.farthest())?;
         let ends = self.ends(&plan.steps)?;
         let (Some(end), peak_force) = (ends.last(), peak(&ends)) else {

@@ -32,7 +32,7 @@ const MOST_ITERATIONS: usize = 16;
 
 /// One straight piece of force, from t = 0 at its start.
 #[derive(Debug)]
-pub(crate) struct Pressed {
+pub(crate) struct Forced {
     contact: LinearContact,
     force: ForceLine,
     path: Path,
@@ -48,7 +48,7 @@ enum Path {
     Stages(Vec<Stage>),
 }
 
-impl Pressed {
+impl Forced {
     /// Solves one piece of `duration` (s) under a force that goes straight from `from` to `to` (N), with x_k − g_k q at `behind`: what does
     /// not jump with the force.
     pub(super) fn solve(
@@ -254,7 +254,7 @@ impl Pressed {
     }
 }
 
-impl UnderForce for Pressed {
+impl UnderForce for Forced {
     /// x_k.
     type Excess = Vec<f64>;
     /// x_k − g_k q.
@@ -349,8 +349,7 @@ mod tests {
     fn order_of_convergence_of_the_collocation_is_seven_or_more() {
         // From 2 N to 9 N within 20 s, by stages of one width.
         let contact = ball(Memory::Strain);
-        let mut piece =
-            Pressed::solve(&contact, (2.0, 9.0), &[0.0, 0.0], 20.0, &mut SimulationWork::default()).unwrap();
+        let mut piece = Forced::solve(&contact, (2.0, 9.0), &[0.0, 0.0], 20.0, &mut SimulationWork::default()).unwrap();
         let exact = piece.value_at(20.0);
         let (first, memory) = (piece.value_at(0.0), piece.excess_at(0.0));
         piece.path = Path::Stages(Vec::new());
@@ -377,7 +376,7 @@ mod tests {
         let steps = |contact: &LinearContact| {
             let mut work = SimulationWork::default();
             let behind = vec![0.0; contact.law.terms().len()];
-            Pressed::solve(contact, (5.0, 5.0), &behind, 1e4, &mut work).unwrap();
+            Forced::solve(contact, (5.0, 5.0), &behind, 1e4, &mut work).unwrap();
             work.steps
         };
         let slow = steps(&contact);
@@ -394,15 +393,15 @@ mod tests {
         let contact = ball(Memory::Strain);
         // 150 N on a ball of E A(r) = 107.8 N: carried while the body is stiff.
         let stopped =
-            Pressed::solve(&contact, (150.0, 150.0), &[0.0, 0.0], 1e3, &mut SimulationWork::default()).unwrap_err();
+            Forced::solve(&contact, (150.0, 150.0), &[0.0, 0.0], 1e3, &mut SimulationWork::default()).unwrap_err();
         let Stopped::TooMuch { elapsed } = stopped else {
             panic!("{stopped:?}")
         };
         assert!((0.1..100.0).contains(&elapsed), "{elapsed}");
         let short =
-            Pressed::solve(&contact, (150.0, 150.0), &[0.0, 0.0], 0.99 * elapsed, &mut SimulationWork::default())
+            Forced::solve(&contact, (150.0, 150.0), &[0.0, 0.0], 0.99 * elapsed, &mut SimulationWork::default())
                 .unwrap();
         assert!(short.displacement_at(0.99 * elapsed) < 0.035);
-        assert!(Pressed::solve(&contact, (500.0, 500.0), &[0.0, 0.0], 1.0, &mut SimulationWork::default()).is_err());
+        assert!(Forced::solve(&contact, (500.0, 500.0), &[0.0, 0.0], 1.0, &mut SimulationWork::default()).is_err());
     }
 }
