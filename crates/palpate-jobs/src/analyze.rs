@@ -2,7 +2,6 @@
 
 use palpate::analysis::{Analysis, analyze_watched};
 use palpate::fit::IntervalMethod;
-use palpate::record::Record;
 use palpate::segment::{ContactChoice, HoldStart};
 use palpate::watch::{Progress, Watch};
 use palpate_report::document::AnalysisDocument;
@@ -11,6 +10,7 @@ use palpate_report::study::{Bundle, Pictures, analysis_bundle, analysis_text};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+use crate::depends::Dependencies;
 use crate::input::Measurement;
 use crate::options::checked_confidence;
 use crate::{ErrorKind, JobError, Outcome, Results};
@@ -138,21 +138,23 @@ impl Analyze {
     pub fn run(
         &self,
         mut measured: Measurement,
-        air: Option<&Record>,
+        air: Option<&Measurement>,
         watch: &mut dyn Watch,
     ) -> Result<Outcome<Analyzed>, JobError> {
         self.over(&mut measured)?;
         let Measurement {
             mut record,
-            input,
+            mut input,
             options,
             ..
         } = measured;
         if let Some(air) = air {
             record = record
-                .without_air_run(air)
+                .without_air_run(&air.record)
                 .map_err(|error| JobError::new(ErrorKind::Record, &error, error.hint().to_owned()).of(&input.path))?;
+            input.air_run_sha256 = Some(air.input.sha256.clone());
         }
+        input.depends_on_sha256 = Some(Dependencies::new("analyze", &options).record(&input).sha256()?);
         watch.report(Progress::open(&format!("fitting {}", input.called()), 0))?;
         let analysis =
             analyze_watched(&record, &options, watch).map_err(|error| JobError::analysis(&error, &input.path))?;

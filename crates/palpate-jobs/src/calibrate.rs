@@ -4,13 +4,14 @@ use palpate::calibrate::{CalibrateError, CalibrationData, Candidate, Equilibrium
 use palpate::laws::Law;
 use palpate::watch::Watch;
 use palpate_files::description::{MaterialFile, MaterialOrigin};
-use palpate_report::document::CalibrationDocument;
+use palpate_report::document::{CalibrationDocument, Software};
 use palpate_report::figure::Figure;
 use palpate_report::result::CalibratedRecord;
 use palpate_report::study::{calibration_figure, calibration_text};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+use crate::depends::Dependencies;
 use crate::input::Measurement;
 use crate::options::checked_confidence;
 use crate::{ErrorKind, JobError, Outcome, Results};
@@ -122,8 +123,12 @@ impl Calibrate {
     pub fn run(&self, measured: Measurement, watch: &mut dyn Watch) -> Result<Outcome<Calibrated>, JobError> {
         let candidates = self.candidates()?;
         let Measurement {
-            record, input, options, ..
+            record,
+            mut input,
+            options,
+            ..
         } = measured;
+        input.depends_on_sha256 = Some(Dependencies::new("calibrate", &(self, &options)).record(&input).sha256()?);
         let confidence = checked_confidence(self.confidence.unwrap_or(options.fit.confidence))?;
         let refused = |error: CalibrateError| uncalibrated(&error, &input.path);
         let mut data = CalibrationData::of_record(&record, &options).map_err(refused)?;
@@ -167,7 +172,7 @@ impl Calibrated {
                 record: record.input.called(),
                 sha256: record.input.sha256.clone(),
                 test: record.input.test.clone(),
-                palpate: env!("CARGO_PKG_VERSION").to_owned(),
+                palpate: Software::this().release(),
                 samples: record.data.fitted(),
             },
         })

@@ -12,6 +12,7 @@ use palpate_report::study::{Bundle, Pictures, comparison_bundle, comparison_mark
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+use crate::depends::Dependencies;
 use crate::error::without;
 use crate::input::{Measurement, NamedRecords, called};
 use crate::{ErrorKind, JobError, Outcome, Results};
@@ -165,7 +166,9 @@ impl Compare {
     }
 
     fn one(&self, measured: Measurement, options: &Options, watch: &mut dyn Watch) -> Result<ComparedRecord, JobError> {
-        let Measurement { record, input, .. } = measured;
+        let Measurement { record, mut input, .. } = measured;
+        let settings = (&options.analysis, &options.compared, self.creep);
+        input.depends_on_sha256 = Some(Dependencies::new("compare", &settings).record(&input).sha256()?);
         watch.report(Progress::open(&format!("comparing laws on {}", input.path), 0))?;
         let (requested, path) = (&options.analysis, &input.path);
         if self.creep {

@@ -5,13 +5,14 @@ use std::path::Path;
 use palpate::calibrate::Material;
 use palpate::grip::{Band, Control, Grasp, Grip, GripError, Limits, Objective, Question, Regrip};
 use palpate::watch::Watch;
-use palpate_files::description::{MaterialFile, read_material};
+use palpate_files::description::{MaterialFile, parse_material, read_text};
 use palpate_report::document::GripDocument;
 use palpate_report::result::GrippedBody;
 use palpate_report::study::grip_text;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+use crate::depends::Dependencies;
 use crate::options::checked_confidence;
 use crate::output::sha256;
 use crate::{ErrorKind, JobError, Outcome, Results};
@@ -219,9 +220,9 @@ impl MaterialSource {
     /// # Errors
     /// [`JobError`] where it cannot be read, or is none.
     pub fn read(path: &Path) -> Result<Self, JobError> {
-        let file = read_material(path)?;
-        let bytes = std::fs::read(path).map_err(|error| JobError::unread(path, &error))?;
-        let (name, sha256) = (path.display().to_string(), sha256(&bytes));
+        let text = read_text(path)?;
+        let file = parse_material(&text, path)?;
+        let (name, sha256) = (path.display().to_string(), sha256(text.as_bytes()));
         Ok(Self { file, name, sha256 })
     }
 
@@ -305,6 +306,7 @@ impl PlanGrip {
         let result = GrippedBody {
             path: source.name.clone(),
             sha256: source.sha256.clone(),
+            depends_on_sha256: Dependencies::new("grip", self).file("material", Some(&source.sha256)).sha256()?,
             grip,
             answer,
         };

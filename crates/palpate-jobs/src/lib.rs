@@ -10,6 +10,7 @@
 //! | `outcome.rs` | result, document, text and verdict of a job |
 //! | `input/` | records, opened and hashed once |
 //! | `output.rs` | files that appear whole or not at all, and never in the place of one that is read |
+//! | `depends.rs` | what a result depends on, as one digest |
 //! | `store.rs` | what can be resumed |
 //! | `threads.rs` | many pieces of work over threads |
 //! | `analyze.rs` … | one job each |
@@ -25,6 +26,7 @@ mod batch;
 mod calibrate;
 mod compare;
 mod convert;
+mod depends;
 mod error;
 mod grip;
 mod inspect;
@@ -44,6 +46,7 @@ pub use batch::{Batch, BatchAnswer, Batched, Refused, Spread};
 pub use calibrate::{Calibrate, Calibrated, Equilibrium};
 pub use compare::{Compare, Compared};
 pub use convert::{Convert, Converted};
+pub use depends::BUILD;
 pub use error::{ErrorKind, JobError};
 pub use grip::{MaterialSource, PlanGrip, RegripFor};
 pub use inspect::{Inspect, Inspected, machines_text};

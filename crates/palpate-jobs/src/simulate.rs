@@ -10,6 +10,7 @@ use palpate::simulate::{
     Trajectory, WAVE_TOLERANCE, cycles, energy_watched, simulate_watched, strain_wave_within, work_by_step_watched,
 };
 use palpate::test_problems::Rng;
+use palpate::units::quantity;
 use palpate::watch::Watch;
 use palpate_files::description::{Protocol, read_protocol, read_scene};
 use palpate_report::figure::Figure;
@@ -86,6 +87,7 @@ impl Simulate {
         };
         let trajectory = simulate_watched(scene.drive(), &scene.contact, &scene.sampling, watch);
         let trajectory = trajectory.map_err(|error| scene.refused(error))?;
+        notes.extend(forces(&trajectory));
         for event in &trajectory.events {
             // Rounded first, so that no minus stands before a zero.
             let depth = (1e7 * event.contact_displacement).round() / 1e4 + 0.0;
@@ -125,6 +127,14 @@ impl Simulate {
             sampling,
         })
     }
+}
+
+/// The peak force and the force at the end, as a sentence; none where nothing is sampled.
+fn forces(trajectory: &Trajectory) -> Option<String> {
+    let at = (0..trajectory.len()).max_by(|one, other| trajectory.force[*one].total_cmp(&trajectory.force[*other]))?;
+    let (time, force) = (&trajectory.time, &trajectory.force);
+    let written = |index: usize| format!("{} at {}", quantity(force[index], "N", 4), quantity(time[index], "s", 4));
+    Some(format!("peak force {}; {} at the end", written(at), written(trajectory.len() - 1)))
 }
 
 impl Simulated {

@@ -11,9 +11,11 @@ mod records;
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use palpate_files::description::{schema_material, schema_protocol, schema_test};
 use palpate_jobs as jobs;
+use palpate_jobs::BUILD;
 use palpate_jobs::typed::{Choice, one_of};
 use palpate_report::document::{
-    AnalysisDocument, CalibrationDocument, ComparisonDocument, GripDocument, ReproductionDocument, WatchDocument,
+    AnalysisDocument, CalibrationDocument, ComparisonDocument, GripDocument, ReproductionDocument, Software,
+    WatchDocument,
 };
 use schemars::{JsonSchema, schema_for};
 use serde_json::Value;
@@ -41,8 +43,13 @@ fn build() -> String {
     ];
     let enabled: Vec<&str> = features.iter().filter(|(_, enabled)| *enabled).map(|(name, _)| *name).collect();
     let features = if enabled.is_empty() { "none".to_owned() } else { enabled.join(", ") };
-    let (version, commit, target) = (env!("CARGO_PKG_VERSION"), env!("PALPATE_COMMIT"), env!("PALPATE_TARGET"));
-    format!("{version}\ncommit: {commit}\ntarget: {target}\nfeatures: {features}")
+    let Software {
+        version,
+        commit,
+        target,
+        ..
+    } = Software::this();
+    format!("{version}\ncommit: {commit}\nbuild: {BUILD}\ntarget: {target}\nfeatures: {features}")
 }
 
 const AFTER_HELP: &str = "\

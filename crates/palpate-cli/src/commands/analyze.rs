@@ -2,7 +2,6 @@
 
 use std::path::Path;
 
-use palpate::record::Record;
 use palpate_jobs::input::{Measurement, NamedRecords, OpenedFile};
 use palpate_jobs::output::{check_folder, write_bundle};
 use palpate_jobs::{Analyze, ErrorKind, JobError, Results, Verdict};
@@ -18,7 +17,7 @@ pub(crate) fn run(arguments: &AnalyzeArguments) -> Result<Verdict, JobError> {
     let described = arguments.described.read()?;
     let records = NamedRecords::find(&arguments.records, described)?;
     let air = arguments.air_run.as_ref().map(|air| OpenedFile::open(air, &records.described)).transpose()?;
-    let air = air.map(|air| air.read(air.only()?, &mut Bars::default())).transpose()?.map(|air| air.record);
+    let air = air.map(|air| air.measurement(air.only()?, &mut Bars::default())).transpose()?;
     let (mut tests, mut failed) = (0, 0);
     let job = Analyze {
         compare: !arguments.no_compare,
@@ -52,7 +51,7 @@ fn one(
     arguments: &AnalyzeArguments,
     job: &Analyze,
     measured: Measurement,
-    air: Option<&Record>,
+    air: Option<&Measurement>,
     folder: Option<&Path>,
 ) -> Result<(), JobError> {
     notes(&measured.notes);

@@ -26,8 +26,8 @@ mod text;
 
 pub use material::{MATERIAL_VERSION, MaterialFile, MaterialOrigin, parse_material, read_material};
 pub use protocol::{
-    Protocol, parse_protocol, parse_protocol_of, parse_scene, read_protocol, read_protocol_of, read_scene,
-    self_contained,
+    Protocol, parse_protocol, parse_protocol_of, parse_scene, read_protocol, read_protocol_of, read_protocol_text,
+    read_scene, self_contained,
 };
 pub use schema::{schema_material, schema_protocol, schema_test};
 pub use sweep::{Plan, Spacing, Sweep, SweptParameter, parse_runs, parse_sweep, read_sweep};
@@ -37,4 +37,4 @@ pub use test::{
     machines_of, parse_hold_start, parse_test, parse_touch, read_test,
 };
 pub(crate) use text::quoted;
-pub use text::{DescriptionError, DescriptionKind, KeyPosition, KeyProblem};
+pub use text::{DescriptionError, DescriptionKind, KeyPosition, KeyProblem, read_text};

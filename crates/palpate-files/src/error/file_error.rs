@@ -80,9 +80,12 @@ pub enum FileProblem {
     /// The path leads to a directory.
     #[error(": expected a file, found a directory")]
     Directory,
-    /// The path leads to a pipe or a device, which cannot be gone through twice.
-    #[error(": expected a file, found a pipe or a device")]
-    NoFile,
+    /// The path leads to a pipe, a socket or a device, which cannot be gone through twice.
+    #[error(": expected a file, found {0}")]
+    NoFile(&'static str),
+    /// The file is not the one any more that was opened.
+    #[error(": changed while it was read")]
+    Changed,
     /// The operating system does not hand the file out; what it says.
     #[error(": cannot be read ({})", reason(.0))]
     Unreadable(#[source] io::Error),

@@ -15,7 +15,9 @@ impl FileError {
         let help = match &self.problem {
             FileProblem::NotFound(_) => "check the spelling of the path",
             FileProblem::Directory => "name one file inside it",
-            FileProblem::NoFile => "name standard input `-`, or write the output of the pipe to a file first",
+            FileProblem::NoFile("a terminal") => "send the file through a pipe: `palpate watch - < log.csv`",
+            FileProblem::NoFile(_) => "name standard input `-`, or write the output of the pipe to a file first",
+            FileProblem::Changed => "read it again when the machine has finished writing",
             FileProblem::Unreadable(source) if source.kind() == io::ErrorKind::PermissionDenied => {
                 "check the owner of the file and its read permission"
             }

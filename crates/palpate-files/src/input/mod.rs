@@ -6,6 +6,7 @@
 //! | file | what |
 //! |---|---|
 //! | `source.rs` | bytes under a name for messages ([`Input`]) |
+//! | `regular.rs` | the one way in: regular files, up to a limit |
 //! | `packing.rs` | telling packed files by their content, and unpacking them |
 //! | `counting.rs` | how far a reader has got |
 //! | `binary.rs` | numbers as bytes |
@@ -20,6 +21,7 @@ pub(crate) mod encoding;
 mod feed;
 pub(crate) mod lines;
 mod packing;
+mod regular;
 mod source;
 
 pub(crate) use binary::Number;
@@ -30,6 +32,7 @@ pub use encoding::Encoding;
 pub(crate) use lines::{LONGEST_LINE, LineReader};
 pub(crate) use packing::is_zip;
 pub use packing::{MOST_UNPACKED, Packing};
+pub use regular::{is_standard_input, kind, read_whole};
 #[cfg(feature = "arrow")]
 pub(crate) use source::InputReader;
 pub(crate) use source::Seekable;

@@ -2,7 +2,6 @@
 
 use std::{
     fmt,
-    fs::File,
     io::{self, Cursor, Read, Seek},
     path::{Path, PathBuf},
     sync::{
@@ -14,6 +13,7 @@ use std::{
 use super::{
     counting::Counting,
     packing::{self, MOST_UNPACKED, Packing},
+    regular::{Stamp, is_standard_input, open_regular, read_whole},
 };
 use crate::error::{FileError, FileProblem};
 
@@ -42,6 +42,8 @@ pub struct Input {
     pub size: u64,
     /// `None`: they lie on a disk.
     memory: Option<Arc<[u8]>>,
+    /// How the file was when it was opened.
+    stamp: Option<Stamp>,
 }
 
 impl fmt::Debug for Input {
@@ -61,15 +63,58 @@ impl Input {
     /// # Errors
     /// [`FileError`] where it cannot be read, or is a packed file that holds no file, or several.
     pub fn open(path: &Path) -> Result<Self, FileError> {
-        let failed = |error| FileError::from_io(path, error);
-        let about = std::fs::metadata(path).map_err(failed)?;
-        if about.is_dir() {
-            return Err(FileError::of(path, FileProblem::Directory));
+        let (_, about) = open_regular(path)?;
+        Self::of(path.to_owned(), None, about.len(), Some(Stamp::of(&about)))
+    }
+
+    /// All bytes of the file at `path`, held in memory; `-` is standard input, read to its end.
+    ///
+    /// # Errors
+    /// As for [`open`](Self::open), and where there are more than [`MOST_IN_MEMORY`].
+    pub fn read(path: &Path) -> Result<Self, FileError> {
+        let name = if is_standard_input(path) { Path::new("standard input") } else { path };
+        let bytes = read_whole(path, MOST_IN_MEMORY).map_err(|error| FileError::of(name, error.problem))?;
+        let limit = || {
+            FileError::of(
+                name,
+                FileProblem::TooLarge {
+                    what: "the file",
+                    most_bytes: MOST_IN_MEMORY,
+                },
+            )
+        };
+        Self::from_bytes(name, bytes.ok_or_else(limit)?)
+    }
+
+    /// Checks that the file is still the one that was opened, where it lies on a disk.
+    ///
+    /// # Errors
+    /// [`FileError`] where its length or the time of its last change is another one.
+    pub fn check_unchanged(&self) -> Result<(), FileError> {
+        let Some(before) = self.stamp else { return Ok(()) };
+        let (_, about) = open_regular(&self.name)?;
+        if Stamp::of(&about) == before { Ok(()) } else { Err(self.wrong(FileProblem::Changed)) }
+    }
+
+    /// Hands out its bytes as they are stored, in pieces, for as long as `take` wants more.
+    ///
+    /// # Errors
+    /// [`FileError`] where they cannot be read.
+    pub fn each_piece(&self, mut take: impl FnMut(&[u8]) -> bool) -> Result<(), FileError> {
+        let (mut stored, mut piece) = (self.stored()?, vec![0; 1 << 18]);
+        loop {
+            match stored.read(&mut piece).map_err(|error| FileError::from_io(&self.name, error))? {
+                0 => return Ok(()),
+                count if !take(&piece[..count]) => return Ok(()),
+                _ => {}
+            }
         }
-        if !about.is_file() {
-            return Err(FileError::of(path, FileProblem::NoFile));
-        }
-        Self::of(path.to_owned(), None, about.len())
+    }
+
+    /// All of its bytes as they are stored, where they lie in memory.
+    #[must_use]
+    pub fn in_memory(&self) -> Option<&[u8]> {
+        self.memory.as_deref()
     }
 
     /// Bytes in memory. `name` is what messages call them.
@@ -79,16 +124,17 @@ impl Input {
     pub fn from_bytes(name: impl Into<PathBuf>, bytes: impl Into<Arc<[u8]>>) -> Result<Self, FileError> {
         let bytes = bytes.into();
         let size = bytes.len() as u64;
-        Self::of(name.into(), Some(bytes), size)
+        Self::of(name.into(), Some(bytes), size, None)
     }
 
-    fn of(name: PathBuf, memory: Option<Arc<[u8]>>, size: u64) -> Result<Self, FileError> {
+    fn of(name: PathBuf, memory: Option<Arc<[u8]>>, size: u64, stamp: Option<Stamp>) -> Result<Self, FileError> {
         let mut input = Self {
             name,
             memory,
             packing: Packing::None,
             beginning: Vec::new(),
             size,
+            stamp,
         };
         input.beginning = input.first_bytes()?;
         input.packing = packing::recognise(&input.name, &input.beginning, || input.stored())?;
@@ -171,7 +217,7 @@ impl Input {
     /// The bytes as they lie there, packed or not.
     fn stored(&self) -> Result<Box<dyn Seekable>, FileError> {
         Ok(match &self.memory {
-            None => Box::new(File::open(&self.name).map_err(|error| self.failed(error))?),
+            None => Box::new(open_regular(&self.name)?.0),
             Some(bytes) => Box::new(Cursor::new(Arc::clone(bytes))),
         })
     }

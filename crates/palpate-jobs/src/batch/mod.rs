@@ -29,6 +29,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
+use crate::depends::BUILD;
 use crate::input::{Described, NamedRecords, OpenedFile, Source};
 use crate::output::{is_same, keep_apart, sha256};
 use crate::store::{Store, beside};
@@ -180,7 +181,7 @@ fn file(
     share: Share<'_>,
 ) -> Result<(Range<u64>, bool), JobError> {
     let source = Source::open(path);
-    let digest = source.as_ref().ok().and_then(|source| source.digest.clone().ok());
+    let digest = source.as_ref().ok().and_then(|source| source.digest.get().ok());
     let key = format!("{} {}", digest.as_deref().unwrap_or("-"), path.display());
     if let Some(place) = store.find(&key).filter(|_| digest.is_some()) {
         return Ok((place, true));
@@ -231,9 +232,9 @@ impl From<JobError> for Refused {
 
 /// Everything that the results depend on besides the records, as text.
 fn settings(options: &AnalysisOptions, described: &Described) -> Result<String, JobError> {
-    let software = Software::this();
     let value = serde_json::json!({
-        "software": format!("{} {}", software.name, software.version),
+        "software": Software::this(),
+        "build": BUILD,
         "test": described.shown(),
         "test_toml": described.text,
         "options": serde_json::to_value(options)?,

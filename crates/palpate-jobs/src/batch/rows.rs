@@ -87,10 +87,7 @@ const LAST: [Column; 5] = [
     (Number, "residual_correlation", |line| {
         line.of_law(|fit| fit.residual_correlation.into(), |_| Value::Null)
     }),
-    (Text, "software", |line| {
-        let software = &line.document.software;
-        format!("{} {}", software.name, software.version).into()
-    }),
+    (Text, "software", |line| line.document.software.to_string().into()),
 ];
 
 /// The columns of the table, in order.

@@ -3,9 +3,10 @@
 use std::path::{Path, PathBuf};
 
 use palpate::analysis::AnalysisOptions;
-use palpate_files::description::{NamedColumns, TestDescription, parse_test, read_test};
+use palpate_files::description::{NamedColumns, TestDescription, parse_test, read_text};
 
 use crate::JobError;
+use crate::output::sha256;
 
 /// What is stated about the tests in a file, and where it stands; the default says nothing.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -27,10 +28,9 @@ impl Described {
         let Some(path) = path else {
             return Ok(Self::default().with_part(part));
         };
-        let test = read_test(path)?;
-        let text = std::fs::read_to_string(path).map_err(|error| JobError::unread(path, &error))?;
+        let text = read_text(path)?;
         Ok(Self {
-            test: Some(test),
+            test: Some(parse_test(&text, path)?),
             path: Some(path.to_owned()),
             text: Some(text),
         }
@@ -72,6 +72,12 @@ impl Described {
     #[must_use]
     pub fn options(&self) -> AnalysisOptions {
         self.test.as_ref().map_or_else(AnalysisOptions::default, |test| test.analysis.clone())
+    }
+
+    /// SHA-256 of what is stated, hexadecimal.
+    #[must_use]
+    pub fn sha256(&self) -> Option<String> {
+        self.text.as_ref().map(|text| sha256(text.as_bytes()))
     }
 
     /// Its path as results name it.

@@ -18,5 +18,5 @@ mod source;
 pub use described::Described;
 pub use named::{NamedRecords, Part};
 pub(crate) use opened::averaged;
-pub use opened::{Measurement, OpenedFile, called};
+pub use opened::{Measurement, OpenedFile, called, record_sha256};
 pub(crate) use source::Source;

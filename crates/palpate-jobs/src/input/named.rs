@@ -5,8 +5,8 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use palpate::watch::Watch;
+use palpate_files::input::is_standard_input;
 
-use super::source::is_standard_input;
 use super::{Described, Measurement, OpenedFile};
 use crate::output::{file_name, folder_in};
 use crate::written_by_batch::is_written_by_batch;

@@ -13,6 +13,7 @@ use palpate_report::result::Input;
 use super::Described;
 use super::source::{FileDigest, Source};
 use crate::JobError;
+use crate::output::sha256;
 
 /// A record as the jobs take it.
 #[derive(Debug, Clone, PartialEq)]
@@ -106,7 +107,9 @@ impl<'d> OpenedFile<'d> {
         let size = self.contents.input.size;
         report(size, size);
         heard?;
-        Ok(file?)
+        let file = file?;
+        self.contents.input.check_unchanged().map_err(ReadError::File)?;
+        Ok(file)
     }
 
     /// The record in a part as jobs take it.
@@ -134,13 +137,28 @@ impl<'d> OpenedFile<'d> {
         Ok(Input {
             path: path.display().to_string(),
             part: file.part.name.clone(),
-            sha256: self.digest.clone()?,
+            sha256: self.digest.get()?,
+            test_sha256: self.described.sha256(),
+            air_run_sha256: None,
+            depends_on_sha256: None,
             rows: file.rows,
             rows_averaged: file.averaged,
             test: self.described.shown(),
             title: part.map_or_else(|| title.clone(), |part| format!("{title} · {part}")),
         })
     }
+}
+
+/// SHA-256 of a record that was in memory already, hexadecimal: of its columns as doubles, the lowest byte first, time, displacement and
+/// force in this order.
+#[must_use]
+pub fn record_sha256(record: &Record) -> String {
+    let columns = [Some(record.time()), record.displacement(), Some(record.force())];
+    let mut bytes = Vec::with_capacity(24 * record.len());
+    for values in columns.into_iter().flatten() {
+        bytes.extend(values.iter().flat_map(|value| value.to_le_bytes()));
+    }
+    sha256(&bytes)
 }
 
 /// That a file is so long that its rows were averaged.

@@ -1,12 +1,13 @@
 //! The bytes of a file and their digest.
 
-use std::cell::LazyCell;
-use std::fs::File;
-use std::io::{self, IsTerminal, Read};
+use std::cell::{OnceCell, RefCell};
 use std::path::Path;
-use std::thread;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::thread::{self, JoinHandle};
 
-use palpate_files::input::Input;
+use palpate_files::FileError;
+use palpate_files::input::{Input, is_standard_input};
 use palpate_files::record::ReadError;
 use sha2::{Digest, Sha256};
 
@@ -17,9 +18,6 @@ use crate::{ErrorKind, JobError};
 /// while it is read.
 const IN_MEMORY: u64 = 64 << 20;
 
-/// SHA-256 in hexadecimal, waited for where it is wanted.
-pub(crate) type FileDigest = LazyCell<Result<String, JobError>, Box<dyn FnOnce() -> Result<String, JobError>>>;
-
 /// A file to read a record from, and the digest of its bytes.
 pub(crate) struct Source {
     pub(crate) input: Input,
@@ -29,61 +27,74 @@ pub(crate) struct Source {
 impl Source {
     /// The file at `path`; `-` is standard input, read to its end.
     pub(crate) fn open(path: &Path) -> Result<Self, JobError> {
-        if is_standard_input(path) {
-            return Self::piped();
-        }
-        let short = std::fs::metadata(path).is_ok_and(|about| about.is_file() && about.len() <= IN_MEMORY);
-        let (input, digest): (_, Box<dyn FnOnce() -> Result<String, JobError>>) =
-            match short.then(|| std::fs::read(path)) {
-                Some(Ok(bytes)) => {
-                    let digest = sha256(&bytes);
-                    (Input::from_bytes(path, bytes), Box::new(|| Ok(digest)))
-                }
-                _ => {
-                    let (input, path) = (Input::open(path), path.to_owned());
-                    let of = path.clone();
-                    let work = thread::spawn(move || hashed(&of));
-                    let digest = move || {
-                        let digest = work.join().unwrap_or_else(|_| Err(io::ErrorKind::Other.into()));
-                        digest.map_err(|error| JobError::unread(&path, &error))
-                    };
-                    (input, Box::new(digest))
-                }
-            };
+        let input = match is_standard_input(path) {
+            true => Input::read(path),
+            // Opened first: only a regular file is read.
+            false => {
+                Input::open(path).and_then(|input| if input.size <= IN_MEMORY { Input::read(path) } else { Ok(input) })
+            }
+        };
+        let input = input.map_err(ReadError::File)?;
         Ok(Self {
-            input: input.map_err(ReadError::File)?,
-            digest: LazyCell::new(digest),
-        })
-    }
-
-    fn piped() -> Result<Self, JobError> {
-        let (name, mut piped, mut bytes) = (Path::new("standard input"), io::stdin(), Vec::new());
-        if piped.is_terminal() {
-            let message = "expected a record on standard input, found a terminal";
-            let hint = "name a file, or send one through a pipe: `palpate watch - < log.csv`".to_owned();
-            return Err(JobError::new(ErrorKind::Record, message, hint));
-        }
-        piped.read_to_end(&mut bytes).map_err(|error| JobError::unread(name, &error))?;
-        let digest = sha256(&bytes);
-        let digest: Box<dyn FnOnce() -> Result<String, JobError>> = Box::new(|| Ok(digest));
-        Ok(Self {
-            input: Input::from_bytes(name, bytes).map_err(ReadError::File)?,
-            digest: LazyCell::new(digest),
+            digest: FileDigest::of(&input),
+            input,
         })
     }
 }
 
-/// Whether a name means standard input.
-pub(crate) fn is_standard_input(path: &Path) -> bool {
-    path == Path::new("-")
+/// SHA-256 in hexadecimal, waited for where it is wanted.
+pub(crate) struct FileDigest {
+    found: OnceCell<Result<String, JobError>>,
+    work: RefCell<Option<JoinHandle<Result<String, FileError>>>>,
+    stop: Arc<AtomicBool>,
 }
 
-fn hashed(path: &Path) -> io::Result<String> {
-    let (mut file, mut hasher, mut buffer) = (File::open(path)?, Sha256::new(), vec![0; 1 << 18]);
-    loop {
-        match file.read(&mut buffer)? {
-            0 => return Ok(hexadecimal(hasher.finalize())),
-            count => hasher.update(&buffer[..count]),
+impl FileDigest {
+    fn of(input: &Input) -> Self {
+        let stop = Arc::new(AtomicBool::new(false));
+        let (found, work) = match input.in_memory() {
+            Some(bytes) => (OnceCell::from(Ok(sha256(bytes))), None),
+            None => {
+                let (input, stop) = (input.clone(), Arc::clone(&stop));
+                (OnceCell::new(), Some(thread::spawn(move || hashed(&input, &stop))))
+            }
+        };
+        Self {
+            found,
+            work: RefCell::new(work),
+            stop,
         }
     }
+
+    /// The digest.
+    ///
+    /// # Errors
+    /// [`JobError`] where the file can no longer be read, or has changed.
+    pub(crate) fn get(&self) -> Result<String, JobError> {
+        let wait = || {
+            let gone = || JobError::new(ErrorKind::Record, "the digest of the file was not computed", None);
+            let work = self.work.borrow_mut().take().ok_or_else(gone)?;
+            let digest = work.join().map_err(|_| gone())?;
+            Ok(digest.map_err(ReadError::File)?)
+        };
+        self.found.get_or_init(wait).clone()
+    }
+}
+
+/// Work that was ended wants no digest any more.
+impl Drop for FileDigest {
+    fn drop(&mut self) {
+        self.stop.store(true, Ordering::Relaxed);
+    }
+}
+
+/// The digest of a file on a disk; none of any use once it is to `stop`.
+fn hashed(input: &Input, stop: &AtomicBool) -> Result<String, FileError> {
+    let mut hasher = Sha256::new();
+    input.each_piece(|piece| {
+        hasher.update(piece);
+        !stop.load(Ordering::Relaxed)
+    })?;
+    input.check_unchanged()?;
+    Ok(hexadecimal(hasher.finalize()))
 }

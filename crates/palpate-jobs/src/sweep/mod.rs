@@ -22,7 +22,8 @@ use serde::{Deserialize, Serialize};
 
 pub use rows::{fields as sweep_fields, simulated as sweep_rows};
 
-use crate::output::{check_ending, check_no_folder, keep_apart, place_file, sha256, unwritten_table, write_file};
+use crate::depends::Dependencies;
+use crate::output::{check_ending, check_no_folder, keep_apart, place_file, unwritten_table, write_file};
 use crate::store::{Store, beside, depends_on};
 use crate::threads::over_threads;
 use crate::{JobError, Outcome};
@@ -117,7 +118,7 @@ impl Sweep {
 
     /// Makes the table, unless it is there, and returns how many of its runs were computed before.
     fn table(&self, sweep: &SweptProtocol, path: &Path, out: &Path, watch: &mut dyn Watch) -> Result<u64, JobError> {
-        let digest = digest(sweep);
+        let digest = digest(sweep)?;
         let folder = beside(out, ".parts");
         let found = depends_on(&folder);
         if !self.restart && is_complete(out, &digest, sweep.runs) {
@@ -129,7 +130,7 @@ impl Sweep {
         }
         if !self.restart && found.is_some_and(|found| found != digest) {
             return Err(JobError::option(
-                "expected parts of this sweep, found those of another: the protocol or the version of palpate has changed",
+                "expected parts of this sweep, found those of another: the protocol, its material or the build of palpate has changed",
                 "compute all runs with ⟨restart⟩, or name another table with ⟨out⟩",
             )
             .of(folder.display()));
@@ -197,9 +198,13 @@ fn table_of(protocol: &Path, out: Option<&Path>) -> Result<PathBuf, JobError> {
     Ok(out)
 }
 
-/// What the rows of a sweep depend on: the text of the protocol, and who computes them.
-fn digest(sweep: &SweptProtocol) -> String {
-    sha256(format!("palpate {} sweep 1\n{}", env!("CARGO_PKG_VERSION"), sweep.text).as_bytes())
+/// What the rows of a sweep depend on: the texts of the protocol and of the material that it names, and the build that computes them.
+fn digest(sweep: &SweptProtocol) -> Result<String, JobError> {
+    let material = sweep.material.as_deref();
+    Dependencies::new("sweep", &())
+        .text("protocol", Some(&sweep.text))
+        .text("material", material)
+        .sha256()
 }
 
 /// Whether the table is there and holds all of this sweep.

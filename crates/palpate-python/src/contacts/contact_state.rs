@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use numpy::{Element, PyArray1};
 use palpate::contact::RateDependence;
 use palpate::simulate::{Contact, ContactModel, ContactState as State, StepError};
-use palpate_files::description::{DescriptionError, parse_scene, read_scene, self_contained};
+use palpate_files::description::{DescriptionError, parse_scene, read_protocol_text, self_contained};
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyList, PyTuple, PyType};
 
@@ -19,7 +19,10 @@ use crate::work::{Made, briefly};
 fn described(model: &Bound<'_, PyAny>) -> PyResult<(ContactModel, String)> {
     let (path, text) = stated("_described", model)?;
     let (model, text, path) = match path {
-        Some(path) => (latency(read_scene(&path))?, std::fs::read_to_string(&path)?, path),
+        Some(path) => {
+            let text = read_protocol_text(&path).map_err(undescribed)?;
+            (latency(parse_scene(&text, &path))?, text, path)
+        }
         None => {
             let (text, path) = (text.unwrap_or_default(), PathBuf::from("model"));
             (latency(parse_scene(&text, &path).map_err(of_mapping))?, text, path)

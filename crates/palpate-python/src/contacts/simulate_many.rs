@@ -1,6 +1,5 @@
 //! One protocol with many numbers.
 
-use std::io::ErrorKind;
 use std::path::PathBuf;
 use std::sync::Arc;
 
@@ -8,9 +7,8 @@ use arrow_array::{ArrayRef, FixedSizeListArray, Float64Array, Int64Array, String
 use arrow_schema::{DataType, Field};
 use palpate::simulate::{Sampling, simulate};
 use palpate::watch::{Cancelled, Progress};
-use palpate_files::description::parse_runs;
+use palpate_files::description::{parse_runs, read_protocol_text};
 use palpate_files::parquet_table::{Rows, Values};
-use palpate_files::{FileError, FileProblem};
 use palpate_jobs::{sweep_fields, sweep_rows};
 use pyo3::exceptions::PyRuntimeError;
 use pyo3::prelude::*;
@@ -37,16 +35,10 @@ pub(crate) fn simulate_many(
 ) -> PyResult<Table> {
     let of_text = path.is_none();
     let (path, text) = match path {
-        Some(path) => match std::fs::read_to_string(&path) {
-            Ok(text) => (path, text),
-            Err(source) => {
-                let problem = match source.kind() {
-                    ErrorKind::NotFound => FileProblem::NotFound(source),
-                    _ => FileProblem::Unreadable(source),
-                };
-                return Err(undescribed(FileError { path, problem }.into()));
-            }
-        },
+        Some(path) => {
+            let text = read_protocol_text(&path).map_err(undescribed)?;
+            (path, text)
+        }
         None => (PathBuf::from("protocol"), text.unwrap_or_default()),
     };
     let columns = numbers.iter().map(|(name, values)| Ok((name.as_str(), doubles(values, name)?)));

@@ -12,7 +12,7 @@ use palpate::analysis::corrected;
 use palpate::calibrate::CalibrateError;
 use palpate::record::Record as Measured;
 use palpate::simulate::SimulateError;
-use palpate_jobs::input::{Described, Measurement, OpenedFile};
+use palpate_jobs::input::{Described, Measurement, OpenedFile, record_sha256};
 use palpate_jobs::{Analyze, Calibrate, Compare, ErrorKind, JobError};
 use palpate_report::result::{Input, word};
 use pyo3::prelude::*;
@@ -195,7 +195,10 @@ impl Record {
         let input = Input {
             path: "arrays".to_owned(),
             part: None,
-            sha256: String::new(),
+            sha256: record_sha256(&record),
+            test_sha256: None,
+            air_run_sha256: None,
+            depends_on_sha256: None,
             rows: record.len(),
             rows_averaged: 1,
             test: None,
@@ -216,6 +219,7 @@ impl Record {
             test => {
                 let (stated, path) = described(test, None)?;
                 input.test = path.map(|path| path.display().to_string());
+                input.test_sha256 = stated.sha256();
                 stated.options()
             }
         };

@@ -220,6 +220,8 @@ documents! {
         material: String = body.path.clone(),
         /// SHA-256 of its bytes.
         material_sha256: String = body.sha256.clone(),
+        /// SHA-256 over the material, every setting and the build of palpate. Equal digests stand for equal plans.
+        depends_on_sha256: String = body.depends_on_sha256.clone(),
         /// The calibrated law.
         law: String = body.grip.material().candidate().to_string(),
         /// Coverage of the intervals.

@@ -10,6 +10,8 @@ pub struct GrippedBody<'a> {
     pub path: String,
     /// SHA-256 of its bytes, hexadecimal.
     pub sha256: String,
+    /// SHA-256 over the material, the settings and the build: equal digests stand for equal plans.
+    pub depends_on_sha256: String,
     /// Body, load and gripper.
     pub grip: Grip<'a>,
     /// The answer.

@@ -18,6 +18,13 @@ pub struct Input {
     pub rows_averaged: usize,
     /// Path of the test description, if one was given.
     pub test: Option<String>,
+    /// SHA-256 of the description as it was read, with the columns that were named beside it.
+    pub test_sha256: Option<String>,
+    /// SHA-256 of the record without a body whose force was subtracted, if one was.
+    pub air_run_sha256: Option<String>,
+    /// SHA-256 over everything that the result depends on: these files, every setting, and the build of palpate. Equal digests stand for
+    /// equal results.
+    pub depends_on_sha256: Option<String>,
     /// What the description says of the record (its title, or the file name).
     pub title: String,
 }

@@ -37,7 +37,7 @@ use crate::description::{
 /// [`DescriptionError`] where the file cannot be read, is no TOML, has another version, or holds parameters that make no body or that are not
 /// the same in `[calibration]` as in the other tables.
 pub fn read_material(path: &Path) -> Result<MaterialFile, DescriptionError> {
-    parse_material(&source::read(path, source::LONGEST)?, path)
+    parse_material(&source::read_text(path)?, path)
 }
 
 /// Checks a material that was read already; `path` is used in messages alone.

@@ -56,13 +56,21 @@ impl Protocol {
 /// The longest protocol that is read, in bytes: a million steps of one line for each number.
 const LONGEST: u64 = 64 << 20;
 
+/// The text of a protocol or a sweep, or of standard input where `path` is `-`; of at most 64 MiB.
+///
+/// # Errors
+/// [`DescriptionError`] where it cannot be read, is longer, or is not text in UTF-8.
+pub fn read_protocol_text(path: &Path) -> Result<String, DescriptionError> {
+    source::read(path, LONGEST)
+}
+
 /// Reads and checks the protocol in the file at `path`, of at most 64 MiB: more than a million steps, which take some 2 GiB of memory.
 ///
 /// # Errors
 /// [`DescriptionError`] where the file cannot be read, is no TOML, or holds a key or value that makes no
 /// protocol; it names the key.
 pub fn read_protocol(path: &Path) -> Result<Protocol, DescriptionError> {
-    parse_protocol(&source::read(path, LONGEST)?, path)
+    parse_protocol(&read_protocol_text(path)?, path)
 }
 
 /// Reads the protocol in the file at `path` for a calibrated body: the body of the protocol is ignored.
@@ -70,7 +78,7 @@ pub fn read_protocol(path: &Path) -> Result<Protocol, DescriptionError> {
 /// # Errors
 /// As for [`read_protocol`].
 pub fn read_protocol_of(path: &Path, material: &MaterialFile) -> Result<Protocol, DescriptionError> {
-    parse_protocol_of(&source::read(path, LONGEST)?, path, material)
+    parse_protocol_of(&read_protocol_text(path)?, path, material)
 }
 
 /// As [`read_protocol_of`], of a text that was read already; `path` is used in messages alone.
@@ -88,7 +96,7 @@ pub fn parse_protocol_of(text: &str, path: &Path, material: &MaterialFile) -> Re
 /// # Errors
 /// As for [`read_protocol`], less those of steps and output.
 pub fn read_scene(path: &Path) -> Result<(Option<String>, Contact), DescriptionError> {
-    parse_scene(&source::read(path, LONGEST)?, path)
+    parse_scene(&read_protocol_text(path)?, path)
 }
 
 /// As [`read_scene`], of a text that was read already; `path` is used in messages alone.

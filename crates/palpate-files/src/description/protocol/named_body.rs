@@ -15,10 +15,15 @@ use crate::description::{
 
 /// The tables of a protocol whose body may be that of a material file: `material = "file"` stands for specimen, law and contact.
 pub(crate) fn protocol_tables<T: DeserializeOwned>(source: &Source<'_>) -> Result<T, DescriptionError> {
+    protocol_tables_of(source, named_material(source)?.as_deref())
+}
+
+/// The text of the material file that a protocol names, if it names one.
+pub(crate) fn named_material(source: &Source<'_>) -> Result<Option<String>, DescriptionError> {
     source.refuse(&[DescriptionKind::Test], DescriptionKind::Protocol)?;
     let tables: toml::Table = source.tables()?;
     let Some(named) = tables.get("material") else {
-        return source.tables();
+        return Ok(None);
     };
     let Some(name) = named.as_str() else {
         return Err(source.value("material", "the path of a material file", named));
@@ -27,9 +32,17 @@ pub(crate) fn protocol_tables<T: DeserializeOwned>(source: &Source<'_>) -> Resul
         return Err(source.both(key, "material"));
     }
     let path = source.path.parent().unwrap_or(Path::new("")).join(name);
-    let text = source::read(&path, source::LONGEST)?;
+    let text = source::read_text(&path)?;
     parse_material(&text, &path)?;
-    tables_with(source, &text)
+    Ok(Some(text))
+}
+
+/// The tables of a protocol with the text of the material file that it names, if it names one.
+pub(crate) fn protocol_tables_of<T: DeserializeOwned>(
+    source: &Source<'_>,
+    material: Option<&str>,
+) -> Result<T, DescriptionError> {
+    material.map_or_else(|| source.tables(), |material| tables_with(source, material))
 }
 
 /// The tables of a protocol with the body of a material that was checked already.

@@ -11,8 +11,8 @@ use super::{
 };
 use crate::description::{
     protocol::{
-        convert::{Protocol, check},
-        named_body::protocol_tables,
+        convert::{Protocol, check, read_protocol_text},
+        named_body::{named_material, protocol_tables_of},
         numbers::{Slot, numbers as slots},
         sweep_schema::Method,
         tables::ProtocolTables,
@@ -21,7 +21,7 @@ use crate::description::{
         error::{DescriptionError, KeyProblem},
         places::Places,
         quantity::QuantityText,
-        source::{self, Source},
+        source::Source,
     },
 };
 
@@ -35,6 +35,8 @@ const USUAL_SEED: u64 = 1;
 pub struct Sweep {
     /// The text of the file.
     pub text: String,
+    /// The text of the material file that it names.
+    pub material: Option<String>,
     /// The protocol without its sweep.
     pub base: Protocol,
     /// The swept parameters in the order of the file.
@@ -162,7 +164,7 @@ impl Sweep {
 /// # Errors
 /// As for [`read_protocol`](crate::description::protocol::convert::read_protocol), and where the sweep names no number of the protocol, or values that are none.
 pub fn read_sweep(path: &Path) -> Result<Sweep, DescriptionError> {
-    parse_sweep(&source::read(path, source::LONGEST)?, path)
+    parse_sweep(&read_protocol_text(path)?, path)
 }
 
 /// Likewise for a text that was read already; `path` is used in messages alone.
@@ -260,7 +262,8 @@ fn sweep(
     numbers: impl FnOnce(&Source<'_>, &Known) -> Result<(Vec<SweptParameter>, Plan), DescriptionError>,
 ) -> Result<Sweep, DescriptionError> {
     let source = Source { path, text };
-    let mut tables: ProtocolTables = protocol_tables(&source)?;
+    let material = named_material(&source)?;
+    let mut tables: ProtocolTables = protocol_tables_of(&source, material.as_deref())?;
     let base = check(&source, &tables)?;
     let known = slots(&mut tables).into_iter().map(|(path, slot)| match slot {
         Slot::Bare(_) => (path, None),
@@ -274,6 +277,7 @@ fn sweep(
     Ok(Sweep {
         path: path.to_owned(),
         text: text.to_owned(),
+        material,
         tables,
         base,
         parameters: numbers,

@@ -30,7 +30,7 @@ use crate::description::{
 /// [`DescriptionError`] where the file cannot be read, is no TOML, or holds a key or value that makes no
 /// sense; it names the key.
 pub fn read_test(path: &Path) -> Result<TestDescription, DescriptionError> {
-    parse_test(&source::read(path, source::LONGEST)?, path)
+    parse_test(&source::read_text(path)?, path)
 }
 
 /// Checks a description that was read already; `path` is used in messages alone.

@@ -37,12 +37,10 @@ pub enum DescriptionError {
     #[error(transparent)]
     File(#[from] FileError),
     /// The file is far longer than anybody writes.
-    #[error("{}: expected a description of at most {limit} bytes, found {bytes} bytes", path.display())]
+    #[error("{}: expected a description of at most {limit} bytes, found more", path.display())]
     TooLong {
         /// The file.
         path: PathBuf,
-        /// Its size.
-        bytes: u64,
         /// The most that is read.
         limit: u64,
     },

@@ -18,6 +18,7 @@ pub(super) mod words;
 
 pub use error::{DescriptionError, KeyPosition, KeyProblem};
 pub use kind::DescriptionKind;
+pub use source::read_text;
 
 /// A text as TOML writes it.
 pub(crate) fn quoted(text: &str) -> String {

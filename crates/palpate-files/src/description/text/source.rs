@@ -1,6 +1,6 @@
 //! The text of a description: reading it, and saying where in it something is wrong.
 
-use std::{fs, path::Path};
+use std::path::Path;
 
 use palpate::units::{self, Dimension, UnitError};
 use serde::de::DeserializeOwned;
@@ -12,26 +12,25 @@ use super::{
     quantity::QuantityText,
     words,
 };
-use crate::error::{FileError, FileProblem};
+use crate::input::read_whole;
 
 /// The longest description that is read, in bytes.
 pub(crate) const LONGEST: u64 = 1 << 20;
 
+/// The text of a test description or a material file, or of standard input where `path` is `-`; of at most 1 MiB.
+///
+/// # Errors
+/// [`DescriptionError`] where it cannot be read, is longer, or is not text in UTF-8.
+pub fn read_text(path: &Path) -> Result<String, DescriptionError> {
+    read(path, LONGEST)
+}
+
 /// The text of the file at `path`, which may have `longest` bytes.
 pub(crate) fn read(path: &Path, longest: u64) -> Result<String, DescriptionError> {
-    let failed = |source| FileError::from_io(path, source);
-    let about = fs::metadata(path).map_err(failed)?;
-    if about.is_dir() {
-        return Err(FileError::of(path, FileProblem::Directory).into());
-    }
-    if about.len() > longest {
-        return Err(DescriptionError::TooLong {
-            path: path.to_owned(),
-            bytes: about.len(),
-            limit: longest,
-        });
-    }
-    let bytes = fs::read(path).map_err(failed)?;
+    let bytes = read_whole(path, longest)?.ok_or_else(|| DescriptionError::TooLong {
+        path: path.to_owned(),
+        limit: longest,
+    })?;
     String::from_utf8(bytes).map_err(|error| {
         let good = &error.as_bytes()[..error.utf8_error().valid_up_to()];
         DescriptionError::NotText {

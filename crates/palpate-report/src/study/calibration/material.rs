@@ -4,6 +4,7 @@ use palpate::analysis::HoldoutError;
 use palpate::calibrate::{CalibrateError, Calibration, Candidate, Material, ParameterProfile};
 use palpate::units::suited;
 
+use crate::document::Software;
 use crate::figure::{Figure, Layer, Panel, Role};
 use crate::number::{counted, significant, with_interval};
 use crate::page::{Block, Page, Section};
@@ -109,7 +110,7 @@ pub fn calibration_page(record: &CalibratedRecord) -> Result<Page, StudyError> {
         .section(section)
         .provenance("Record", record.input.called())
         .provenance("SHA-256", &record.input.sha256)
-        .provenance("Software", format!("palpate {}", env!("CARGO_PKG_VERSION"))))
+        .provenance("Software", Software::this().to_string()))
 }
 
 /// Measured and simulated force over time, and the residual.

@@ -3,7 +3,7 @@
 use palpate::forecast::Comparison;
 
 use super::{figures, tables};
-use crate::document::{ComparisonDocument, ComparisonSettingsDocument};
+use crate::document::{ComparisonDocument, ComparisonSettingsDocument, Software};
 use crate::figure::{Figure, MOST_PANELS};
 use crate::page::{Block, Page, Section};
 use crate::result::{Answer, ComparedRecord, LeftOut, parameters_table};
@@ -44,7 +44,7 @@ pub fn comparison_bundle(
         let files = left_out.iter().map(tables::left_out_line).collect();
         page = page.section(Section::new("Left out").block(Block::List(files)));
     }
-    page = page.provenance("Software", format!("palpate {}", env!("CARGO_PKG_VERSION")));
+    page = page.provenance("Software", Software::this().to_string());
     bundle.table(&tables::laws(records, &settings.cuts));
     let laws: Vec<_> = settings.laws.iter().filter_map(|law| law.parse().ok()).collect();
     bundle.text("comparison.md", tables::comparison_markdown(records, left_out, &laws));

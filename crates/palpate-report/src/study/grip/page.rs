@@ -2,7 +2,7 @@
 
 use super::figure::grip_figure;
 use super::tables::{grip_table, neighbour_table, schedule_table, sensitivity_table};
-use crate::document::GripDocument;
+use crate::document::{GripDocument, Software};
 use crate::page::{Block, Page, Section};
 use crate::result::GrippedBody;
 use crate::study::bundle::{Bundle, Pictures, StudyError};
@@ -44,7 +44,7 @@ pub fn grip_bundle(body: &GrippedBody<'_>, pictures: Pictures) -> Result<Bundle,
     page = page
         .provenance("Material", &body.path)
         .provenance("SHA-256", &body.sha256)
-        .provenance("Software", format!("palpate {}", env!("CARGO_PKG_VERSION")));
+        .provenance("Software", Software::this().to_string());
     bundle.text("report.html", page.to_html());
     bundle.json("grip.json", &GripDocument::new(body))?;
     Ok(bundle)

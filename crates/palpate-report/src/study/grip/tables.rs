@@ -93,13 +93,19 @@ pub fn neighbour_table(body: &GrippedBody<'_>) -> Option<Table> {
         .column("beside it", "change_percent", "%", |(place, _)| {
             Cell::Number((100.0 * (place / squeeze.found.displacement - 1.0)).round(), 2)
         })
-        .column("Time to slip", "time_to_slip_s", "s", |(_, time)| time_to_slip(*time));
+        // No interval stands beside it, so that no more digits are meaningful.
+        .column("Time to slip", "time_to_slip_s", "s", |(_, time)| time_to_slip_rounded(*time, 2));
     Some(table.table())
 }
 
 /// How long something holds.
 fn time_to_slip(time: TimeToSlip) -> Cell {
-    time.seconds().map_or_else(|| Cell::text("never"), |seconds| Cell::Number(seconds, 4))
+    time_to_slip_rounded(time, 4)
+}
+
+/// Likewise, with so many significant digits.
+fn time_to_slip_rounded(time: TimeToSlip, digits: usize) -> Cell {
+    time.seconds().map_or_else(|| Cell::text("never"), |seconds| Cell::Number(seconds, digits))
 }
 
 /// What the parameters of the material do to overshoot and back off.

@@ -7,7 +7,7 @@ use palpate::fit::TrendVerdict;
 use palpate::segment::{After, Phase};
 
 use super::{figures, method, tables};
-use crate::document::AnalysisDocument;
+use crate::document::{AnalysisDocument, Software};
 use crate::number::significant;
 use crate::page::{Block, Page, Section};
 use crate::result::{Answer, ComparedRecord, Input, parameters_table};
@@ -97,7 +97,7 @@ fn page(
     if let Some(test) = &input.test {
         page = page.provenance("Test description", test);
     }
-    Ok(page.provenance("Software", format!("palpate {}", env!("CARGO_PKG_VERSION"))))
+    Ok(page.provenance("Software", Software::this().to_string()))
 }
 
 /// What was found, in a few sentences.

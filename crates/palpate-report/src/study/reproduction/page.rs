@@ -5,7 +5,7 @@ use palpate::segment::After;
 use palpate::simulate::Trajectory;
 
 use super::law_figures;
-use crate::document::ReproductionDocument;
+use crate::document::{ReproductionDocument, Software};
 use crate::figure::{Arrangement, Figure, Layer, Panel, Role};
 use crate::page::{Block, Page, Section};
 use crate::result::{ReproducedTest, Reproduction};
@@ -150,9 +150,7 @@ fn page(study: &Reproduction, figures: &[Figure], tables: &[Table]) -> Result<Pa
             .blocks(tables.iter().cloned().map(Block::Table)),
     )
     .section(Section::new("The strain wave").blocks(drawn(figures, "figure_7")?));
-    Ok(page
-        .provenance("Source", PAPER)
-        .provenance("Software", format!("palpate {}", env!("CARGO_PKG_VERSION"))))
+    Ok(page.provenance("Source", PAPER).provenance("Software", Software::this().to_string()))
 }
 
 /// All files of the reproduced study.
