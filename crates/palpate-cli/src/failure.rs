@@ -4,6 +4,8 @@ use anstyle::{AnsiColor, Style};
 use palpate_jobs::JobError;
 use palpate_report::spelling::with_flags;
 
+use crate::terminal::clean;
+
 /// Writes `error:` and `hint:` lines to standard error, in colour where it is a terminal.
 pub(crate) fn tell(error: &JobError) {
     line("error", AnsiColor::Red, &error.reported(with_flags));
@@ -14,5 +16,5 @@ pub(crate) fn tell(error: &JobError) {
 
 fn line(label: &str, color: AnsiColor, text: &str) {
     let style = Style::new().bold().fg_color(Some(color.into()));
-    anstream::eprintln!("{style}{label}:{style:#} {text}");
+    anstream::eprintln!("{style}{label}:{style:#} {}", clean(text));
 }

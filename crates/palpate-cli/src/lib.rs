@@ -14,6 +14,7 @@ mod arguments;
 mod commands;
 mod failure;
 mod progress;
+mod signals;
 mod terminal;
 
 use std::ffi::OsString;
@@ -22,6 +23,16 @@ use clap::Parser;
 use palpate_jobs::Verdict;
 
 use crate::arguments::{Arguments, Command};
+
+/// Runs the command as the work of this process, which ends at Ctrl-C, and then leaves nothing unfinished behind.
+pub fn main<I, T>(arguments: I) -> u8
+where
+    I: IntoIterator<Item = T>,
+    T: Into<OsString> + Clone,
+{
+    signals::watch();
+    run(arguments)
+}
 
 /// Runs the command with these arguments, of which the first is the name of the program, and returns its exit code: 0 done, 1 done
 /// but the verdict is negative, 2 could not run.

@@ -3,5 +3,5 @@
 use std::process::ExitCode;
 
 fn main() -> ExitCode {
-    ExitCode::from(palpate_cli::run(std::env::args_os()))
+    ExitCode::from(palpate_cli::main(std::env::args_os()))
 }

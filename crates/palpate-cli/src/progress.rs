@@ -5,6 +5,8 @@ use std::time::{Duration, Instant};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use palpate::watch::{Cancelled, Progress, Watch};
 
+use crate::terminal::clean;
+
 /// Work that is shown only once it has lasted a second.
 const QUIET: Duration = Duration::from_secs(1);
 
@@ -32,7 +34,7 @@ impl Bars {
                 bar
             }
         };
-        bar.set_message(progress.task.to_owned());
+        bar.set_message(clean(progress.task).into_owned());
         if progress.total.is_none() {
             bar.enable_steady_tick(QUIET);
         }

@@ -1,8 +1,11 @@
-//! Standard output that survives a closed pipe.
+//! The one way to the terminal: standard output that survives a closed pipe, and texts in which nothing moves the cursor.
 
+use std::borrow::Cow;
 use std::io::{self, Write};
 use std::path::Path;
 
+use palpate_files::faults::{Operation, before};
+use palpate_files::is_unprintable;
 use palpate_jobs::{ErrorKind, JobError};
 use palpate_report::spelling::with_flags;
 
@@ -13,15 +16,28 @@ pub(crate) fn measure() {
     }
 }
 
+/// A text for people without what would move the cursor or change the direction of writing; titles, units and names of files hold anything.
+pub(crate) fn clean(text: &str) -> Cow<'_, str> {
+    let harmful = |letter: char| is_unprintable(letter) && letter != '\n';
+    match text.contains(harmful) {
+        true => text
+            .chars()
+            .map(|letter| if harmful(letter) { char::REPLACEMENT_CHARACTER } else { letter })
+            .collect(),
+        false => Cow::Borrowed(text),
+    }
+}
+
 /// Writes `text` to standard output; a reader that has observed enough (`| head`) is no error.
 pub(crate) fn print(text: &str) -> Result<(), JobError> {
-    print_with(|out| out.write_all(text.as_bytes()))
+    print_with(|out| out.write_all(clean(text).as_bytes()))
 }
 
 /// Likewise, for output that is made as it goes.
 pub(crate) fn print_with(write: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> Result<(), JobError> {
     let mut out = io::BufWriter::new(io::stdout().lock());
-    match write(&mut out).and_then(|()| out.flush()) {
+    let begun = before(Operation::Write);
+    match begun.and_then(|()| write(&mut out)).and_then(|()| out.flush()) {
         Err(error) if error.kind() != io::ErrorKind::BrokenPipe => {
             let kind = ErrorKind::File(error.kind());
             Err(JobError::new(kind, format!("cannot write to standard output: {error}"), None))
@@ -30,9 +46,17 @@ pub(crate) fn print_with(write: impl FnOnce(&mut dyn Write) -> io::Result<()>) -
     }
 }
 
+/// What `write` writes, as bytes.
+pub(crate) fn written(write: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> Result<Vec<u8>, JobError> {
+    let mut bytes = Vec::new();
+    let kind = |error: io::Error| JobError::new(ErrorKind::File(error.kind()), error, None);
+    write(&mut bytes).map_err(kind)?;
+    Ok(bytes)
+}
+
 /// Tells something beside the data, on standard error.
 pub(crate) fn note(text: &str) {
-    anstream::eprintln!("{text}");
+    anstream::eprintln!("{}", clean(text));
 }
 
 /// Likewise, of several things.

@@ -31,6 +31,8 @@ macro_rules! shown_as_written {
 pub mod cell;
 pub mod description;
 mod error;
+#[doc(hidden)]
+pub mod faults;
 pub mod formats;
 pub mod input;
 pub mod naming;
@@ -39,4 +41,4 @@ pub mod parquet_table;
 pub mod record;
 pub mod table;
 
-pub use crate::error::{CellPosition, DecimalDoubt, FileError, FileProblem, Foreign};
+pub use crate::error::{CellPosition, DecimalDoubt, FileError, FileProblem, Foreign, is_unprintable};

@@ -13,7 +13,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::input::{OpenedFile, averaged};
-use crate::output::{check_ending, folder_of, place_file, unwritten_table};
+use crate::output::{Stage, check_ending, unwritten_table};
 use crate::{JobError, Outcome};
 
 /// Key of the provenance in the file.
@@ -82,7 +82,8 @@ impl Converted {
     pub fn write(&self, out: &Path) -> Result<(), JobError> {
         Self::check_name(out)?;
         let (file, origin) = (&self.file, &self.origin);
-        place_file(out, folder_of(out), |into| {
+        let mut stage = Stage::default();
+        stage.file(out, |into| {
             let into = io::BufWriter::new(into);
             let written = match out.extension().and_then(|ending| ending.to_str()) {
                 Some("parquet") => write_parquet(into, file, origin),
@@ -90,7 +91,8 @@ impl Converted {
                 _ => write_csv(into, file, origin).map_err(TableError::from),
             };
             written.map_err(|error| unwritten_table(out, &error))
-        })
+        })?;
+        stage.commit()
     }
 }
 

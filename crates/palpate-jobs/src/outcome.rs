@@ -1,5 +1,6 @@
 //! What a job gives: its result, and everything that can be made of it.
 
+use palpate_files::is_unprintable;
 use serde::Serialize;
 
 use crate::JobError;
@@ -37,11 +38,24 @@ pub trait Results {
     /// # Errors
     /// [`JobError`] where it has no form in JSON.
     fn json(&self) -> Result<String, JobError> {
-        Ok(serde_json::to_string_pretty(&self.document())? + "\n")
+        Ok(escaped(&serde_json::to_string_pretty(&self.document())?) + "\n")
     }
 
     /// Tables and sentences for people.
     fn text(&self) -> String;
+}
+
+/// JSON in which letters that no terminal should show are written as their numbers, which changes nothing of what it says.
+fn escaped(json: &str) -> String {
+    let mut out = String::with_capacity(json.len());
+    for letter in json.chars() {
+        if is_unprintable(letter) && letter != '\n' {
+            out.push_str(&format!("\\u{:04x}", u32::from(letter)));
+        } else {
+            out.push(letter);
+        }
+    }
+    out
 }
 
 impl<R> Outcome<R> {

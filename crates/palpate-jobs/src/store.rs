@@ -1,7 +1,8 @@
 //! What can be resumed: finished pieces of long work, in a folder beside the table that they are for.
 //!
 //! The folder holds a lock and one file. Its first line says what the pieces depend on. Every piece follows as a line with its key, length
-//! and digest, and its bytes; it counts only if it is whole. Work that was killed goes on with the pieces that are missing or damaged.
+//! and digest, and its bytes. Every line begins with the digest of the rest of it. A line or a piece counts only if it is whole; work that
+//! was killed goes on with the pieces that are missing or damaged.
 
 use std::collections::HashMap;
 use std::fs::{self, File, OpenOptions, TryLockError};
@@ -10,10 +11,12 @@ use std::ops::Range;
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
+use palpate_files::faults::{Operation, before};
+use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 
 use crate::JobError;
-use crate::output::{TEMPORARY, sha256, unwritten};
+use crate::output::{sha256, unwritten};
 
 const PIECES: &str = "pieces";
 const LOCK: &str = "lock";
@@ -46,17 +49,11 @@ impl Store {
     /// away, and so are all of them with `restart`.
     pub(crate) fn open(folder: &Path, work: &str, digest: &str, restart: bool) -> Result<Self, JobError> {
         let refused = |error: io::Error| unwritten(folder, &error);
-        fs::create_dir_all(folder).map_err(refused)?;
+        before(Operation::MakeFolder).and_then(|()| fs::create_dir_all(folder)).map_err(refused)?;
         let lock = locked(&folder.join(LOCK), work)?;
-        // What a kill left of a table that was being written.
-        for entry in fs::read_dir(folder).map_err(refused)?.flatten() {
-            if entry.file_name().to_string_lossy().starts_with(TEMPORARY) {
-                fs::remove_file(entry.path()).map_err(refused)?;
-            }
-        }
         let mut options = OpenOptions::new();
         let options = options.read(true).write(true).create(true).truncate(restart);
-        let file = options.open(folder.join(PIECES)).map_err(refused)?;
+        let file = before(Operation::Create).and_then(|()| options.open(folder.join(PIECES))).map_err(refused)?;
         let head = Head {
             palpate: work.to_owned(),
             depends_on_sha256: digest.to_owned(),
@@ -128,7 +125,8 @@ impl Store {
     fn append(&self, bytes: &[u8]) -> Result<u64, JobError> {
         let (file, end) = &mut *self.file();
         let from = *end;
-        let written = file.seek(SeekFrom::Start(from)).and_then(|_| file.write_all(bytes));
+        let written = before(Operation::Write).and_then(|()| file.seek(SeekFrom::Start(from)));
+        let written = written.and_then(|_| file.write_all(bytes));
         let written = written.and_then(|()| file.set_len(from + bytes.len() as u64));
         written.map_err(|error| unwritten(&self.folder, &error))?;
         *end = from + bytes.len() as u64;
@@ -145,7 +143,7 @@ pub(crate) fn is_store(folder: &Path) -> bool {
 pub(crate) fn depends_on(folder: &Path) -> Option<String> {
     let mut first = Vec::new();
     BufReader::new(File::open(folder.join(PIECES)).ok()?).read_until(b'\n', &mut first).ok()?;
-    Some(serde_json::from_slice::<Head>(&first).map(|head| head.depends_on_sha256).unwrap_or_default())
+    Some(stated::<Head>(&first).map(|head| head.depends_on_sha256).unwrap_or_default())
 }
 
 /// A name with this ending more, beside a table.
@@ -165,13 +163,13 @@ fn stock(file: &File, head: &Head) -> io::Result<(HashMap<String, Range<u64>>, u
             return Ok((found, end));
         }
         if end == 0 {
-            if serde_json::from_slice::<Head>(&line).ok().as_ref() != Some(head) {
+            if stated::<Head>(&line).as_ref() != Some(head) {
                 return Ok((found, 0));
             }
             end = from;
             continue;
         }
-        let Ok(about) = serde_json::from_slice::<PieceHead>(&line) else {
+        let Some(about) = stated::<PieceHead>(&line) else {
             return Ok((found, end));
         };
         let mut piece = Vec::new();
@@ -186,10 +184,17 @@ fn stock(file: &File, head: &Head) -> io::Result<(HashMap<String, Range<u64>>, u
     }
 }
 
+/// A line that states something, behind the digest of it.
 fn line(value: &impl Serialize) -> Result<Vec<u8>, JobError> {
-    let mut line = serde_json::to_vec(value)?;
-    line.push(b'\n');
-    Ok(line)
+    let stated = serde_json::to_string(value)?;
+    Ok(format!("{} {stated}\n", sha256(stated.as_bytes())).into_bytes())
+}
+
+/// What a line states, if it is whole.
+fn stated<T: DeserializeOwned>(line: &[u8]) -> Option<T> {
+    let line = std::str::from_utf8(line).ok()?;
+    let (digest, stated) = line.strip_suffix('\n')?.split_once(' ')?;
+    (sha256(stated.as_bytes()) == digest).then(|| serde_json::from_str(stated).ok())?
 }
 
 /// A file that only one `work` can hold at a time.
@@ -247,6 +252,31 @@ mod tests {
         let store = opened(folder.path(), "d");
         assert_eq!((store.find("a"), store.find("b")), (None, Some(places[1].clone())));
         assert_eq!(store.read(&store.add("a", b"a").unwrap()).unwrap(), b"a");
+    }
+
+    #[test]
+    fn a_line_of_which_one_byte_is_another_one_counts_for_nothing() {
+        let folder = tempfile::tempdir().unwrap();
+        let store = opened(folder.path(), "d");
+        let places = ["a", "b"].map(|key| store.add(key, key.as_bytes()).unwrap());
+        drop(store);
+        let whole = fs::read(folder.path().join(PIECES)).unwrap();
+        let first = whole.iter().position(|byte| *byte == b'\n').unwrap();
+        for at in (0..whole.len()).step_by(7) {
+            let mut damaged = whole.clone();
+            damaged[at] ^= 1;
+            fs::write(folder.path().join(PIECES), &damaged).unwrap();
+            let store = opened(folder.path(), "d");
+            let found = ["a", "b"].map(|key| store.find(key));
+            // Behind a damaged line nothing can be found; a damaged piece is missing alone.
+            let expected = match at as u64 {
+                at if at <= first as u64 => [None, None],
+                at if at < places[0].start => [None, None],
+                at if at < places[0].end => [None, Some(places[1].clone())],
+                _ => [Some(places[0].clone()), None],
+            };
+            assert_eq!(found, expected, "byte {at}");
+        }
     }
 
     #[test]

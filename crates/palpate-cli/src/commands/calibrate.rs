@@ -1,7 +1,7 @@
 //! `palpate calibrate`: a whole record to one set of numbers.
 
 use palpate_jobs::input::OpenedFile;
-use palpate_jobs::output::{check_figure, keep_apart, picture, write_file};
+use palpate_jobs::output::{Stage, check_figure, keep_apart, picture};
 use palpate_jobs::{JobError, Results, Verdict};
 
 use crate::arguments::{CalibrateArguments, Format};
@@ -20,12 +20,14 @@ pub(crate) fn run(requested: &CalibrateArguments) -> Result<Verdict, JobError> {
     let outcome = requested.job().run(measured, &mut Bars::default())?;
     notes(&outcome.notes);
     let drawn = figure.as_ref().map(|path| picture(path, &outcome.result.figure())).transpose()?;
+    let mut stage = Stage::default();
     if let (Some(path), Some(material)) = (out, outcome.result.material()) {
-        write_file(path, material.to_toml().as_bytes())?;
+        stage.bytes(path, material.to_toml().as_bytes())?;
     }
     if let (Some(path), Some(bytes)) = (figure, drawn) {
-        write_file(path, &bytes)?;
+        stage.bytes(path, &bytes)?;
     }
+    stage.commit()?;
     print(&match requested.format {
         Format::Text => outcome.result.text(),
         Format::Json => outcome.result.json()?,

@@ -1,6 +1,6 @@
 //! `palpate grip`: will it hold, and how to squeeze.
 
-use palpate_jobs::output::{check_figure, check_folder, keep_apart, picture, write_bundle, write_file};
+use palpate_jobs::output::{Stage, check_figure, check_folder, keep_apart, picture};
 use palpate_jobs::{JobError, MaterialSource, Results, Verdict};
 use palpate_report::study::{Pictures, grip_bundle, grip_figure};
 
@@ -16,12 +16,14 @@ pub(crate) fn run(requested: &GripArguments) -> Result<Verdict, JobError> {
     let material = MaterialSource::read(&requested.material)?;
     let outcome = requested.job.run(&material, &mut Bars::default())?;
     let drawn = figure.as_ref().map(|path| picture(path, &grip_figure(&outcome.result, "grip"))).transpose()?;
+    let mut stage = Stage::default();
     if let Some(folder) = out {
-        write_bundle(folder, &grip_bundle(&outcome.result, Pictures::default())?)?;
+        stage.bundle(folder, &grip_bundle(&outcome.result, Pictures::default())?)?;
     }
     if let (Some(path), Some(bytes)) = (figure, drawn) {
-        write_file(path, &bytes)?;
+        stage.bytes(path, &bytes)?;
     }
+    stage.commit()?;
     print(&match requested.format {
         Format::Text => outcome.result.text(),
         Format::Json => outcome.result.json()?,

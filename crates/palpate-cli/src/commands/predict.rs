@@ -1,12 +1,12 @@
 //! `palpate predict`: what a calibrated body does under a protocol.
 
 use palpate_files::description::{read_material, read_protocol_of};
-use palpate_jobs::output::{check_figure, keep_apart, picture, write_file, write_file_with};
+use palpate_jobs::output::{Stage, check_figure, keep_apart, picture};
 use palpate_jobs::{JobError, Verdict};
 
 use crate::arguments::PredictArguments;
 use crate::progress::Bars;
-use crate::terminal::{notes, print, print_with};
+use crate::terminal::{notes, print, print_with, written};
 
 pub(crate) fn run(requested: &PredictArguments) -> Result<Verdict, JobError> {
     let (material, protocol, figure) = (&requested.material, &requested.protocol, &requested.figure);
@@ -16,13 +16,16 @@ pub(crate) fn run(requested: &PredictArguments) -> Result<Verdict, JobError> {
     let of = (&read_protocol_of(protocol, &file)?, &*protocol.display().to_string());
     let outcome = job.run((&file, &material.display().to_string()), of, figure.is_some(), &mut Bars::default())?;
     let predicted = &outcome.result;
+    let mut stage = Stage::default();
     if let Some(path) = figure {
-        write_file(path, &picture(path, &predicted.figure())?)?;
+        stage.bytes(path, &picture(path, &predicted.figure())?)?;
     }
-    match &requested.out {
-        Some(path) => write_file_with(path, |out| predicted.write_series(out))?,
-        None if job.at_s.is_empty() => print_with(|out| predicted.write_series(out))?,
-        None => {}
+    if let Some(path) = &requested.out {
+        stage.bytes(path, &written(|out| predicted.write_series(out))?)?;
+    }
+    stage.commit()?;
+    if requested.out.is_none() && job.at_s.is_empty() {
+        print_with(|out| predicted.write_series(out))?;
     }
     if !job.at_s.is_empty() {
         print(&predicted.text())?;

@@ -1,12 +1,12 @@
 //! `palpate simulate`: protocol to series and figure.
 
 use palpate_jobs::input::{Described, OpenedFile};
-use palpate_jobs::output::{check_series, keep_apart, picture, write_file, write_file_with};
+use palpate_jobs::output::{Stage, check_series, keep_apart, picture};
 use palpate_jobs::{JobError, Simulated, Verdict};
 
 use crate::arguments::SimulateArguments;
 use crate::progress::Bars;
-use crate::terminal::{notes, print_with};
+use crate::terminal::{notes, print_with, written};
 
 pub(crate) fn run(requested: &SimulateArguments) -> Result<Verdict, JobError> {
     let series = [
@@ -56,12 +56,14 @@ pub(crate) fn run(requested: &SimulateArguments) -> Result<Verdict, JobError> {
     if let Some(path) = &requested.energy {
         made.push((path, simulated.energy(bars)?.into_bytes()));
     }
-    for (path, bytes) in &made {
-        write_file(path, bytes)?;
+    if let Some(path) = &requested.out {
+        made.push((path, written(|out| simulated.write_series(out))?));
     }
-    match &requested.out {
-        Some(path) => write_file_with(path, |out| simulated.write_series(out))?,
-        None => print_with(|out| simulated.write_series(out))?,
+    let mut stage = Stage::default();
+    made.iter().try_for_each(|(path, bytes)| stage.bytes(path, bytes))?;
+    stage.commit()?;
+    if requested.out.is_none() {
+        print_with(|out| simulated.write_series(out))?;
     }
     notes(&outcome.notes);
     Ok(outcome.verdict)

@@ -17,4 +17,5 @@ pub use file_error::{CellPosition, DecimalDoubt, FileError, FileProblem};
 pub use foreign::Foreign;
 pub(crate) use foreign::{mostly_control, recognise_foreign};
 pub(crate) use hint::hint_of_text;
+pub use shown::is_unprintable;
 pub(crate) use shown::{few, is_plain, plain, shown};

@@ -5,16 +5,26 @@
 /// Most letters of a file's own words in a message.
 const MOST: usize = 240;
 
-/// Whether every letter is one to look at.
-pub(crate) fn is_plain(text: &str) -> bool {
-    !text.chars().any(char::is_control)
+/// Whether a letter is none to look at: it moves the cursor of a terminal, or changes the direction or the place of those around it.
+#[must_use]
+pub fn is_unprintable(letter: char) -> bool {
+    letter.is_control()
+        || matches!(
+            letter,
+            '\u{61c}' | '\u{200b}'..='\u{200f}' | '\u{2028}'..='\u{202e}' | '\u{2060}'..='\u{206f}' | '\u{feff}'
+        )
 }
 
-/// `text` on one line: ends of lines and tabs as blanks, other control characters as �.
+/// Whether every letter is one to look at.
+pub(crate) fn is_plain(text: &str) -> bool {
+    !text.chars().any(is_unprintable)
+}
+
+/// `text` on one line: ends of lines and tabs as blanks, other control characters and marks of direction as �.
 pub(crate) fn plain(text: &str) -> String {
     let shown = |letter: char| match letter {
         '\t' | '\n' | '\r' => ' ',
-        letter if letter.is_control() => char::REPLACEMENT_CHARACTER,
+        letter if is_unprintable(letter) => char::REPLACEMENT_CHARACTER,
         letter => letter,
     };
     text.chars().map(shown).collect()
@@ -72,6 +82,7 @@ mod tests {
     #[test]
     fn nothing_moves_the_cursor_or_fills_the_screen() {
         assert_eq!(shown("a\tb\r\nc\u{1b}[2J\u{9b}x\0"), "a b  c\u{fffd}[2J\u{fffd}x\u{fffd}");
+        assert_eq!(shown("1\u{202e}N"), "1\u{fffd}N");
         assert_eq!(shown(&"ä".repeat(1000)).chars().count(), MOST + 1);
         assert_eq!(shown(" \t"), "nothing");
         assert!(is_plain("5 µm ≥ 力") && !is_plain("\u{7f}"));

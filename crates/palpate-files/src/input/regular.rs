@@ -7,7 +7,10 @@ use std::{
     time::SystemTime,
 };
 
-use crate::error::{FileError, FileProblem};
+use crate::{
+    error::{FileError, FileProblem},
+    faults::admits,
+};
 
 /// Whether a name means standard input.
 #[must_use]
@@ -63,7 +66,7 @@ pub fn read_whole(path: &Path, most: u64) -> Result<Option<Vec<u8>>, FileError> 
         return piped(path, most);
     }
     let (file, about) = open_regular(path)?;
-    if about.len() > most {
+    if !admits(about.len(), most) {
         return Ok(None);
     }
     // It may grow meanwhile.

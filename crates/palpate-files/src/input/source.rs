@@ -15,7 +15,10 @@ use super::{
     packing::{self, MOST_UNPACKED, Packing},
     regular::{Stamp, is_standard_input, open_regular, read_whole},
 };
-use crate::error::{FileError, FileProblem};
+use crate::{
+    error::{FileError, FileProblem},
+    faults::admits,
+};
 
 /// Most bytes of a file that is held in memory as a whole: a workbook, a force curve, a packed table (2 GiB).
 pub const MOST_IN_MEMORY: u64 = 2 << 30;
@@ -189,7 +192,7 @@ impl Input {
         let read = self.reader()?.take(most + 1).read_to_end(&mut bytes);
         read.map_err(|error| self.failed(error))?;
         match bytes.len() as u64 {
-            length if length <= most => Ok(bytes),
+            length if admits(length, most) => Ok(bytes),
             _ if most < MOST_IN_MEMORY => Err(self.beyond_limit()),
             _ => Err(self.too_large("the file", most)),
         }
@@ -203,7 +206,7 @@ impl Input {
 
     /// An error where `bytes` that `what` unpacks to are more than `most`, or than is [`warranted`](Self::warranted).
     pub(crate) fn bounded(&self, bytes: u64, what: &'static str, most: u64) -> Result<(), FileError> {
-        if bytes > most {
+        if !admits(bytes, most) {
             return Err(self.too_large(what, most));
         }
         if bytes > self.warranted() { Err(self.beyond_limit()) } else { Ok(()) }

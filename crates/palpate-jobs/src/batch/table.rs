@@ -6,6 +6,7 @@ use std::ops::Range;
 use std::path::{Path, PathBuf};
 
 use palpate_files::parquet_table::{Field, TableError, TableWriter};
+use palpate_report::table::text_cell;
 use serde_json::Value;
 
 use super::answer::Tally;
@@ -13,8 +14,8 @@ use super::parameters;
 use super::rows::{self, table_rows};
 use super::{Batched, Entry};
 use crate::JobError;
-use crate::output::{check_ending, check_no_folder, place_file, unwritten_table};
-use crate::store::{Store, beside};
+use crate::output::{Stage, check_ending, check_no_folder, unwritten_table};
+use crate::store::Store;
 use crate::written_by_batch::MARK;
 
 /// How the table is written.
@@ -46,26 +47,25 @@ pub(super) fn write<'a>(
     let mut tally = Tally::new();
     let of_parameters = of_parameters(out);
     let refused = |error: TableError| unwritten_table(out, &error);
-    // In the folder of the store, where the next batch clears away what a kill leaves behind.
-    let folder = beside(out, ".journal");
-    place_file(out, &folder, |file| {
-        let mut sink = Sink::new(format, BufWriter::new(file), rows::fields(), settings).map_err(refused)?;
-        place_file(&of_parameters, &folder, |file| {
-            let fields = parameters::fields();
-            let mut parameters = Sink::new(format, BufWriter::new(file), fields, settings).map_err(refused)?;
-            for place in places {
-                let entry: Entry = serde_json::from_slice(&store.read(place)?)?;
-                tally.add(&entry);
-                batched.rows += entry.rows.len();
-                batched.tests += entry.tests;
-                batched.failures.extend(entry.failures);
-                sink.write(&entry.rows).map_err(refused)?;
-                parameters.write(&entry.parameters).map_err(refused)?;
-            }
-            parameters.finish(settings).map_err(refused)
-        })?;
-        sink.finish(settings).map_err(refused)
-    })?;
+    let mut stage = Stage::default();
+    let (mut table, mut tidy) = (stage.open(out)?, stage.open(&of_parameters)?);
+    let mut sink = Sink::new(format, BufWriter::new(&mut table), rows::fields(), settings).map_err(refused)?;
+    let mut parameters =
+        Sink::new(format, BufWriter::new(&mut tidy), parameters::fields(), settings).map_err(refused)?;
+    for place in places {
+        let entry: Entry = serde_json::from_slice(&store.read(place)?)?;
+        tally.add(&entry);
+        batched.rows += entry.rows.len();
+        batched.tests += entry.tests;
+        batched.failures.extend(entry.failures);
+        sink.write(&entry.rows).map_err(refused)?;
+        parameters.write(&entry.parameters).map_err(refused)?;
+    }
+    sink.finish(settings).map_err(refused)?;
+    parameters.finish(settings).map_err(refused)?;
+    stage.take(table)?;
+    stage.take(tidy)?;
+    stage.commit()?;
     batched.answer = tally.answer(compared);
     Ok(batched)
 }
@@ -124,7 +124,7 @@ impl<W: Write + Send> Sink<W> {
 fn cell(value: &Value) -> String {
     match value {
         Value::Null => String::new(),
-        Value::String(text) => text.clone(),
+        Value::String(text) => text_cell(text).into_owned(),
         other => other.to_string(),
     }
 }

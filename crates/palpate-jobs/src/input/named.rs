@@ -8,7 +8,7 @@ use palpate::watch::Watch;
 use palpate_files::input::is_standard_input;
 
 use super::{Described, Measurement, OpenedFile};
-use crate::output::{file_name, folder_in};
+use crate::output::Names;
 use crate::written_by_batch::is_written_by_batch;
 use crate::{ErrorKind, JobError};
 
@@ -86,26 +86,26 @@ impl NamedRecords {
         mut take: impl FnMut(Part<'_>, &mut dyn Watch) -> Result<(), JobError>,
     ) -> Result<(), JobError> {
         let alone = self.paths.len() == 1;
-        let mut taken = Vec::new();
+        let mut names = Names::default();
         for path in &self.paths {
             let folder = out.map(|out| match alone {
                 true => out.to_owned(),
                 false => {
                     let stem = path.file_stem().unwrap_or(path.as_os_str()).to_string_lossy();
-                    folder_in(out, &stem, &mut taken)
+                    names.folder_in(out, &stem)
                 }
             });
             let opened = OpenedFile::open(path, &self.described);
             opened.iter().for_each(|opened| reported(&opened.notes()));
             let parts = opened.as_ref().map_or(&[0][..], |opened| &opened.tests.parts);
-            let (several, mut taken) = (parts.len() > 1, Vec::new());
+            let (several, mut names) = (parts.len() > 1, Names::default());
             for part in parts {
                 let (name, measurement) = match &opened {
                     Ok(opened) => (opened.name(*part), opened.measurement(*part, watch)),
                     Err(error) => (None, Err(error.clone())),
                 };
                 let folder = folder.as_ref().map(|folder| match name {
-                    Some(name) if several => folder_in(folder, &file_name(name), &mut taken),
+                    Some(name) if several => names.folder_in(folder, name),
                     _ => folder.clone(),
                 });
                 let only = alone && !several;

@@ -23,7 +23,7 @@ use serde::{Deserialize, Serialize};
 pub use rows::{fields as sweep_fields, simulated as sweep_rows};
 
 use crate::depends::Dependencies;
-use crate::output::{check_ending, check_no_folder, keep_apart, place_file, unwritten_table, write_file};
+use crate::output::{Stage, check_ending, check_no_folder, keep_apart, unwritten_table, write_file};
 use crate::store::{Store, beside, depends_on};
 use crate::threads::over_threads;
 use crate::{JobError, Outcome};
@@ -158,8 +158,8 @@ impl Sweep {
             let (rows, _) = sweep_rows(sweep, path, runs_of(part), &[], &mut |_: Progress<'_>| share.advance(1))?;
             store.add(&key, &packed(&fields, rows).map_err(|error| unwritten_table(&folder, &error))?)
         })?;
-        // In the folder of the parts, where the next sweep clears away what a kill leaves behind.
-        place_file(out, &folder, |file| {
+        let mut stage = Stage::default();
+        stage.file(out, |file| {
             let refused = |error: TableError| unwritten_table(out, &error);
             let mut writer = TableWriter::new(file, &fields).map_err(refused)?;
             for place in &places {
@@ -167,6 +167,7 @@ impl Sweep {
             }
             writer.finish(&[(MARK, &digest)]).map_err(refused)
         })?;
+        stage.commit()?;
         store.remove()?;
         Ok(done)
     }

@@ -1,6 +1,18 @@
 //! Tables as CSV after RFC 4180.
 
-use super::Table;
+use std::borrow::Cow;
+
+use super::{Cell, Table};
+
+/// A text as a cell of CSV: one that a spreadsheet would compute as a formula is marked as text by an apostrophe. Titles and names of files
+/// come from anywhere.
+#[must_use]
+pub fn text_cell(text: &str) -> Cow<'_, str> {
+    match text.starts_with(['=', '+', '-', '@', '\t', '\r']) {
+        true => Cow::Owned(format!("'{text}")),
+        false => Cow::Borrowed(text),
+    }
+}
 
 pub(crate) fn write(table: &Table) -> String {
     let mut writer = csv::WriterBuilder::new().terminator(csv::Terminator::CRLF).from_writer(Vec::new());
@@ -12,7 +24,8 @@ pub(crate) fn write(table: &Table) -> String {
     for row in 0..table.rows.len() {
         let _ = writer.write_record(table.columns.iter().enumerate().flat_map(|(index, column)| {
             let cell = table.cell(row, index);
-            [cell.stored()].into_iter().chain(cell.stored_errors().into_iter().filter(|_| column.is_estimate))
+            let own = if let Cell::Text(text) = cell { text_cell(text).into_owned() } else { cell.stored() };
+            [own].into_iter().chain(cell.stored_errors().into_iter().filter(|_| column.is_estimate))
         }));
     }
     let bytes = writer.into_inner().unwrap_or_default();
@@ -21,7 +34,7 @@ pub(crate) fn write(table: &Table) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::super::{Cell, Table};
+    use super::*;
 
     #[test]
     fn another_reader_gets_every_value_back() {
@@ -42,6 +55,16 @@ mod tests {
             assert_eq!(&rows[i][1], word);
         }
         assert_eq!(rows[4], vec!["", "-7"]);
+    }
+
+    #[test]
+    fn a_text_that_a_spreadsheet_would_compute_is_marked() {
+        let mut table = Table::new("t", "").column("Title", "title", "").column("Force", "force_n", "N");
+        for title in ["=1+1", "+1", "-1", "@SUM(A1)", "1=1"] {
+            table = table.row(vec![Cell::text(title), Cell::Number(-1.0, 3)]);
+        }
+        let rows = "title,force_n\r\n'=1+1,-1\r\n'+1,-1\r\n'-1,-1\r\n'@SUM(A1),-1\r\n1=1,-1\r\n";
+        assert_eq!(table.to_csv(), rows);
     }
 
     #[test]

@@ -17,6 +17,7 @@ mod markdown;
 mod plain;
 
 pub use cell::Cell;
+pub use csv::text_cell;
 use palpate::units::suited;
 
 /// One column of a table.

@@ -19,6 +19,7 @@ use super::{
 };
 use crate::{
     error::FileError,
+    faults::admits,
     input::{Input, InputReader, MOST_IN_MEMORY},
 };
 
@@ -133,7 +134,7 @@ impl<'a> Messages<'a> {
         let head = self.take(u64::from(length), "a message")?;
         let body = root_as_message(&head).map_err(|error| self.wrong(&error.to_string()))?.bodyLength();
         let body = u64::try_from(body).map_err(|_| self.wrong("a negative length"))?;
-        if body > MOST_IN_MEMORY {
+        if !admits(body, MOST_IN_MEMORY) {
             return Err(self.input.too_large("a batch of rows", MOST_IN_MEMORY));
         }
         let body = self.take(body, "a batch of rows")?;

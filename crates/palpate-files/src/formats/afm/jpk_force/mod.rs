@@ -20,6 +20,7 @@ mod stored;
 
 use crate::{
     error::{FileError, FileProblem},
+    faults::admits,
     formats::afm::{
         assemble::assemble,
         curve::{Curve, Segment},
@@ -231,7 +232,7 @@ impl JpkForce {
             return Ok(Vec::new());
         }
         let most = (rows as u64).saturating_mul(width as u64);
-        if most > MOST_CHANNEL {
+        if !admits(most, MOST_CHANNEL) {
             return Err(self.input.too_large("a channel of a segment", MOST_CHANNEL));
         }
         let bytes = archive.beginning(&channel.member, most + 1)?;

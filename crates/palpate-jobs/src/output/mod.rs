@@ -1,0 +1,176 @@
+//! Files that appear whole or not at all, and never in the place of one that is read.
+//!
+//! | file | what |
+//! |---|---|
+//! | `stage.rs` | the one way out: files that appear together ([`Stage`]) |
+//! | `temporary.rs` | folders for what is not finished, removed on errors, on signals and after kills |
+//! | `bundle.rs` | all files of a report |
+//! | `target.rs` | where a file may go, and what stands in its way |
+//! | `names.rs` | names that every system can hold |
+
+mod bundle;
+mod names;
+mod stage;
+mod target;
+mod temporary;
+
+use std::path::Path;
+
+use palpate_report::figure::Figure;
+use sha2::{Digest, Sha256};
+
+pub use bundle::write_bundle;
+pub(crate) use names::Names;
+pub use stage::{Stage, StagedFile};
+pub use target::check_folder;
+pub(crate) use target::{check_no_folder, unwritten, unwritten_table};
+use target::{check_regular, standing};
+pub use temporary::abandon;
+
+use crate::{ErrorKind, JobError};
+
+/// Resolution of PNG figures.
+const DPI: f64 = 300.0;
+
+/// Refuses to write a file that is read, for a measured record cannot be had again, and what is no regular file.
+///
+/// # Errors
+/// [`JobError`] with the first of `writes` that is among `reads`, through links too, or that is a directory, a pipe or a device.
+pub fn keep_apart<R: AsRef<Path>, W: AsRef<Path>>(
+    reads: impl IntoIterator<Item = R>,
+    writes: impl IntoIterator<Item = W>,
+) -> Result<(), JobError> {
+    let (reads, writes): (Vec<R>, Vec<W>) = (reads.into_iter().collect(), writes.into_iter().collect());
+    match writes.iter().find(|out| reads.iter().any(|read| is_same(read.as_ref(), out.as_ref()))) {
+        Some(out) => Err(JobError::option(
+            "expected an output file that is not an input, found an input",
+            "choose another name for the output",
+        )
+        .of(out.as_ref().display())),
+        None => writes.iter().try_for_each(|out| check_regular(out.as_ref(), out.as_ref())),
+    }
+}
+
+/// Whether two paths lead to one file, through links too.
+pub(crate) fn is_same(one: &Path, other: &Path) -> bool {
+    match (one.canonicalize(), other.canonicalize()) {
+        (Ok(one), Ok(other)) => one == other,
+        _ => one == other,
+    }
+}
+
+/// Writes one file.
+///
+/// # Errors
+/// [`JobError`] where the operating system takes no file there.
+pub fn write_file(path: &Path, content: &[u8]) -> Result<(), JobError> {
+    let mut stage = Stage::default();
+    stage.bytes(path, content)?;
+    stage.commit()
+}
+
+/// SHA-256 of bytes, hexadecimal.
+#[must_use]
+pub fn sha256(content: &[u8]) -> String {
+    hexadecimal(Sha256::digest(content))
+}
+
+/// A digest in hexadecimal.
+pub(crate) fn hexadecimal(bytes: impl AsRef<[u8]>) -> String {
+    bytes.as_ref().iter().map(|byte| format!("{byte:02x}")).collect()
+}
+
+/// Endings of files that only a build with some feature writes, and that feature.
+const NOT_IN_THIS_BUILD: &[(&str, &str)] = &[
+    #[cfg(not(feature = "arrow"))]
+    ("parquet", "arrow"),
+    #[cfg(not(feature = "png"))]
+    ("png", "png"),
+];
+
+/// Refuses a name without one of these endings, before any work is done; `expected` and `hint` say what is meant.
+pub(crate) fn check_ending(path: &Path, endings: &[&str], expected: &str, hint: &str) -> Result<(), JobError> {
+    let ending = path.extension().and_then(|ending| ending.to_str()).unwrap_or_default();
+    if !endings.contains(&ending) {
+        if path.is_dir() {
+            let message = format!("expected {expected}, found {}", standing(path));
+            let name = path.join("FILE").with_extension(endings[0]);
+            return Err(JobError::option(message, &format!("name a file in it: {}", name.display())).of(path.display()));
+        }
+        return Err(JobError::option(format!("expected {expected}"), hint).of(path.display()));
+    }
+    if let Some((_, feature)) = NOT_IN_THIS_BUILD.iter().find(|(absent, _)| *absent == ending) {
+        let message = format!("expected a format of this build, found one that needs the feature `{feature}`");
+        let hint = format!("build palpate with the feature `{feature}`, which is enabled by default");
+        return Err(JobError::option(message, &hint).of(path.display()));
+    }
+    Ok(())
+}
+
+/// Refuses names of figures that say no format.
+///
+/// # Errors
+/// [`JobError`] where the name does not end in `.svg` or `.png`.
+pub fn check_figure(path: &Path) -> Result<(), JobError> {
+    check_ending(path, &["svg", "png"], "a figure ending in .svg or .png", "name the figure FILE.svg or FILE.png")
+}
+
+/// Refuses names of series that do not end in `.csv`.
+///
+/// # Errors
+/// [`JobError`] for any other name.
+pub fn check_series(path: &Path) -> Result<(), JobError> {
+    check_ending(path, &["csv"], "a series ending in .csv", "name the series FILE.csv")
+}
+
+/// Refuses a file that is there: a description that a person has worked on is not written over.
+///
+/// # Errors
+/// [`JobError`] where there is such a file.
+pub fn check_new(path: &Path) -> Result<(), JobError> {
+    if path.exists() {
+        let hint = "choose another name with ⟨write_test⟩, or remove the file first";
+        let message = "expected the name of a new file, found an existing file";
+        return Err(JobError::option(message, hint).of(path.display()));
+    }
+    Ok(())
+}
+
+/// The bytes of a figure, by the ending of its name.
+///
+/// # Errors
+/// [`JobError`] where the name says no format, or the figure cannot be drawn.
+pub fn picture(path: &Path, figure: &Figure) -> Result<Vec<u8>, JobError> {
+    check_figure(path)?;
+    let drawn = match path.extension().and_then(|extension| extension.to_str()) {
+        Some("png") => figure.to_png(DPI),
+        _ => figure.to_svg().map(String::into_bytes),
+    };
+    drawn.map_err(|error| JobError::new(ErrorKind::Report, error, None).of(path.display()))
+}
+
+/// The name of a figure in a file.
+pub(crate) fn stem(path: &Path) -> String {
+    path.file_stem().map_or("figure".to_owned(), |stem| stem.to_string_lossy().into_owned())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// With all features both names pass; `validation/long_proofs.sh features` runs this without them.
+    #[test]
+    fn what_a_build_cannot_write_is_refused_before_any_work() {
+        for (name, feature, is_there) in
+            [("a.parquet", "arrow", cfg!(feature = "arrow")), ("a.png", "png", cfg!(feature = "png"))]
+        {
+            let checked = check_ending(Path::new(name), &["parquet", "png"], "a table or a figure", "");
+            let refused = checked.err().map(|error| error.to_string());
+            let expected =
+                format!("{name}: expected a format of this build, found one that needs the feature `{feature}`");
+            assert_eq!(refused, (!is_there).then_some(expected));
+        }
+        let other = check_ending(Path::new("a.txt"), &["csv"], "a table ending in .csv", "").unwrap_err();
+        assert_eq!(other.to_string(), "a.txt: expected a table ending in .csv");
+    }
+}

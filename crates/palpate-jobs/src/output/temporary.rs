@@ -1,0 +1,194 @@
+//! Folders for what is not finished: removed on an error, when a signal ends the process, and by the next run after a kill.
+
+use std::fs::{self, File};
+use std::io;
+use std::path::{Path, PathBuf};
+use std::sync::{Mutex, MutexGuard, PoisonError};
+
+use palpate_files::faults::{Operation, before};
+
+/// Begin of the names of temporary folders.
+const PREFIX: &str = ".palpate-";
+
+/// Held by the process that works in a temporary folder; one without a holder is left from a kill.
+const LOCK: &str = "lock";
+
+/// What a signal removes, and whether one has.
+struct Unfinished {
+    folders: Vec<PathBuf>,
+    abandoned: bool,
+}
+
+static UNFINISHED: Mutex<Unfinished> = Mutex::new(Unfinished {
+    folders: Vec::new(),
+    abandoned: false,
+});
+
+/// While this is held no signal removes anything.
+pub(super) struct Undisturbed(MutexGuard<'static, Unfinished>);
+
+/// Waits until no signal is being handled.
+///
+/// # Errors
+/// Where one was: the process ends, and nothing more is written.
+pub(super) fn undisturbed() -> io::Result<Undisturbed> {
+    let guard = UNFINISHED.lock().unwrap_or_else(PoisonError::into_inner);
+    if guard.abandoned { Err(io::ErrorKind::Interrupted.into()) } else { Ok(Undisturbed(guard)) }
+}
+
+/// Removes all that is not finished; from here on no file appears. For a process that is about to end.
+pub fn abandon() {
+    let mut guard = UNFINISHED.lock().unwrap_or_else(PoisonError::into_inner);
+    guard.abandoned = true;
+    for folder in guard.folders.drain(..).rev() {
+        // What was made for temporary folders goes with them, if nothing else has come into it.
+        let is_temporary = folder.file_name().is_some_and(|name| name.to_string_lossy().starts_with(PREFIX));
+        let _ = if is_temporary { fs::remove_dir_all(&folder) } else { fs::remove_dir(&folder) };
+    }
+}
+
+/// A folder that is made, with those above it, and removed again where the work does not succeed.
+pub(super) struct Folders {
+    made: Vec<PathBuf>,
+}
+
+impl Folders {
+    /// Makes the folder and what is missing above it.
+    pub(super) fn make(folder: &Path) -> io::Result<Self> {
+        let mut missing: Vec<&Path> =
+            folder.ancestors().take_while(|path| !path.as_os_str().is_empty() && !path.exists()).collect();
+        missing.reverse();
+        let mut folders = Self { made: Vec::new() };
+        for path in missing {
+            let mut guard = undisturbed()?;
+            before(Operation::MakeFolder)?;
+            match fs::create_dir(path) {
+                Err(error) if error.kind() == io::ErrorKind::AlreadyExists && path.is_dir() => continue,
+                made => made?,
+            }
+            guard.0.folders.push(path.to_owned());
+            folders.made.push(path.to_owned());
+        }
+        Ok(folders)
+    }
+
+    /// They stay.
+    pub(super) fn keep(mut self) -> Vec<PathBuf> {
+        let made = std::mem::take(&mut self.made);
+        forget(&made);
+        made
+    }
+}
+
+impl Drop for Folders {
+    fn drop(&mut self) {
+        for path in self.made.iter().rev() {
+            // One into which others have written since stays.
+            let _ = fs::remove_dir(path);
+        }
+        forget(&self.made);
+    }
+}
+
+fn forget(paths: &[PathBuf]) {
+    let mut guard = UNFINISHED.lock().unwrap_or_else(PoisonError::into_inner);
+    guard.folders.retain(|path| !paths.contains(path));
+}
+
+/// A temporary folder with a lock in it.
+pub(super) struct Temporary {
+    path: PathBuf,
+    _lock: File,
+}
+
+impl Temporary {
+    /// Makes one in `folder`, and removes what kills have left there.
+    pub(super) fn make(folder: &Path) -> io::Result<Self> {
+        remove_stale(folder);
+        loop {
+            let mut guard = undisturbed()?;
+            before(Operation::MakeFolder)?;
+            let path = tempfile::Builder::new().prefix(PREFIX).tempdir_in(folder)?.keep();
+            guard.0.folders.push(path.clone());
+            drop(guard);
+            match locked(&path) {
+                Ok(Some(lock)) => return Ok(Self { path, _lock: lock }),
+                // Another process has taken it for one that a kill had left, in the moment between folder and lock.
+                Ok(None) => forget(&[path]),
+                Err(error) => {
+                    let _ = fs::remove_dir_all(&path);
+                    forget(&[path]);
+                    return Err(error);
+                }
+            }
+        }
+    }
+
+    pub(super) fn path(&self) -> &Path {
+        &self.path
+    }
+}
+
+impl Drop for Temporary {
+    fn drop(&mut self) {
+        let _ = fs::remove_dir_all(&self.path);
+        forget(std::slice::from_ref(&self.path));
+    }
+}
+
+/// The lock of a new temporary folder; `None` where the folder is gone again.
+fn locked(folder: &Path) -> io::Result<Option<File>> {
+    let path = folder.join(LOCK);
+    before(Operation::Create)?;
+    let file = match File::create_new(&path) {
+        Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(None),
+        made => made?,
+    };
+    match file.try_lock() {
+        Ok(()) => Ok(path.exists().then_some(file)),
+        Err(fs::TryLockError::WouldBlock) => Ok(None),
+        // A file system without locks: nothing is ever stale there.
+        Err(fs::TryLockError::Error(error)) if error.kind() == io::ErrorKind::Unsupported => Ok(Some(file)),
+        Err(fs::TryLockError::Error(error)) => Err(error),
+    }
+}
+
+/// Removes the temporary folders that nobody holds.
+fn remove_stale(folder: &Path) {
+    for entry in fs::read_dir(folder).into_iter().flatten().flatten() {
+        let path = entry.path();
+        if !entry.file_name().to_string_lossy().starts_with(PREFIX) || !path.is_dir() || path.is_symlink() {
+            continue;
+        }
+        match File::open(path.join(LOCK)) {
+            Ok(lock) if lock.try_lock().is_ok() => {
+                let _ = fs::remove_dir_all(&path);
+            }
+            // Only an empty one goes.
+            Err(error) if error.kind() == io::ErrorKind::NotFound => {
+                let _ = fs::remove_dir(&path);
+            }
+            _ => {}
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_a_kill_left_is_removed_and_what_is_held_stays() {
+        let folder = tempfile::tempdir().unwrap();
+        let held = Temporary::make(folder.path()).unwrap();
+        let left = folder.path().join(".palpate-left");
+        fs::create_dir(&left).unwrap();
+        for name in [LOCK, "table.csv"] {
+            fs::write(left.join(name), "").unwrap();
+        }
+        let second = Temporary::make(folder.path()).unwrap();
+        assert!(!left.exists() && held.path().exists() && second.path().exists());
+        drop((held, second));
+        assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 0);
+    }
+}
