@@ -166,9 +166,9 @@ impl Analyzed {
     /// Report, document, tables and figures by their names.
     ///
     /// # Errors
-    /// [`JobError`] where a figure or document cannot be made.
-    pub fn bundle(&self, pictures: Pictures) -> Result<Bundle, JobError> {
-        Ok(analysis_bundle(&self.analysis, self.input.clone(), pictures)?)
+    /// [`JobError`] where a figure or document cannot be made, or the watch ends it.
+    pub fn bundle(&self, pictures: Pictures, watch: &mut dyn Watch) -> Result<Bundle, JobError> {
+        Ok(analysis_bundle(&self.analysis, self.input.clone(), pictures, watch)?)
     }
 }
 

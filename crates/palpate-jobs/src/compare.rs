@@ -224,9 +224,9 @@ impl Compared {
     /// Report, document, tables and figures by their names.
     ///
     /// # Errors
-    /// [`JobError`] where a figure or document cannot be made.
-    pub fn bundle(&self, pictures: Pictures) -> Result<Bundle, JobError> {
-        Ok(comparison_bundle(&self.records, &self.left_out, self.settings(), pictures)?)
+    /// [`JobError`] where a figure or document cannot be made, or the watch ends it.
+    pub fn bundle(&self, pictures: Pictures, watch: &mut dyn Watch) -> Result<Bundle, JobError> {
+        Ok(comparison_bundle(&self.records, &self.left_out, self.settings(), pictures, watch)?)
     }
 
     /// One table of all records and holds.

@@ -134,7 +134,10 @@ impl From<DescriptionError> for JobError {
 
 impl From<StudyError> for JobError {
     fn from(error: StudyError) -> Self {
-        Self::new(ErrorKind::Report, error, None)
+        match error {
+            StudyError::Cancelled(cancelled) => cancelled.into(),
+            error => Self::new(ErrorKind::Report, error, None),
+        }
     }
 }
 

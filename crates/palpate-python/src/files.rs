@@ -319,7 +319,7 @@ pub(crate) fn sweep(
 pub(crate) fn reproduce(py: Python<'_>, folder: PathBuf, png: bool) -> PyResult<bool> {
     job(py, move |watch| {
         let done = Reproduce {}.run(watch)?;
-        write_bundle(&folder, &reproduction_bundle(&done.result, Pictures { png })?)?;
+        write_bundle(&folder, &reproduction_bundle(&done.result, Pictures { png }, watch)?)?;
         Ok(done.result.all_passed())
     })
 }

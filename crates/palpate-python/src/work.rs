@@ -1,9 +1,10 @@
 //! Long work beside the interpreter: without the GIL, ended by Ctrl-C, and no panic crosses.
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
-use std::sync::Arc;
+use std::process;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::sync::mpsc::{RecvTimeoutError, channel};
+use std::sync::{Arc, Mutex};
 use std::thread;
 use std::time::Duration;
 
@@ -11,6 +12,7 @@ use palpate::watch::{Cancelled, Progress, Watch};
 use palpate_jobs::JobError;
 use pyo3::PyTypeInfo;
 use pyo3::prelude::*;
+use rayon::{ThreadPool, ThreadPoolBuildError, ThreadPoolBuilder};
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 
@@ -100,10 +102,15 @@ pub(crate) fn at_length_reported<T: Send + 'static>(
 ) -> PyResult<T> {
     let (heard, (sender, mut receiver)) = (Heard::default(), channel());
     let (stop, done) = (Arc::clone(&heard.stop), Arc::clone(&heard.done));
-    thread::spawn(move || {
-        // Nobody listens any more after Ctrl-C.
+    let worker = thread::spawn(move || {
+        // The receiver lives until this thread has ended.
         let _ = sender.send(catch_unwind(AssertUnwindSafe(|| work(heard))));
     });
+    // An exception ends the work before it ends the call: nothing is computed or written behind the back of the caller.
+    let ended = |worker: thread::JoinHandle<()>| {
+        stop.store(true, Ordering::Relaxed);
+        py.detach(|| worker.join()).map_err(|panic| broken(panic.as_ref()))
+    };
     let look = || match tell {
         Some(tell) => tell.call1(py, (done.load(Ordering::Relaxed),)).map(drop),
         None => Ok(()),
@@ -116,15 +123,43 @@ pub(crate) fn at_length_reported<T: Send + 'static>(
         receiver = back;
         match waited {
             Ok(done) => {
-                look()?;
+                // Ctrl-C in the last moment is not lost.
+                py.check_signals().and_then(|()| look())?;
                 return done.map_err(|panic| broken(panic.as_ref()));
             }
             Err(RecvTimeoutError::Timeout) => {
-                py.check_signals().and_then(|()| look()).inspect_err(|_| stop.store(true, Ordering::Relaxed))?;
+                if let Err(exception) = py.check_signals().and_then(|()| look()) {
+                    ended(worker)?;
+                    return Err(exception);
+                }
             }
             Err(RecvTimeoutError::Disconnected) => return Err(broken(&"the work ended without a result")),
         }
     }
+}
+
+/// The threads of parallel work by process: one that was forked has none of its parent's, and makes its own.
+static POOLS: Mutex<Vec<(u32, Arc<ThreadPool>)>> = Mutex::new(Vec::new());
+
+/// Does `work` on all processors.
+///
+/// # Errors
+/// Where the system gives no threads.
+pub(crate) fn in_parallel<T: Send>(work: impl FnOnce() -> T + Send) -> Result<T, ThreadPoolBuildError> {
+    let make = || ThreadPoolBuilder::new().build().map(Arc::new);
+    let threads = match POOLS.try_lock() {
+        Ok(mut pools) => match pools.iter().find(|(process, _)| *process == process::id()) {
+            Some((_, threads)) => Arc::clone(threads),
+            None => {
+                let threads = make()?;
+                pools.push((process::id(), Arc::clone(&threads)));
+                threads
+            }
+        },
+        // Another thread makes one; or it did when this process was forked, and never lets go here.
+        Err(_) => make()?,
+    };
+    Ok(threads.install(work))
 }
 
 /// Runs a job; Ctrl-C ends it.

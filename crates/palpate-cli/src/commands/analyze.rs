@@ -58,7 +58,7 @@ fn one(
     let mut bars = Bars::default();
     let outcome = job.run(measured, air, &mut bars)?;
     if let Some(folder) = folder {
-        write_bundle(folder, &outcome.result.bundle(Pictures { png: arguments.png })?)?;
+        write_bundle(folder, &outcome.result.bundle(Pictures { png: arguments.png }, &mut bars)?)?;
     }
     drop(bars);
     print(&match arguments.format {

@@ -16,7 +16,7 @@ pub(crate) fn run(arguments: &CompareArguments) -> Result<Verdict, JobError> {
     let alone = arguments.records == records.paths;
     let outcome = arguments.job.run(&records, alone, &mut Bars::default(), notes)?;
     if let Some(folder) = &arguments.out {
-        write_bundle(folder, &outcome.result.bundle(Pictures::default())?)?;
+        write_bundle(folder, &outcome.result.bundle(Pictures::default(), &mut Bars::default())?)?;
     }
     print(&match arguments.format {
         TableFormat::Text => outcome.result.text(),

@@ -11,7 +11,7 @@ use crate::terminal::print;
 pub(crate) fn run(arguments: &ReproduceArguments) -> Result<Verdict, JobError> {
     check_folder(&arguments.out)?;
     let outcome = Reproduce {}.run(&mut Bars::default())?;
-    let bundle = reproduction_bundle(&outcome.result, Pictures { png: arguments.png })?;
+    let bundle = reproduction_bundle(&outcome.result, Pictures { png: arguments.png }, &mut Bars::default())?;
     write_bundle(&arguments.out, &bundle)?;
     let (files, report) = (bundle.files.len(), arguments.out.join("report.html"));
     print(&match arguments.format {

@@ -66,7 +66,7 @@ fn a_folder_becomes_one_table_of_holds_and_laws() {
     assert_eq!((of_law("latency"), of_law("latency:5")), (44, 44));
     let text = fs::read_to_string(folder.join("holds.csv")).unwrap();
     assert!(
-        text.starts_with("# palpate_batch: {") && text.contains("\"software\":\"palpate "),
+        text.starts_with("# palpate_batch: {") && text.contains("\"build\":\"") && text.contains("\"commit\":\""),
         "{}",
         &text[..200]
     );

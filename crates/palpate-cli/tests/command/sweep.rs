@@ -8,6 +8,7 @@ use std::time::{Duration, Instant};
 
 use crate::common::{done, file, palpate, refused, root};
 use palpate_files::parquet_table::{Rows, TableReader, Values};
+use palpate_jobs::output::sha256;
 use tempfile::tempdir;
 
 const BALL: &str = r#"
@@ -180,7 +181,7 @@ fn killed(folder: &Path, arguments: &[&str], parts: &Path, least: usize) -> usiz
 
 /// How many finished parts there are.
 fn pieces(parts: &Path) -> usize {
-    let begin = b"\n{\"key\":";
+    let begin = b" {\"key\":";
     let bytes = fs::read(parts.join("pieces")).unwrap_or_default();
     bytes.windows(begin.len()).filter(|window| window == begin).count()
 }
@@ -188,7 +189,8 @@ fn pieces(parts: &Path) -> usize {
 /// Makes a folder with parts of a sweep whose protocol has this digest.
 fn parts_of(parts: &Path, digest: &str) {
     fs::create_dir(parts).unwrap();
-    let head = format!("{{\"palpate\":\"sweep\",\"depends_on_sha256\":\"{digest}\"}}\nold");
+    let head = format!("{{\"palpate\":\"sweep\",\"depends_on_sha256\":\"{digest}\"}}");
+    let head = format!("{} {head}\nold", sha256(head.as_bytes()));
     fs::write(parts.join("pieces"), head).unwrap();
 }
 
@@ -211,7 +213,10 @@ fn a_sweep_that_was_killed_goes_on_and_nothing_is_lost_or_doubled() {
     let middle = bytes.len() / 2;
     bytes[middle] ^= 1;
     fs::write(&part, bytes).unwrap();
-    fs::write(parts.join(".palpate-x1y2z3"), "half").unwrap();
+    let half = folder.path().join(".palpate-x1y2z3");
+    fs::create_dir(&half).unwrap();
+    fs::write(half.join("lock"), "").unwrap();
+    fs::write(half.join("1"), "half").unwrap();
     // Another protocol does not take these parts.
     let other =
         file(folder.path(), "other.toml", fs::read_to_string(folder.path().join(&sweep)).unwrap() + "# changed\n");
@@ -221,7 +226,7 @@ fn a_sweep_that_was_killed_goes_on_and_nothing_is_lost_or_doubled() {
     assert!(output.status.success());
     let reported = String::from_utf8_lossy(&output.stderr).into_owned();
     assert!(reported.contains("4000 runs in ") && reported.contains(" computed before"), "{reported}");
-    assert!(!parts.exists(), "{:?}", names(&parts));
+    assert!(!parts.exists() && !half.exists(), "{:?}", names(folder.path()));
     done(folder.path(), &["sweep", &sweep, "--out", "whole.parquet"]);
     assert!(fs::read(&out).unwrap() == fs::read(folder.path().join("whole.parquet")).unwrap());
     assert_eq!(numbers(&out, "run"), (1..=4000).map(|run| Some(f64::from(run))).collect::<Vec<_>>());

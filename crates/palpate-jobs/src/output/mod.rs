@@ -35,7 +35,7 @@ const DPI: f64 = 300.0;
 /// Refuses to write a file that is read, for a measured record cannot be had again, and what is no regular file.
 ///
 /// # Errors
-/// [`JobError`] with the first of `writes` that is among `reads`, through links too, or that is a directory, a pipe or a device.
+/// [`JobError`] with the first of `writes` that is among `reads`, through links too, or that is a pipe, a socket or a device.
 pub fn keep_apart<R: AsRef<Path>, W: AsRef<Path>>(
     reads: impl IntoIterator<Item = R>,
     writes: impl IntoIterator<Item = W>,
@@ -47,7 +47,11 @@ pub fn keep_apart<R: AsRef<Path>, W: AsRef<Path>>(
             "choose another name for the output",
         )
         .of(out.as_ref().display())),
-        None => writes.iter().try_for_each(|out| check_regular(out.as_ref(), out.as_ref())),
+        // What stands as a folder there is for the command to explain.
+        None => writes
+            .iter()
+            .filter(|out| !out.as_ref().is_dir())
+            .try_for_each(|out| check_regular(out.as_ref(), out.as_ref())),
     }
 }
 

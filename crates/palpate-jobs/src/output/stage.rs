@@ -146,13 +146,11 @@ impl Stage {
         }
         drop(guard);
         let made: Vec<PathBuf> = folders.into_iter().flat_map(Folders::keep).collect();
-        let touched: Vec<PathBuf> = temporaries.iter().map(|(folder, _)| folder.clone()).collect();
+        let mut touched: Vec<PathBuf> = temporaries.iter().map(|(folder, _)| folder.clone()).collect();
+        touched.extend(made.iter().map(|made| folder_of(made).to_owned()));
         drop(temporaries);
-        for folder in touched
-            .iter()
-            .chain(made.iter().filter_map(|made| made.parent().map(Path::to_owned)).collect::<Vec<_>>().iter())
-        {
-            sync_folder(folder).map_err(|error| unwritten(folder, &error))?;
+        for folder in touched {
+            sync_folder(&folder).map_err(|error| unwritten(&folder, &error))?;
         }
         Ok(())
     }

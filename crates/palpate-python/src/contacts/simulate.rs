@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use numpy::PyArray1;
-use palpate::simulate::{ContactEvent, Trajectory as Simulated, simulate as walk};
+use palpate::simulate::{ContactEvent, Trajectory as Simulated, simulate_watched};
 use palpate_files::description::{parse_protocol, read_protocol};
 use palpate_report::result::word;
 use palpate_report::study::write_trajectory;
@@ -31,7 +31,9 @@ pub(crate) fn simulate(py: Python<'_>, path: Option<PathBuf>, text: Option<&str>
         None => parse_protocol(text.unwrap_or_default(), Path::new("protocol")).map_err(of_mapping),
     };
     let protocol = protocol.map_err(undescribed)?;
-    let series = at_length(py, move |_| walk(protocol.drive(), &protocol.contact, &protocol.sampling))?;
+    let series = at_length(py, move |mut heard| {
+        simulate_watched(protocol.drive(), &protocol.contact, &protocol.sampling, &mut heard)
+    })?;
     Ok(Trajectory {
         series: series.map_err(refused_plainly::<ModelError>)?,
     })

@@ -17,7 +17,7 @@ use rayon::prelude::*;
 use crate::arrays::doubles;
 use crate::errors::{ModelError, PalpateError, of_mapping, refused_plainly, undescribed};
 use crate::table::Table;
-use crate::work::{Heard, at_length_reported};
+use crate::work::{Heard, at_length_reported, in_parallel};
 
 /// Runs that are the work of one thread at a time.
 const SHARE: u64 = 16;
@@ -62,9 +62,11 @@ pub(crate) fn simulate_many(
                 sweep_rows(&sweep, &path, runs, times, &mut |_: Progress<'_>| heard.step())?;
             Ok((columns, forces))
         };
-        (0..sweep.runs.div_ceil(SHARE)).into_par_iter().map(share).collect::<Result<Vec<_>, Cancelled>>()
+        let shares = (0..sweep.runs.div_ceil(SHARE)).into_par_iter().map(share);
+        in_parallel(|| shares.collect::<Result<Vec<_>, Cancelled>>())
     };
     let shares = at_length_reported(py, progress.as_ref(), work)?.map_err(refused_plainly::<PalpateError>)?;
+    let shares = shares.map_err(refused_plainly::<PalpateError>)?;
     let columns = fields.iter().enumerate().map(|(index, field)| {
         let parts = shares.iter().filter_map(|(columns, _)| columns.get(index));
         (field.name.as_str(), joined(parts))

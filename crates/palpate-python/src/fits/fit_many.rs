@@ -22,7 +22,7 @@ use rayon::prelude::*;
 use crate::errors::{OptionError, PalpateError, refused, refused_plainly, unfitted};
 use crate::fits::fit::{Keywords, Requested, fitted, standard_deviations};
 use crate::table::{Column, Table};
-use crate::work::{Heard, at_length_reported};
+use crate::work::{Heard, at_length_reported, in_parallel};
 
 /// One curve, or why it is none.
 type Curve = Result<ScalarBuffer<f64>, String>;
@@ -145,7 +145,7 @@ pub(crate) fn fit_many(
     };
     let requested = keywords.requested()?;
     let shape = requested.clone();
-    let work = move |heard: Heard| -> Result<Vec<Fitted>, Cancelled> {
+    let work = move |heard: Heard| {
         let fit = |index: usize| {
             let time = numbers(&times[if one_time { 0 } else { index }])?;
             let standard_deviations =
@@ -157,9 +157,10 @@ pub(crate) fn fit_many(
             let fit = fit(index);
             heard.step().map(|()| fit)
         };
-        (0..curves).into_par_iter().map(one).collect()
+        in_parallel(|| (0..curves).into_par_iter().map(one).collect::<Result<Vec<Fitted>, Cancelled>>())
     };
     let fits = at_length_reported(py, progress.as_ref(), work)?.map_err(refused_plainly::<PalpateError>)?;
+    let fits = fits.map_err(refused_plainly::<PalpateError>)?;
     table(&shape, &fits)
 }
 

@@ -1,6 +1,7 @@
 //! A contact watched tick by tick.
 
 use palpate::observe::{ObserveError, Observer as Watcher, ObserverOptions};
+use palpate::watch::{Cancelled, Progress, Watch};
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyType};
 
@@ -11,6 +12,9 @@ use crate::observers::observation::{Observation, columns};
 use crate::shown::shown;
 use crate::table::Table;
 use crate::work::{Made, at_length, unpickled};
+
+/// Ticks between two looks at whether Ctrl-C was pressed.
+const TICKS: usize = 4096;
 
 /// Watches a contact tick by tick, as a controller would: when a hold begins, where its force tends, how long until it slips.
 ///
@@ -222,16 +226,22 @@ shown! {
         let displacement = displacement_m.map(|column| doubles(column, "displacement_m")).transpose()?;
         same_lengths(&time, &force, displacement.as_deref())?;
         let mut watcher = self.watcher.clone();
-        let watched = at_length(py, move |_| {
-            let mut all = Vec::with_capacity(time.len());
+        let watched = at_length(py, move |mut heard| {
+            let count = time.len();
+            let mut all = Vec::with_capacity(count);
             for (index, (time, force)) in time.iter().zip(&force).enumerate() {
+                if index % TICKS == 0 {
+                    heard.report(Progress::counted("watching", index, count)).map_err(|_| None)?;
+                }
                 let place = displacement.as_ref().map(|column| column[index]);
-                all.push(watcher.feed(*time, place, *force).map_err(|error| (index, error))?);
+                all.push(watcher.feed(*time, place, *force).map_err(|error| Some((index, error)))?);
             }
             Ok((watcher, all))
         })?;
-        let (watcher, all) =
-            watched.map_err(|(index, error): (usize, ObserveError)| refused_at(&format!("tick {index}: "), &error))?;
+        let (watcher, all) = watched.map_err(|refused: Option<(usize, ObserveError)>| match refused {
+            Some((index, error)) => refused_at(&format!("tick {index}: "), &error),
+            None => refused_plainly::<PalpateError>(Cancelled),
+        })?;
         self.watcher = watcher;
         columns(&all)
     }

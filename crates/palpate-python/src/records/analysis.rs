@@ -6,6 +6,7 @@ use std::sync::{Arc, OnceLock};
 
 use arrow_array::ArrayRef;
 use palpate::analysis::{AnalysisOptions, Severity};
+use palpate::watch::{Progress, Watch};
 use palpate_jobs::input::Measurement;
 use palpate_jobs::output::write_bundle;
 use palpate_jobs::{Analyze, Analyzed, Outcome, Results};
@@ -18,7 +19,7 @@ use pyo3::prelude::*;
 use pyo3::types::PyType;
 use serde::{Deserialize, Serialize};
 
-use crate::errors::{PalpateError, failed, keyword, refused_plainly, unwritten, warn_of};
+use crate::errors::{PalpateError, keyword, refused_plainly, unwritten, warn_of};
 use crate::html::framed;
 use crate::records::kept::Kept;
 use crate::shown::shown;
@@ -237,7 +238,11 @@ shown! {
     fn report(&self, py: Python<'_>, folder: PathBuf, png: bool) -> PyResult<PathBuf> {
         let done = self.done(py)?;
         let report = folder.join("report.html");
-        let written = at_length(py, move |_| write_bundle(&folder, &done.result.bundle(Pictures { png })?))?;
+        let written = at_length(py, move |mut heard| {
+            let bundle = done.result.bundle(Pictures { png }, &mut heard)?;
+            heard.report(Progress::open("writing", 0))?;
+            write_bundle(&folder, &bundle)
+        })?;
         written.map_err(unwritten)?;
         Ok(report)
     }
@@ -293,7 +298,8 @@ shown! {
 
     /// Tables and figures of the report, for notebooks.
     fn _repr_html_(&self, py: Python<'_>) -> PyResult<Option<String>> {
-        let bundle = self.done(py)?.result.bundle(Pictures { png: false }).map_err(failed)?;
+        let done = self.done(py)?;
+        let bundle = job(py, move |watch| done.result.bundle(Pictures { png: false }, watch))?;
         let report = bundle.files.into_iter().find(|(name, _)| name == "report.html");
         Ok(report.and_then(|(_, page)| String::from_utf8(page).ok()).map(|page| framed(&page)))
     }

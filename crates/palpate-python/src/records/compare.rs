@@ -1,7 +1,7 @@
 //! Laws compared on one hold by what they predict.
 
 use palpate::fit::{LawOptions, Samples};
-use palpate::forecast::{CompareOptions, compare_laws};
+use palpate::forecast::{CompareOptions, compare_laws_watched};
 use palpate::laws::Response;
 use palpate_jobs::input::Measurement;
 use palpate_jobs::{Compare, Results};
@@ -84,12 +84,12 @@ pub(crate) fn compare(
         cuts: cuts.unwrap_or(usual.cuts),
         ..CompareOptions::default()
     };
-    let compared = at_length(py, move |_| {
+    let compared = at_length(py, move |mut heard| {
         let samples = Samples::new(&times, &values);
         let samples = standard_deviations
             .as_deref()
             .map_or(samples, |standard_deviations| samples.with_standard_deviations(standard_deviations));
-        compare_laws(&samples, &options)
+        compare_laws_watched(&samples, &options, &[], &mut heard)
     })?;
     let compared = compared.map_err(refused_plainly::<FitError>)?;
     let document = HoldComparisonDocument::new(&compared, quantity);

@@ -2,6 +2,8 @@
 
 use std::io;
 
+use palpate::watch::{Cancelled, Progress, Watch};
+
 use crate::figure::{Figure, FigureError};
 use crate::page::Block;
 use crate::table::Table;
@@ -26,6 +28,9 @@ pub enum StudyError {
     /// JSON.
     #[error("a result could not be written as JSON: {0}")]
     Json(#[from] serde_json::Error),
+    /// The watch ended it.
+    #[error(transparent)]
+    Cancelled(#[from] Cancelled),
 }
 
 /// Files by relative path.
@@ -50,8 +55,10 @@ impl Bundle {
         &mut self,
         figures: impl IntoIterator<Item = &'a Figure>,
         pictures: Pictures,
+        watch: &mut dyn Watch,
     ) -> Result<(), StudyError> {
-        for figure in figures {
+        for (done, figure) in figures.into_iter().enumerate() {
+            watch.report(Progress::open("drawing figures", done))?;
             self.text(format!("figures/{}.svg", figure.name), figure.to_svg()?);
             if pictures.png {
                 self.files.push((format!("figures/{}.png", figure.name), figure.to_png(DPI)?));

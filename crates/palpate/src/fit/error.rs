@@ -1,6 +1,7 @@
 //! Why a fit could not be made at all.
 
 use crate::laws::{Law, Response};
+use crate::number::counted;
 use crate::watch::Cancelled;
 
 /// Why a fit could not be made at all.
@@ -16,7 +17,7 @@ pub enum FitError {
         values: usize,
     },
     /// Fewer samples than parameters to find, and one over.
-    #[error("a fit of {parameters} parameters needs {needed} samples or more, found {found}")]
+    #[error("a fit of {} needs {needed} samples or more, found {found}", counted(*parameters, "parameter"))]
     TooFewSamples {
         /// Parameters to find.
         parameters: usize,

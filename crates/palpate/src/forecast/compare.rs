@@ -48,6 +48,7 @@ pub fn compare_laws_watched(
     known: &[KnownFit<'_>],
     watch: &mut dyn Watch,
 ) -> Result<Comparison, FitError> {
+    samples.check(1)?;
     let laws = options.laws();
     let mut rows: Vec<Row> = Vec::new();
     for law in &laws {

@@ -63,6 +63,25 @@ impl LawTable {
                 let expected = "shares with a sum below 1";
                 source.value("law.shares", expected, &(1.0 - found))
             }
+            LinearLawError::OutOfRange {
+                term,
+                name,
+                unit,
+                found,
+                least,
+                most,
+            } => {
+                let key = match (self.name, name) {
+                    (LawName::Prony, "overshoot") => format!("law.terms[{term}].overshoot"),
+                    (LawName::Prony, _) => format!("law.terms[{term}].time"),
+                    (LawName::Fung, _) => format!("law.shares[{term}]"),
+                    (_, "overshoot") => "law.overshoot".to_owned(),
+                    _ => "law.time".to_owned(),
+                };
+                let what = if name == "rate" { "a rate, the inverse of the time, " } else { "an overshoot " };
+                let expected = format!("{what}from {least:e} to {most:e}{unit}");
+                source.value(key, expected, &format!("{found:e}{unit}"))
+            }
             error => refused(&error),
         })
     }

@@ -80,7 +80,9 @@ fn files_that_are_none() {
     fs::write(path("long.csv"), vec![b'#'; 2 << 20]).unwrap();
     let error = read_test(&path("long.csv")).unwrap_err();
     assert!(matches!(error, DescriptionError::TooLong { .. }), "{error}");
-    assert!(error.to_string().contains("2097152 bytes") && error.hint().unwrap().contains("record"));
+    assert!(
+        error.to_string().contains("at most 1048576 bytes, found more") && error.hint().unwrap().contains("record")
+    );
     fs::write(path("marked.toml"), b"\xEF\xBB\xBF[about]\r\ntitle = \"x\"\r\n").unwrap();
     let marked = read_test(&path("marked.toml")).unwrap();
     assert_eq!(marked.about.title.as_deref(), Some("x"));

@@ -3,6 +3,8 @@
 use palpate::forecast::Comparison;
 
 use super::{figures, tables};
+use palpate::watch::Watch;
+
 use crate::document::{ComparisonDocument, ComparisonSettingsDocument, Software};
 use crate::figure::{Figure, MOST_PANELS};
 use crate::page::{Block, Page, Section};
@@ -13,19 +15,20 @@ use crate::study::{answer, findings};
 /// All files of compared records: `report.html`, `comparison.json`, `comparison.md`, `tables/*.csv`, `figures/*.svg`.
 ///
 /// # Errors
-/// [`StudyError`] when a figure or document cannot be made.
+/// [`StudyError`] when a figure or document cannot be made, or the watch ends it.
 pub fn comparison_bundle(
     records: &[ComparedRecord],
     left_out: &[LeftOut],
     settings: ComparisonSettingsDocument,
     pictures: Pictures,
+    watch: &mut dyn Watch,
 ) -> Result<Bundle, StudyError> {
     let mut bundle = Bundle::default();
     let mut page = Page::new("Laws compared", "Law of relaxation or creep to use, and its certainty");
     for (index, record) in records.iter().enumerate() {
         let suffix = if records.len() == 1 { String::new() } else { format!("_{}", index + 1) };
         let figures = figures::all(record, &suffix);
-        bundle.figures(&figures, pictures)?;
+        bundle.figures(&figures, pictures, watch)?;
         let found = findings::gathered_of(record, findings::MOST_LINES);
         let mut section = Section::new(&record.input.title)
             .blocks(answer::answer_blocks(record, &Answer::new(record), &found))

@@ -2,6 +2,8 @@
 
 use super::figure::grip_figure;
 use super::tables::{grip_table, neighbour_table, schedule_table, sensitivity_table};
+use palpate::watch::Unwatched;
+
 use crate::document::{GripDocument, Software};
 use crate::page::{Block, Page, Section};
 use crate::result::GrippedBody;
@@ -20,7 +22,7 @@ pub fn grip_bundle(body: &GrippedBody<'_>, pictures: Pictures) -> Result<Bundle,
     let grips = grip_table(body);
     if !grips.rows.is_empty() {
         let figure = grip_figure(body, "grip");
-        bundle.figures([&figure], pictures)?;
+        bundle.figures([&figure], pictures, &mut Unwatched)?;
         bundle.table(&grips);
         verdict = verdict.block(Block::figure(&figure)?).block(Block::Table(grips));
     }

@@ -7,6 +7,8 @@ use palpate::fit::TrendVerdict;
 use palpate::segment::{After, Phase};
 
 use super::{figures, method, tables};
+use palpate::watch::Watch;
+
 use crate::document::{AnalysisDocument, Software};
 use crate::number::significant;
 use crate::page::{Block, Page, Section};
@@ -17,8 +19,13 @@ use crate::study::{answer, comparison, findings};
 /// All files of an analysed record: `report.html`, `analysis.json`, `tables/*.csv`, `figures/*.svg`.
 ///
 /// # Errors
-/// [`StudyError`] when a figure or document cannot be made.
-pub fn analysis_bundle(analysis: &Analysis, input: Input, pictures: Pictures) -> Result<Bundle, StudyError> {
+/// [`StudyError`] when a figure or document cannot be made, or the watch ends it.
+pub fn analysis_bundle(
+    analysis: &Analysis,
+    input: Input,
+    pictures: Pictures,
+    watch: &mut dyn Watch,
+) -> Result<Bundle, StudyError> {
     let mut bundle = Bundle::default();
     let figures = [
         Some(figures::record(analysis, "record")),
@@ -30,7 +37,7 @@ pub fn analysis_bundle(analysis: &Analysis, input: Input, pictures: Pictures) ->
     let figures: Vec<_> = figures.into_iter().flatten().collect();
     let compared = ComparedRecord::of_analysis(analysis, input.clone());
     let of_laws = comparison::figures::all(&compared, "");
-    bundle.figures(figures.iter().chain(&of_laws), pictures)?;
+    bundle.figures(figures.iter().chain(&of_laws), pictures, watch)?;
     let mut which_law = None;
     if let Some(compare) = &analysis.options.compare {
         let answer = Answer::new(&compared);

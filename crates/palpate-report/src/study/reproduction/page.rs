@@ -5,6 +5,8 @@ use palpate::segment::After;
 use palpate::simulate::Trajectory;
 
 use super::law_figures;
+use palpate::watch::Watch;
+
 use crate::document::{ReproductionDocument, Software};
 use crate::figure::{Arrangement, Figure, Layer, Panel, Role};
 use crate::page::{Block, Page, Section};
@@ -156,11 +158,15 @@ fn page(study: &Reproduction, figures: &[Figure], tables: &[Table]) -> Result<Pa
 /// All files of the reproduced study.
 ///
 /// # Errors
-/// [`StudyError`] when a figure or document cannot be made.
-pub fn reproduction_bundle(study: &Reproduction, pictures: Pictures) -> Result<Bundle, StudyError> {
+/// [`StudyError`] when a figure or document cannot be made, or the watch ends it.
+pub fn reproduction_bundle(
+    study: &Reproduction,
+    pictures: Pictures,
+    watch: &mut dyn Watch,
+) -> Result<Bundle, StudyError> {
     let mut bundle = Bundle::default();
     let figures = figures(study);
-    bundle.figures(&figures, pictures)?;
+    bundle.figures(&figures, pictures, watch)?;
     let tables = [(&study.test_a, After::Loading), (&study.test_b, After::Unloading)];
     let tables = tables.map(|(test, after)| paper_table(study, test, after));
     tables.iter().for_each(|table| bundle.table(table));

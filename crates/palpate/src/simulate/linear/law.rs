@@ -40,6 +40,22 @@ pub enum LinearLawError {
         /// What was given.
         found: f64,
     },
+    /// A parameter that no body has, and with which a simulation would not end.
+    #[error("term {term}: {name} must be from {least:e} to {most:e}{unit}, found {found:e}{unit}")]
+    OutOfRange {
+        /// Number of the term, from 1.
+        term: usize,
+        /// Which number.
+        name: &'static str,
+        /// Its unit behind a blank, if it has one.
+        unit: &'static str,
+        /// What was given.
+        found: f64,
+        /// Least that is accepted.
+        least: f64,
+        /// Most that is accepted.
+        most: f64,
+    },
     /// An order that no fractional element has, or that is a logarithm in all but name.
     #[error("the order of a fractional law must be from 0.05 to below 1, found {found}")]
     Order {
@@ -56,6 +72,12 @@ pub enum LinearLawError {
     },
 }
 
+/// Overshoots that are accepted: beyond them a body rests at nothing against what it bears at first, or relaxes by nothing.
+const OVERSHOOTS: (f64, f64) = (1e-15, 1e15);
+
+/// Rates that are accepted, 1/s: from the age of the universe to molecules.
+const RATES: (f64, f64) = (1e-18, 1e15);
+
 /// Relative difference of rates below which two terms are one.
 const ALIKE: f64 = 1e-9;
 
@@ -70,10 +92,11 @@ impl LinearLaw {
     /// ```
     ///
     /// # Errors
-    /// [`LinearLawError`] for no terms, and for overshoots or rates that are not finite numbers above 0.
+    /// [`LinearLawError`] for no terms, for overshoots that are not from 1e-15 to 1e15, and for rates that are not from 1e-18 to 1e15 1/s.
     pub fn new(terms: &[LinearTerm]) -> Result<Self, LinearLawError> {
         for (index, term) in terms.iter().enumerate() {
-            for (name, unit, found) in [("overshoot", "", term.overshoot), ("rate", "1/s", term.rate)] {
+            let both = [("overshoot", "", term.overshoot, OVERSHOOTS), ("rate", "1/s", term.rate, RATES)];
+            for (name, unit, found, (least, most)) in both {
                 if !(found.is_finite() && found > 0.0) {
                     let term = index + 1;
                     return Err(LinearLawError::NotPositive {
@@ -83,12 +106,26 @@ impl LinearLaw {
                         found,
                     });
                 }
+                if !(least..=most).contains(&found) {
+                    return Err(LinearLawError::OutOfRange {
+                        term: index + 1,
+                        name,
+                        unit: if unit.is_empty() { "" } else { " 1/s" },
+                        found,
+                        least,
+                        most,
+                    });
+                }
             }
         }
-        if terms.is_empty() {
-            return Err(LinearLawError::Empty);
+        match terms {
+            [] => Err(LinearLawError::Empty),
+            terms => Ok(Self::merged(terms.to_vec())),
         }
-        let mut sorted = terms.to_vec();
+    }
+
+    /// The law of terms that were checked.
+    fn merged(mut sorted: Vec<LinearTerm>) -> Self {
         sorted.sort_by(|a, b| a.rate.total_cmp(&b.rate));
         let mut merged: Vec<LinearTerm> = Vec::with_capacity(sorted.len());
         for term in sorted {
@@ -97,10 +134,10 @@ impl LinearLaw {
                 None => merged.push(term),
             }
         }
-        Ok(Self {
+        Self {
             terms: merged,
             error: 0.0,
-        })
+        }
     }
 
     /// The standard linear solid: one term with this relaxation time in s.
@@ -174,7 +211,7 @@ impl LinearLaw {
         });
         Ok(Self {
             error: overshoot * error,
-            ..Self::new(&scaled.collect::<Vec<_>>())?
+            ..Self::merged(scaled.collect())
         })
     }
 
@@ -215,6 +252,11 @@ mod tests {
         for bad in [0.0, -1.0, f64::NAN, f64::INFINITY] {
             assert!(LinearLaw::new(&[term(bad, 1.0)]).is_err() && LinearLaw::new(&[term(1.0, bad)]).is_err());
             assert!(LinearLaw::standard(1.0, bad).is_err(), "{bad}");
+        }
+        for bad in [1e300, 1e-300] {
+            let refused = LinearLaw::new(&[term(bad, 1.0)]).unwrap_err().to_string();
+            assert!(refused.starts_with("term 1: overshoot must be from 1e-15 to 1e15, found "), "{refused}");
+            assert!(LinearLaw::new(&[term(1.0, bad)]).is_err());
         }
         assert!(LinearLaw::fung(&[(0.6, 1.0), (0.4, 0.1)]).is_err());
         let fung = LinearLaw::fung(&[(0.3, 1.0), (0.2, 0.1)]).unwrap();
