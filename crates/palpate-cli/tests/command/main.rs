@@ -6,6 +6,7 @@ mod calibrate;
 mod commands;
 mod common;
 mod compare;
+mod depends;
 mod grip;
 mod inspect;
 mod several_tests;

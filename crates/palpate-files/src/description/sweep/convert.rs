@@ -212,7 +212,8 @@ pub fn parse_sweep(text: &str, path: &Path) -> Result<Sweep, DescriptionError> {
 
 /// A sweep whose numbers come as columns of one length instead of a table `[sweep]`: run i takes the value i of each.
 ///
-/// Numbers are named by their paths, such as `specimen.radius` or `step[2].rate`, and given in SI. A table `[sweep]` in the text is
+/// Numbers are named by their paths as in a sweep, such as `specimen.radius` or `step[2].rate`, which `step.2.rate` stands for too, and
+/// given in SI. A table `[sweep]` in the text is
 /// left aside.
 ///
 /// ```
@@ -234,19 +235,25 @@ pub fn parse_sweep(text: &str, path: &Path) -> Result<Sweep, DescriptionError> {
 pub fn parse_runs(text: &str, path: &Path, columns: &[(&str, Vec<f64>)]) -> Result<Sweep, DescriptionError> {
     sweep(text, path, "runs", |source, known| {
         let runs = columns.first().map_or(0, |(_, values)| values.len());
-        let number = |(path, values): &(&str, Vec<f64>)| {
+        let number = |(name, values): &(&str, Vec<f64>)| {
+            let path = &table::path(&[(*name).to_owned()]);
             let Some((_, dimension)) = known.iter().find(|(known, _)| known == path) else {
-                return Err(unknown(source, path, path, known));
+                return Err(unknown(source, name, path, known));
             };
             if values.len() != runs {
                 let expected = format!("{runs} values, as the other parameters have");
-                return Err(source.value(*path, expected, &values.len()));
+                return Err(source.value(*name, expected, &values.len()));
             }
             let value = |si: &f64| Value::of(*si, format!("{si} {}", si_unit(*dimension)));
             let values = Values::List(values.iter().map(value).collect());
-            Ok(SweptParameter::new((*path).to_owned(), *dimension, values))
+            Ok(SweptParameter::new(path.clone(), *dimension, values))
         };
-        let numbers = columns.iter().map(number).collect::<Result<_, _>>()?;
+        let numbers: Vec<SweptParameter> = columns.iter().map(number).collect::<Result<_, _>>()?;
+        for (index, number) in numbers.iter().enumerate() {
+            if let Some(before) = numbers[..index].iter().position(|before| before.path == number.path) {
+                return Err(source.both(columns[index].0, columns[before].0));
+            }
+        }
         Ok((numbers, Plan::Together { runs: runs as u64 }))
     })
 }

@@ -111,7 +111,7 @@ fn collect(
 }
 
 /// `step`, `2`, `hold` is `step[2].hold`.
-fn path(keys: &[String]) -> String {
+pub(super) fn path(keys: &[String]) -> String {
     let mut path = String::new();
     for key in keys.iter().flat_map(|key| key.split('.')) {
         if !key.is_empty() && key.chars().all(|c| c.is_ascii_digit()) {

@@ -153,11 +153,17 @@ impl<'a> RowPlan<'a> {
         Ok(())
     }
 
-    /// Whether a faulty line is a row of data all the same, going by its cell in the leading column of numbers.
+    /// Whether a faulty line is a row of data all the same: by its cell in the leading column of numbers, or where most of its cells are
+    /// numbers and none is missing.
     pub(crate) fn is_data(&self, line: &[u8]) -> bool {
-        Fields::of(line, self.layout.delimiter)
-            .nth(self.leading)
-            .is_some_and(|cell| number::classify(cell).is_numeric())
+        let (mut cells, mut numbers, mut leads) = (0, 0, false);
+        for cell in Fields::of(line, self.layout.delimiter) {
+            let is_number = number::classify(cell).is_numeric();
+            leads |= is_number && cells == self.leading;
+            numbers += usize::from(is_number);
+            cells += 1;
+        }
+        leads || (cells >= self.fewest && 2 * numbers > cells)
     }
 
     /// Whether a faulty line is a full row but for cells that are empty or say that there is no number.
