@@ -20,7 +20,7 @@ mod terminal;
 use std::ffi::OsString;
 
 use clap::Parser;
-use palpate_jobs::Verdict;
+use palpate_jobs::{JobError, Verdict};
 
 use crate::arguments::{Arguments, Command};
 
@@ -41,16 +41,32 @@ where
     I: IntoIterator<Item = T>,
     T: Into<OsString> + Clone,
 {
+    attempt(arguments).unwrap_or_else(|error| {
+        failure::tell(&error);
+        2
+    })
+}
+
+/// Likewise, with what went wrong as a value.
+///
+/// # Errors
+/// [`JobError`] where the command could not run.
+#[doc(hidden)]
+pub fn attempt<I, T>(arguments: I) -> Result<u8, JobError>
+where
+    I: IntoIterator<Item = T>,
+    T: Into<OsString> + Clone,
+{
     let arguments = match Arguments::try_parse_from(arguments) {
         Ok(arguments) => arguments,
         Err(error) => {
             // Help is requested and goes to standard output; nothing can be done about a closed one.
             let _ = error.print();
-            return u8::try_from(error.exit_code()).unwrap_or(2);
+            return Ok(u8::try_from(error.exit_code()).unwrap_or(2));
         }
     };
     terminal::measure();
-    let result = match arguments.command {
+    let verdict = match arguments.command {
         Command::Reproduce(arguments) => commands::reproduce::run(&arguments),
         Command::Simulate(arguments) => commands::simulate::run(&arguments),
         Command::Sweep(arguments) => commands::sweep::run(&arguments),
@@ -65,13 +81,9 @@ where
         Command::Watch(arguments) => commands::watch::run(&arguments),
         Command::Schema(arguments) => commands::schema::run(&arguments),
         Command::Completions(arguments) => commands::completions::run(&arguments),
-    };
-    match result {
-        Ok(Verdict::Positive) => 0,
-        Ok(Verdict::Negative) => 1,
-        Err(error) => {
-            failure::tell(&error);
-            2
-        }
-    }
+    }?;
+    Ok(match verdict {
+        Verdict::Positive => 0,
+        Verdict::Negative => 1,
+    })
 }
