@@ -18,7 +18,7 @@ use crate::JobError;
 pub struct Stage {
     // Dropped in this order: the temporary folders before the folders that were made for them.
     temporaries: Vec<(PathBuf, Temporary)>,
-    folders: Vec<Folders>,
+    folders: Folders,
     opened: usize,
     files: Vec<Staged>,
     removed: Vec<PathBuf>,
@@ -117,7 +117,7 @@ impl Stage {
         if let Some((_, temporary)) = self.temporaries.iter().find(|(of, _)| of == folder) {
             return Ok(temporary.path().to_owned());
         }
-        self.folders.push(Folders::make(folder)?);
+        self.folders.make(folder)?;
         let temporary = Temporary::make(folder)?;
         let path = temporary.path().to_owned();
         self.temporaries.push((folder.to_owned(), temporary));
@@ -145,7 +145,7 @@ impl Stage {
             return Err(unwritten(&path, &error));
         }
         drop(guard);
-        let made: Vec<PathBuf> = folders.into_iter().flat_map(Folders::keep).collect();
+        let made = folders.keep();
         let mut touched: Vec<PathBuf> = temporaries.iter().map(|(folder, _)| folder.clone()).collect();
         touched.extend(made.iter().map(|made| folder_of(made).to_owned()));
         drop(temporaries);

@@ -47,18 +47,18 @@ pub fn abandon() {
     }
 }
 
-/// A folder that is made, with those above it, and removed again where the work does not succeed.
+/// Folders that are made, and removed again where the work does not succeed.
+#[derive(Default)]
 pub(super) struct Folders {
     made: Vec<PathBuf>,
 }
 
 impl Folders {
-    /// Makes the folder and what is missing above it.
-    pub(super) fn make(folder: &Path) -> io::Result<Self> {
-        let mut missing: Vec<&Path> =
-            folder.ancestors().take_while(|path| !path.as_os_str().is_empty() && !path.exists()).collect();
+    /// Makes a folder and what is missing above it.
+    pub(super) fn make(&mut self, folder: &Path) -> io::Result<()> {
+        let is_missing = |path: &&Path| !path.as_os_str().is_empty() && !path.exists();
+        let mut missing: Vec<&Path> = folder.ancestors().take_while(is_missing).collect();
         missing.reverse();
-        let mut folders = Self { made: Vec::new() };
         for path in missing {
             let mut guard = undisturbed()?;
             before(Operation::MakeFolder)?;
@@ -67,9 +67,9 @@ impl Folders {
                 made => made?,
             }
             guard.0.folders.push(path.to_owned());
-            folders.made.push(path.to_owned());
+            self.made.push(path.to_owned());
         }
-        Ok(folders)
+        Ok(())
     }
 
     /// They stay.
