@@ -142,6 +142,8 @@ impl Stage {
         if let Err((path, error)) = moved {
             done.into_iter().rev().for_each(Undo::undo);
             drop(guard);
+            // Before the folders that were made for them.
+            drop(temporaries);
             return Err(unwritten(&path, &error));
         }
         drop(guard);
