@@ -186,7 +186,7 @@ fn file(
     if let Some(place) = store.find(&key).filter(|_| digest.is_some()) {
         return Ok((place, true));
     }
-    let mut entry = Entry::default();
+    let (mut entry, mut is_lasting) = (Entry::default(), true);
     match source.and_then(|source| OpenedFile::of(source, described)) {
         Ok(opened) => {
             entry.tests = opened.tests.parts.len();
@@ -197,15 +197,21 @@ fn file(
                         entry.parameters.extend(parameters::rows(&document));
                     }
                     Err(error) if error.kind == ErrorKind::Cancelled => return Err(error),
-                    Err(error) => entry.failures.push(Refused::from(error)),
+                    Err(error) => {
+                        is_lasting &= !matches!(error.kind, ErrorKind::File(_));
+                        entry.failures.push(Refused::from(error));
+                    }
                 }
             }
         }
         Err(error) => {
+            is_lasting &= !matches!(error.kind, ErrorKind::File(_));
             entry.tests = 1;
             entry.failures.push(Refused::from(error));
         }
     }
+    // What the operating system refused once it may give the next time.
+    let key = if is_lasting { key } else { format!("- {}", path.display()) };
     Ok((store.add(&key, &serde_json::to_vec(&entry)?)?, false))
 }
 
