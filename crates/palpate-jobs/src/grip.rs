@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use palpate::calibrate::Material;
-use palpate::grip::{Band, Control, Grasp, Grip, GripError, Limits, Objective, Question, Regrip};
+use palpate::grip::{Band, Control, Grasp, Grip, GripError, Limits, Objective, Question, Regrip, STANDARD_GRAVITY};
 use palpate::watch::Watch;
 use palpate_files::description::{MaterialFile, parse_material, read_text};
 use palpate_report::document::GripDocument;
@@ -238,6 +238,14 @@ impl MaterialSource {
 const INTERVALS: f64 = 0.95;
 
 impl PlanGrip {
+    /// The same with what is left out stated, where it does not follow from the material.
+    fn stated(&self) -> Self {
+        Self {
+            gravity_m_per_s2: Some(self.gravity_m_per_s2.unwrap_or(STANDARD_GRAVITY)),
+            ..self.clone()
+        }
+    }
+
     fn question(&self) -> Result<Question, JobError> {
         if self.control == Control::Position && self.force_n.is_some() {
             return Err(JobError::option(
@@ -306,7 +314,9 @@ impl PlanGrip {
         let result = GrippedBody {
             path: source.name.clone(),
             sha256: source.sha256.clone(),
-            depends_on_sha256: Dependencies::new("grip", self).file("material", Some(&source.sha256)).sha256()?,
+            depends_on_sha256: Dependencies::new("grip", &self.stated())
+                .file("material", Some(&source.sha256))
+                .sha256()?,
             grip,
             answer,
         };

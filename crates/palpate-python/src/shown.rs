@@ -46,11 +46,12 @@ macro_rules! shown {
             getters { $($values)* }
 
             #[classmethod]
-            fn _from_json(_class: &Bound<'_, pyo3::types::PyType>, json: &str) -> PyResult<Self> {
-                $crate::work::unpickled(json)
+            #[pyo3(signature = (json, format=0))]
+            fn _from_json(_class: &Bound<'_, pyo3::types::PyType>, json: &str, format: u32) -> PyResult<Self> {
+                $crate::work::unpickled(json, format)
             }
 
-            fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<$crate::work::Made<'py, (String,)>> {
+            fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<$crate::work::Made<'py, (String, u32)>> {
                 $crate::work::made_again::<Self>(py, self)
             }
 

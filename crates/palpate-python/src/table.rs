@@ -18,7 +18,7 @@ use pyo3::types::{PyBytes, PyDict, PyList, PyString, PyType};
 use pyo3_arrow::PyTable;
 
 use crate::errors::refused_plainly;
-use crate::work::Made;
+use crate::work::{Made, PICKLE, check_pickle};
 
 /// Columns of results, each named with its unit.
 ///
@@ -210,7 +210,9 @@ impl Table {
     }
 
     #[classmethod]
-    fn _from_ipc(_class: &Bound<'_, PyType>, bytes: &[u8]) -> PyResult<Self> {
+    #[pyo3(signature = (bytes, format=0))]
+    fn _from_ipc(_class: &Bound<'_, PyType>, bytes: &[u8], format: u32) -> PyResult<Self> {
+        check_pickle(format)?;
         let mut reader = StreamReader::try_new(Cursor::new(bytes), None).map_err(refused_plainly::<PyRuntimeError>)?;
         let schema = reader.schema();
         let batch = reader.next().transpose().map_err(refused_plainly::<PyRuntimeError>)?;
@@ -219,12 +221,12 @@ impl Table {
         })
     }
 
-    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Made<'py, (Bound<'py, PyBytes>,)>> {
+    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Made<'py, (Bound<'py, PyBytes>, u32)>> {
         let mut writer =
             StreamWriter::try_new(Vec::new(), &self.batch.schema()).map_err(refused_plainly::<PyRuntimeError>)?;
         writer.write(&self.batch).map_err(refused_plainly::<PyRuntimeError>)?;
         let bytes = writer.into_inner().map_err(refused_plainly::<PyRuntimeError>)?;
-        Ok((py.get_type::<Self>().getattr("_from_ipc")?, (PyBytes::new(py, &bytes),)))
+        Ok((py.get_type::<Self>().getattr("_from_ipc")?, (PyBytes::new(py, &bytes), PICKLE)))
     }
 
     /// The first and the last rows as a notebook shows them.

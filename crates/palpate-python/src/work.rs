@@ -36,18 +36,32 @@ pub(crate) fn printed(document: &impl Serialize) -> PyResult<String> {
     Ok(text + "\n")
 }
 
+/// The format of pickles: another number where their content has another form.
+pub(crate) const PICKLE: u32 = 1;
+
+/// Refuses a pickle of another format.
+pub(crate) fn check_pickle(format: u32) -> PyResult<()> {
+    if format == PICKLE {
+        return Ok(());
+    }
+    let message = format!("expected a pickle of format {PICKLE}, found format {format}");
+    Err(refused::<PalpateError>(message, Some("make it again with this version of palpate")))
+}
+
 /// What an object was made of, from its pickle.
-pub(crate) fn unpickled<T: DeserializeOwned>(json: &str) -> PyResult<T> {
-    serde_json::from_str(json).map_err(refused_plainly::<PalpateError>)
+pub(crate) fn unpickled<T: DeserializeOwned>(json: &str, format: u32) -> PyResult<T> {
+    check_pickle(format)?;
+    let damaged = |error| refused::<PalpateError>(format!("the pickle is damaged: {error}"), None::<&str>);
+    serde_json::from_str(json).map_err(damaged)
 }
 
 /// What makes an object again from its parts as JSON: `_from_json` of its class.
 pub(crate) fn made_again<'py, T: PyTypeInfo>(
     py: Python<'py>,
     parts: &impl Serialize,
-) -> PyResult<Made<'py, (String,)>> {
+) -> PyResult<Made<'py, (String, u32)>> {
     let json = serde_json::to_string(parts).map_err(refused_plainly::<PalpateError>)?;
-    Ok((py.get_type::<T>().getattr("_from_json")?, (json,)))
+    Ok((py.get_type::<T>().getattr("_from_json")?, (json, PICKLE)))
 }
 
 /// The watch of work on a thread of its own: it says how much is done, and hears whether it is to end.
@@ -58,17 +72,22 @@ pub(crate) struct Heard {
 }
 
 impl Heard {
+    /// Whether it goes on.
+    pub(crate) fn look(&self) -> Result<(), Cancelled> {
+        if self.stop.load(Ordering::Relaxed) { Err(Cancelled) } else { Ok(()) }
+    }
+
     /// One more is done.
     pub(crate) fn step(&self) -> Result<(), Cancelled> {
         self.done.fetch_add(1, Ordering::Relaxed);
-        if self.stop.load(Ordering::Relaxed) { Err(Cancelled) } else { Ok(()) }
+        self.look()
     }
 }
 
 impl Watch for Heard {
     fn report(&mut self, progress: Progress<'_>) -> Result<(), Cancelled> {
         self.done.store(progress.done, Ordering::Relaxed);
-        if self.stop.load(Ordering::Relaxed) { Err(Cancelled) } else { Ok(()) }
+        self.look()
     }
 }
 

@@ -225,3 +225,9 @@ def test_any_law_is_found_in_any_unit(
     fit = palpate.fit_hold(t, y)
     assert fit.parameters["exponent"] == pytest.approx(exponent, rel=1e-3)
     assert np.max(np.abs(fit.predict(t) - y)) < 1e-7 * unit * amplitude
+
+
+@pytest.mark.parametrize("count", [0, 1, 2])
+def test_what_is_too_short_to_compare_is_refused(count: int) -> None:
+    with pytest.raises(palpate.FitError, match=f"samples or more, found {count}"):
+        palpate.compare(np.arange(count, dtype=float), np.arange(count, dtype=float))

@@ -130,3 +130,10 @@ def test_threads_share_the_work() -> None:
     for thread in threads:
         thread.join()
     assert all(np.array_equal(result, results[0]) for result in results)
+
+
+def test_a_number_of_a_step_has_one_path_here_and_in_sweeps() -> None:
+    both = [palpate.simulate_many(PROTOCOL, {path: [2.0, 10.0]}) for path in ("step[1].hold", "step.1.hold")]
+    assert both[0] == both[1]
+    with pytest.raises(palpate.OptionError, match="either this or"):
+        palpate.simulate_many(PROTOCOL, {"step[1].hold": [1.0], "step.1.hold": [2.0]})

@@ -60,6 +60,27 @@
 #[cfg(feature = "alloc")]
 extern crate alloc;
 
+/// Serialises a type of which one that is read has to be consistent; the type derives both traits for `remote = "Self"`.
+#[cfg(feature = "std")]
+macro_rules! checked_when_read {
+    ($name:ty, $expected:literal, $is_consistent:expr) => {
+        impl serde::Serialize for $name {
+            fn serialize<S: serde::Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+                Self::serialize(self, serializer)
+            }
+        }
+
+        impl<'de> serde::Deserialize<'de> for $name {
+            fn deserialize<D: serde::Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+                let read = Self::deserialize(deserializer)?;
+                let is_consistent: fn(&$name) -> bool = $is_consistent;
+                let expected = concat!("expected ", $expected, ", found others");
+                if is_consistent(&read) { Ok(read) } else { Err(serde::de::Error::custom(expected)) }
+            }
+        }
+    };
+}
+
 #[cfg(feature = "std")]
 pub mod analysis;
 #[cfg(feature = "std")]

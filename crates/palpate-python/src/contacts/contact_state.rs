@@ -13,7 +13,7 @@ use crate::arrays::doubles;
 use crate::errors::{ModelError, OptionError, of_mapping, refused_plainly, undescribed};
 use crate::files::stated;
 use crate::shown::shown;
-use crate::work::{Made, briefly};
+use crate::work::{Made, PICKLE, briefly, check_pickle};
 
 /// A body and its law as a description has them: path of a file or mapping; and a text that makes them again anywhere.
 fn described(model: &Bound<'_, PyAny>) -> PyResult<(ContactModel, String)> {
@@ -41,6 +41,17 @@ fn latency(scene: Result<(Option<String>, Contact), DescriptionError>) -> PyResu
             Err(refused_plainly::<ModelError>("a contact is stepped by a latency law with one rate coefficient"))
         }
         Contact::Linear(_) => Err(refused_plainly::<ModelError>("a contact is stepped by the latency law alone")),
+    }
+}
+
+/// A state out of a pickle, of a contact of this model: one that has a force.
+fn state_of(model: &ContactModel, bytes: [u8; 16]) -> PyResult<State> {
+    let state = State::from_bytes(bytes).map_err(refused_plainly::<ModelError>)?;
+    match state.force(model).is_finite() {
+        true => Ok(state),
+        false => {
+            Err(refused_plainly::<ModelError>("expected a state within the range of the body, found one beyond it"))
+        }
     }
 }
 
@@ -144,17 +155,20 @@ shown! {
     }
 
     #[classmethod]
-    fn _from_parts(_class: &Bound<'_, PyType>, text: String, state: [u8; 16]) -> PyResult<Self> {
+    #[pyo3(signature = (text, state, format=0))]
+    fn _from_parts(_class: &Bound<'_, PyType>, text: String, state: [u8; 16], format: u32) -> PyResult<Self> {
+        check_pickle(format)?;
+        let model = latency(parse_scene(&text, Path::new("model")))?;
         Ok(Self {
-            model: latency(parse_scene(&text, Path::new("model")))?,
-            state: State::from_bytes(state).map_err(refused_plainly::<ModelError>)?,
+            state: state_of(&model, state)?,
+            model,
             text,
         })
     }
 
-    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Made<'py, (String, Bound<'py, PyBytes>)>> {
+    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Made<'py, (String, Bound<'py, PyBytes>, u32)>> {
         let make = py.get_type::<Self>().getattr("_from_parts")?;
-        Ok((make, (self.text.clone(), PyBytes::new(py, &self.state.to_bytes()))))
+        Ok((make, (self.text.clone(), PyBytes::new(py, &self.state.to_bytes()), PICKLE)))
     }
 
     fn __repr__(&self) -> String {
@@ -333,20 +347,33 @@ shown! {
     }
 
     #[classmethod]
-    fn _from_parts(_class: &Bound<'_, PyType>, texts: Vec<String>, states: Vec<[u8; 16]>) -> PyResult<Self> {
+    #[pyo3(signature = (texts, states, format=0))]
+    fn _from_parts(
+        _class: &Bound<'_, PyType>,
+        texts: Vec<String>,
+        states: Vec<[u8; 16]>,
+        format: u32,
+    ) -> PyResult<Self> {
+        check_pickle(format)?;
+        let (models, count) = (texts.len(), states.len());
+        if models == 0 || !(1..=MOST).contains(&count) || (models > 1 && models != count) {
+            let message = format!("expected one model, or one for each contact, found {models} for {count} contacts");
+            return Err(refused_plainly::<ModelError>(message));
+        }
         let model = |text: &String| latency(parse_scene(text, Path::new("model")));
-        let state = |bytes| State::from_bytes(bytes).map_err(refused_plainly::<ModelError>);
+        let models: Vec<ContactModel> = texts.iter().map(model).collect::<PyResult<_>>()?;
+        let of_each = models.iter().cycle().zip(states);
         Ok(Self {
-            models: texts.iter().map(model).collect::<PyResult<_>>()?,
-            states: states.into_iter().map(state).collect::<PyResult<_>>()?,
+            states: of_each.map(|(model, state)| state_of(model, state)).collect::<PyResult<_>>()?,
+            models,
             texts,
         })
     }
 
     #[expect(clippy::type_complexity, reason = "what pickle asks for")]
-    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Made<'py, (Vec<String>, Vec<Bound<'py, PyBytes>>)>> {
+    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Made<'py, (Vec<String>, Vec<Bound<'py, PyBytes>>, u32)>> {
         let states = self.states.iter().map(|state| PyBytes::new(py, &state.to_bytes())).collect();
-        Ok((py.get_type::<Self>().getattr("_from_parts")?, (self.texts.clone(), states)))
+        Ok((py.get_type::<Self>().getattr("_from_parts")?, (self.texts.clone(), states, PICKLE)))
     }
 
     fn __repr__(&self) -> String {

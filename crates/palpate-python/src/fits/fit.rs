@@ -5,10 +5,11 @@ use std::borrow::Cow;
 use numpy::{PyArray1, PyArray2};
 use palpate::fit::{
     BootstrapOptions, Estimate, Fit, IntervalMethod, LawOptions, NoiseChoice, Parameter, ParameterRole, ParameterUnit,
-    SampleChoice, Samples, fit_law,
+    SampleChoice, Samples, fit_law_watched,
 };
 use palpate::laws::Law;
 use palpate::number::{significant, with_interval};
+use palpate::watch::{Unwatched, Watch};
 use palpate_report::result::word;
 use pyo3::prelude::*;
 use pyo3::types::{IntoPyDict, PyDict};
@@ -17,7 +18,7 @@ use serde::{Deserialize, Serialize};
 use crate::arrays::doubles;
 use crate::errors::{FitError, OptionError, choice, one_of, refused_plainly, unfitted};
 use crate::shown::shown;
-use crate::work::{briefly, plain};
+use crate::work::{at_length, briefly, plain};
 
 /// A parameter that was found or given.
 #[pyclass(name = "Estimate", module = "palpate", frozen, eq)]
@@ -360,17 +361,21 @@ pub(crate) fn standard_deviations_of(weights: Option<&Bound<'_, PyAny>>) -> PyRe
         .transpose()
 }
 
+/// Up to so many samples are fitted in a few milliseconds, without a thread.
+const BRIEF: usize = 20_000;
+
 /// One fit, of samples that are there.
 pub(crate) fn fitted(
     times: &[f64],
     values: &[f64],
     standard_deviations: Option<&[f64]>,
     requested: &Requested,
+    watch: &mut dyn Watch,
 ) -> Result<Fit, palpate::fit::FitError> {
     let samples = Samples::new(times, values);
     let samples = standard_deviations
         .map_or(samples, |standard_deviations| samples.with_standard_deviations(standard_deviations));
-    fit_law(&samples, requested.law, &requested.options)
+    fit_law_watched(&samples, requested.law, &requested.options, watch)
 }
 
 #[pyfunction]
@@ -391,7 +396,13 @@ pub(crate) fn fit_hold<'py>(
         return Err(refused_plainly::<FitError>(message));
     }
     let requested = keywords.requested()?;
-    let fit = briefly(py, || fitted(&times, &values, standard_deviations.as_deref(), &requested))?;
+    let is_brief = times.len() <= BRIEF && requested.options.intervals == IntervalMethod::Curvature;
+    let fit = match is_brief {
+        true => briefly(py, || fitted(&times, &values, standard_deviations.as_deref(), &requested, &mut Unwatched))?,
+        false => at_length(py, move |mut heard| {
+            fitted(&times, &values, standard_deviations.as_deref(), &requested, &mut heard)
+        })?,
+    };
     Ok(PyFit {
         fit: fit.map_err(unfitted)?,
     })

@@ -12,7 +12,7 @@ use arrow_schema::{DataType, Field};
 use numpy::{PyArray1, PyArrayMethods};
 use palpate::fit::{Fit, LawOptions, Parameter, Samples, fit_law};
 use palpate::laws::Response;
-use palpate::watch::Cancelled;
+use palpate::watch::{Cancelled, Progress};
 use palpate_report::result::word;
 use pyo3::prelude::*;
 use pyo3_arrow::PyChunkedArray;
@@ -150,8 +150,12 @@ pub(crate) fn fit_many(
             let time = numbers(&times[if one_time { 0 } else { index }])?;
             let standard_deviations =
                 weights.as_ref().map(|(one, found)| numbers(&found[if *one { 0 } else { index }]));
-            fitted(time, numbers(&values[index])?, standard_deviations.transpose()?, &requested)
-                .map_err(|error| error.to_string())
+            fitted(time, numbers(&values[index])?, standard_deviations.transpose()?, &requested, &mut |_: Progress<
+                '_,
+            >| {
+                heard.look()
+            })
+            .map_err(|error| error.to_string())
         };
         let one = |index: usize| {
             let fit = fit(index);

@@ -11,7 +11,7 @@ use crate::materials::material::Material;
 use crate::observers::observation::{Observation, columns};
 use crate::shown::shown;
 use crate::table::Table;
-use crate::work::{Made, at_length, unpickled};
+use crate::work::{Made, PICKLE, at_length, unpickled};
 
 /// Ticks between two looks at whether Ctrl-C was pressed.
 const TICKS: usize = 4096;
@@ -255,7 +255,7 @@ shown! {
         let material = material.map(Material::parsed).transpose()?;
         let options = ObserverOptions {
             material: material.as_ref().map(Material::body),
-            ..unpickled(options)?
+            ..unpickled(options, PICKLE)?
         };
         let watcher = Watcher::from_bytes(options, state).map_err(|error| refused_at("", &error))?;
         Ok(Self { watcher, material })

@@ -248,14 +248,15 @@ shown! {
     }
 
     #[classmethod]
-    fn _from_json(class: &Bound<'_, PyType>, json: &str) -> PyResult<Self> {
+    #[pyo3(signature = (json, format=0))]
+    fn _from_json(class: &Bound<'_, PyType>, json: &str, format: u32) -> PyResult<Self> {
         let Parts {
             measured,
             options,
             input,
             job,
             document,
-        } = unpickled(json)?;
+        } = unpickled(json, format)?;
         let measured = Measurement {
             record: measured.record()?,
             input,
@@ -275,7 +276,7 @@ shown! {
         })
     }
 
-    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Made<'py, (String,)>> {
+    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Made<'py, (String, u32)>> {
         let Requested { measured, job } = &*self.requested;
         let parts = Parts {
             measured: Kept::of(&measured.record),

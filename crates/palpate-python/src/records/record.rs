@@ -313,8 +313,9 @@ shown! {
     }
 
     #[classmethod]
-    fn _from_json(_class: &Bound<'_, PyType>, json: &str) -> PyResult<Self> {
-        let parts: Parts = unpickled(json)?;
+    #[pyo3(signature = (json, format=0))]
+    fn _from_json(_class: &Bound<'_, PyType>, json: &str, format: u32) -> PyResult<Self> {
+        let parts: Parts = unpickled(json, format)?;
         Ok(Self {
             record: parts.measured.record()?,
             input: parts.input,
@@ -322,7 +323,7 @@ shown! {
         })
     }
 
-    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Made<'py, (String,)>> {
+    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Made<'py, (String, u32)>> {
         let parts = Parts {
             measured: Kept::of(&self.record),
             input: self.input.clone(),

@@ -88,6 +88,7 @@ impl std::fmt::Display for Extrapolation {
 
 /// A predicted course with its uncertainty; SI units.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(remote = "Self")]
 #[non_exhaustive]
 pub struct Prediction {
     /// The course with the best parameters.
@@ -105,6 +106,11 @@ pub struct Prediction {
     /// What was requested beyond the test.
     pub extrapolations: Vec<Extrapolation>,
 }
+
+checked_when_read!(Prediction, "a standard error for each sample", |found: &Prediction| {
+    let count = found.trajectory.len();
+    found.force_standard_error.len() == count && found.displacement_standard_error.len() == count
+});
 
 impl Prediction {
     /// Ends of the interval of the mean force at sample `index`, N: what the parameters leave open.

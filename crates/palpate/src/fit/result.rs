@@ -71,6 +71,7 @@ pub struct Parameter {
 
 /// A fitted law: its parameters, their uncertainty, and why the search ended.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(remote = "Self")]
 #[non_exhaustive]
 pub struct Fit {
     /// The law.
@@ -120,6 +121,13 @@ pub struct Fit {
     /// What it cost.
     pub work: Work,
 }
+
+checked_when_read!(Fit, "a value and a row of every covariance for each parameter that was searched", |fit: &Fit| {
+    let count = fit.searched.len();
+    let is_square = |matrix: &Vec<Vec<f64>>| matrix.len() == count && matrix.iter().all(|row| row.len() == count);
+    let of_noise = fit.uncertainty.iter().flat_map(|found| found.beside.iter().chain([&found.covariance]));
+    fit.values.len() == count && fit.white_covariance.iter().chain(of_noise).all(is_square)
+});
 
 impl Parameter {
     /// The value and interval, unless the fit ended short of an optimum inside its range: a parameter at a bound, or found beside one,

@@ -6,6 +6,7 @@ use super::{BasisFunction, Column, Kernel, Loading, Response, Superposition};
 
 /// One term of a [`LawCurve`].
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(remote = "Self")]
 pub struct Term {
     /// In the unit of the signal.
     pub amplitude: f64,
@@ -14,6 +15,10 @@ pub struct Term {
     /// Its parameters: ln of rates in 1/s, dimensionless parameters as they are.
     pub parameters: Vec<f64>,
 }
+
+checked_when_read!(Term, "as many parameters as the shape has", |term: &Term| {
+    term.parameters.len() == term.shape.parameters().len()
+});
 
 /// A law of relaxation or creep with its parameters put in: a function of time, the answer to a step.
 ///

@@ -24,6 +24,7 @@ const MOST_SAMPLES: f64 = 1e7;
 
 /// A simulated contact over time; all series have the same length, SI units, compression positive.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+#[serde(remote = "Self")]
 #[non_exhaustive]
 pub struct Trajectory {
     /// Time, s.
@@ -49,6 +50,19 @@ pub struct Trajectory {
     /// What it cost.
     pub work: SimulationWork,
 }
+
+checked_when_read!(Trajectory, "series of one length", |found: &Trajectory| {
+    let series = [
+        &found.displacement,
+        &found.contact_displacement,
+        &found.force,
+        &found.strain,
+        &found.equilibrium_strain,
+        &found.excess_strain,
+        &found.strain_rate,
+    ];
+    found.in_contact.len() == found.time.len() && series.iter().all(|values| values.len() == found.time.len())
+});
 
 impl Trajectory {
     /// Number of samples.
