@@ -38,7 +38,7 @@ fn files(folder: &str, extension: &str) -> Vec<String> {
 
 /// Documents whose claims are checked.
 fn documents() -> Vec<String> {
-    let at_root = ["README.md", "ARCHITECTURE.md", "CONTRIBUTING.md", "CHANGELOG.md"];
+    let at_root = ["README.md", "ARCHITECTURE.md", "CONTRIBUTING.md", "CHANGELOG.md", "SECURITY.md"];
     let mut documents: Vec<String> = at_root.map(str::to_owned).into();
     documents.retain(|document| root().join(document).exists());
     documents.extend(files("docs", "md"));
@@ -245,6 +245,23 @@ fn the_library_knows_no_flags() {
 fn the_library_touches_nothing_outside_itself() {
     let forbidden = ["std::fs", "std::net", "std::env", "std::process", "std::time", "print!", "println!", "stderr"];
     for path in files("crates/palpate/src", "rs") {
+        let code = code_of(&read(&path));
+        for word in forbidden {
+            assert!(!code.contains(word), "{path} has {word}");
+        }
+    }
+}
+
+#[test]
+fn nothing_opens_a_connection_or_starts_a_program() {
+    let rust = ["std::net", "unix::net", "TcpStream", "UdpSocket", "process::{", "process::Command"];
+    let python = ["subprocess", "socket", "urllib", "os.system"];
+    let sources = files("crates", "rs")
+        .into_iter()
+        .filter(|path| path.contains("/src/"))
+        .map(|path| (path, &rust[..]));
+    let scripts = files("crates/palpate-python/python", "py").into_iter().map(|path| (path, &python[..]));
+    for (path, forbidden) in sources.chain(scripts) {
         let code = code_of(&read(&path));
         for word in forbidden {
             assert!(!code.contains(word), "{path} has {word}");
