@@ -13,13 +13,13 @@ use tempfile::tempdir;
 
 /// Lets one operation fail, and counts all.
 struct Nth {
-    seen: Arc<AtomicUsize>,
+    count: Arc<AtomicUsize>,
     fails: usize,
 }
 
 impl Hook for Nth {
     fn before(&self, _: Operation) -> io::Result<()> {
-        match self.seen.fetch_add(1, Ordering::SeqCst) == self.fails {
+        match self.count.fetch_add(1, Ordering::SeqCst) == self.fails {
             true => Err(io::ErrorKind::StorageFull.into()),
             false => Ok(()),
         }
@@ -29,14 +29,14 @@ impl Hook for Nth {
 /// Runs a command in which the operation of this number fails, and returns its exit code or what it says, and how many operations there
 /// were.
 fn with_fault(arguments: &[String], fails: usize) -> (Result<u8, String>, usize) {
-    let seen = Arc::new(AtomicUsize::new(0));
+    let count = Arc::new(AtomicUsize::new(0));
     faults::set(Some(Box::new(Nth {
-        seen: Arc::clone(&seen),
+        count: Arc::clone(&count),
         fails,
     })));
     let outcome = palpate_cli::attempt(arguments.iter().map(String::as_str));
     faults::set(None);
-    (outcome.map_err(|error| error.to_string()), seen.load(Ordering::SeqCst))
+    (outcome.map_err(|error| error.to_string()), count.load(Ordering::SeqCst))
 }
 
 /// Everything below a folder; what a job keeps to resume from stays out of it.
@@ -82,7 +82,7 @@ fn chosen(count: usize) -> Vec<usize> {
 }
 
 #[test]
-fn every_operation_fails_once_and_the_output_is_whole() {
+fn every_operation_fails_once_and_the_output_is_complete() {
     let folder = tempdir().unwrap();
     let at = |name: &str| folder.path().join(name).display().to_string();
     let record = |scale: f64| -> String {
@@ -173,9 +173,9 @@ fn every_operation_fails_once_and_the_output_is_whole() {
                 put(&out, before);
                 let (outcome, _) = with_fault(&arguments, fails);
                 let after = tree(&out);
-                let is_whole = after == **before || after == new || (command == "batch" && outcome == Ok(1));
+                let is_complete = after == **before || after == new || (command == "batch" && outcome == Ok(1));
                 assert!(
-                    is_whole,
+                    is_complete,
                     "{arguments:?}, operation {fails}: {outcome:?}: {:?}",
                     after.keys().collect::<Vec<_>>()
                 );

@@ -106,3 +106,49 @@ impl<T: Kept + Copy + Default, const N: usize> Kept for [T; N] {
         Some(values)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[derive(Debug, PartialEq)]
+    struct Held {
+        since: Option<f64>,
+        ends: [f64; 3],
+        count: usize,
+        pair: (u8, bool),
+    }
+
+    kept!(Held: since, ends, count, pair; |held| held.count < 10);
+
+    #[test]
+    fn what_is_read_is_what_was_kept_and_every_cut_is_noticed() {
+        for since in [None, Some(-0.0), Some(f64::MAX)] {
+            let held = Held {
+                since,
+                ends: [1.0, f64::MIN_POSITIVE, 3.0],
+                count: 9,
+                pair: (255, true),
+            };
+            let mut bytes = Vec::new();
+            held.keep(&mut bytes);
+            let mut rest = bytes.as_slice();
+            assert_eq!(Held::read(&mut rest), Some(held));
+            assert!(rest.is_empty());
+            assert!((0..bytes.len()).all(|end| Held::read(&mut &bytes[..end]).is_none()));
+        }
+    }
+
+    #[test]
+    fn bytes_that_are_none_of_this_are_refused() {
+        let of = |bytes: &[u8]| bool::read(&mut &*bytes);
+        assert_eq!((of(&[0]), of(&[1]), of(&[2]), of(&[])), (Some(false), Some(true), None, None));
+        assert_eq!(Option::<u8>::read(&mut &[7, 1][..]), None);
+        let (mut bytes, held) = (Vec::new(), (None::<f64>, [0.0; 3]));
+        held.0.keep(&mut bytes);
+        held.1.keep(&mut bytes);
+        10_usize.keep(&mut bytes);
+        (1_u8, false).keep(&mut bytes);
+        assert_eq!(Held::read(&mut bytes.as_slice()), None, "a count that does not hold");
+    }
+}
