@@ -242,6 +242,8 @@ impl PlanGrip {
     fn stated(&self) -> Self {
         Self {
             gravity_m_per_s2: Some(self.gravity_m_per_s2.unwrap_or(STANDARD_GRAVITY)),
+            hold_s: self.hold_s.filter(|time| time.is_finite()),
+            hold_always: self.hold_always || self.hold_s == Some(f64::INFINITY),
             ..self.clone()
         }
     }
