@@ -8,6 +8,7 @@
 //! |---|---|
 //! | `kind.rs` | telling such files by their first bytes |
 //! | `part.rs` | a file as one test or several, and reading their columns |
+//! | `kept.rs` | batches that stay in memory between the reads of several tests |
 //! | `tests.rs` | which rows belong to which test |
 //! | `batches.rs` | who looks at batches of rows |
 //! | `source.rs` | batches of rows, whatever the format |
@@ -22,6 +23,8 @@ mod kind;
 mod batches;
 #[cfg(feature = "arrow")]
 mod ipc;
+#[cfg(feature = "arrow")]
+mod kept;
 #[cfg(feature = "arrow")]
 mod pages;
 #[cfg(feature = "arrow")]

@@ -3,6 +3,7 @@
 use std::{
     io::{BufReader, Read, Seek, SeekFrom},
     ops::{ControlFlow, Range},
+    sync::Arc,
 };
 
 use arrow_schema::SchemaRef;
@@ -23,6 +24,7 @@ use super::{
 };
 use crate::{
     error::{FileError, FileProblem},
+    faults::admits,
     input::{Input, Seekable},
 };
 
@@ -37,15 +39,21 @@ const MOST_OF_HEAD: u64 = 16 << 20;
 /// Rows of a batch.
 const BATCH: usize = 8192;
 
+/// Rows that any file may state, and beyond them how many for each of its bytes: a run of equal values takes no room, but its rows take time.
+const ALWAYS_ROWS: u64 = 1 << 24;
+/// See [`ALWAYS_ROWS`].
+const ROWS_A_BYTE: u64 = 32;
+
 /// The bytes of an input; no more of them are made room for than there are.
+#[derive(Clone)]
 struct Chunks {
-    input: Input,
+    input: Arc<Input>,
     size: u64,
 }
 
 impl Chunks {
     fn of(input: &Input) -> Result<Self, FileError> {
-        let input = input.unpacked()?;
+        let input = Arc::new(input.unpacked()?);
         let size = input.size;
         Ok(Self { input, size })
     }
@@ -89,10 +97,15 @@ fn metadata(input: &Input, chunks: &Chunks) -> Result<ArrowReaderMetadata, FileE
     metadata.map_err(|error| damaged(input, "footer", &error.to_string()))
 }
 
-/// What the pages of the chosen columns say they unpack to must be within reason before room is made for it.
-fn check(input: &Input, chunks: &Chunks, metadata: &ArrowReaderMetadata, columns: &[usize]) -> Result<(), FileError> {
+/// What the pages of the chosen columns of some groups say they unpack to must be within reason before room is made for it.
+fn check(
+    input: &Input,
+    Parquet { chunks, metadata }: &Parquet,
+    columns: &[usize],
+    groups: &[usize],
+) -> Result<(), FileError> {
     let schema = metadata.parquet_schema();
-    for group in metadata.metadata().row_groups() {
+    for group in groups.iter().map(|group| metadata.metadata().row_group(*group)) {
         for (leaf, column) in group.columns().iter().enumerate() {
             if column.compression() == Compression::UNCOMPRESSED || !columns.contains(&schema.get_column_root_idx(leaf))
             {
@@ -124,47 +137,72 @@ fn check_pages(input: &Input, chunks: &Chunks, mut start: u64, end: u64) -> Resu
     Ok(())
 }
 
-pub(super) fn outline(input: &Input) -> Result<(SchemaRef, Option<u64>), FileError> {
-    let metadata = metadata(input, &Chunks::of(input)?)?;
-    let rows = metadata.metadata().file_metadata().num_rows();
-    Ok((metadata.schema().clone(), u64::try_from(rows).ok()))
+/// A file whose footer has been read.
+pub(super) struct Parquet {
+    chunks: Chunks,
+    metadata: ArrowReaderMetadata,
 }
 
-pub(super) fn visit(
-    input: &Input,
-    columns: &[usize],
-    rows: &Range<u64>,
-    each: &mut Visitor<'_>,
-) -> Result<(), FileError> {
-    let chunks = Chunks::of(input)?;
-    let metadata = metadata(input, &chunks)?;
-    check(input, &chunks, &metadata, columns)?;
-    let mask = ProjectionMask::roots(metadata.parquet_schema(), columns.iter().copied());
-    // The groups from the first to the last that hold a row that is wanted.
-    let mut start = 0_u64;
-    let (mut groups, mut first) = (Vec::new(), None);
-    for (group, about) in metadata.metadata().row_groups().iter().enumerate() {
-        let end = start.saturating_add(about.num_rows().max(0) as u64);
-        if start < rows.end && end > rows.start {
-            first.get_or_insert(start);
-            groups.push(group);
+impl Parquet {
+    pub(super) fn open(input: &Input) -> Result<Self, FileError> {
+        let chunks = Chunks::of(input)?;
+        let metadata = metadata(input, &chunks)?;
+        let groups = metadata.metadata().row_groups().iter().map(|group| group.num_rows().max(0) as u64);
+        let rows = groups.fold(0_u64, u64::saturating_add);
+        if !admits(rows, chunks.size.saturating_mul(ROWS_A_BYTE).max(ALWAYS_ROWS)) {
+            return Err(input.beyond_limit());
         }
-        start = end;
+        Ok(Self { chunks, metadata })
     }
-    let total = start;
-    let builder = ParquetRecordBatchReaderBuilder::new_with_metadata(chunks, metadata)
-        .with_projection(mask)
-        .with_row_groups(groups)
-        .with_batch_size(BATCH);
-    let reader = builder.build().map_err(|error| damaged(input, "rows", &error.to_string()))?;
-    let mut row = first.unwrap_or(0);
-    for batch in reader {
-        let batch = batch.map_err(|error| damaged(input, &format!("rows from {}", row + 1), &error.to_string()))?;
-        let count = batch.num_rows() as u64;
-        if each(row, &batch, (row.saturating_add(count), total))? == ControlFlow::Break(()) {
-            break;
+
+    pub(super) fn schema(&self) -> SchemaRef {
+        self.metadata.schema().clone()
+    }
+
+    pub(super) fn rows(&self) -> Option<u64> {
+        u64::try_from(self.metadata.metadata().file_metadata().num_rows()).ok()
+    }
+
+    pub(super) fn visit(
+        &self,
+        input: &Input,
+        columns: &[usize],
+        rows: &Range<u64>,
+        each: &mut Visitor<'_>,
+    ) -> Result<(), FileError> {
+        let metadata = self.metadata.metadata();
+        // The groups from the first to the last that hold a row that is wanted.
+        let mut start = 0_u64;
+        let (mut groups, mut first) = (Vec::new(), None);
+        for (group, about) in metadata.row_groups().iter().enumerate() {
+            let end = start.saturating_add(about.num_rows().max(0) as u64);
+            if start < rows.end && end > rows.start {
+                first.get_or_insert(start);
+                groups.push(group);
+            }
+            start = end;
         }
-        row = row.saturating_add(count);
+        let total = start;
+        let first = first.unwrap_or(0);
+        // Behind the beginning of the first group.
+        let mut row = first.max(rows.start);
+        let before = usize::try_from(row - first).unwrap_or(usize::MAX);
+        check(input, self, columns, &groups)?;
+        let mask = ProjectionMask::roots(self.metadata.parquet_schema(), columns.iter().copied());
+        let builder = ParquetRecordBatchReaderBuilder::new_with_metadata(self.chunks.clone(), self.metadata.clone())
+            .with_projection(mask)
+            .with_row_groups(groups)
+            .with_offset(before)
+            .with_batch_size(BATCH);
+        let reader = builder.build().map_err(|error| damaged(input, "rows", &error.to_string()))?;
+        for batch in reader {
+            let batch = batch.map_err(|error| damaged(input, &format!("rows from {}", row + 1), &error.to_string()))?;
+            let count = batch.num_rows() as u64;
+            if each(row, &batch, (row.saturating_add(count), total))? == ControlFlow::Break(()) {
+                break;
+            }
+            row = row.saturating_add(count);
+        }
+        Ok(())
     }
-    Ok(())
 }

@@ -1,10 +1,15 @@
 //! A file as one test or several, and reading their columns.
 
-use std::ops::ControlFlow;
+use std::{
+    ops::{ControlFlow, Range},
+    sync::{Mutex, PoisonError},
+};
 
+use arrow_array::RecordBatch;
 use arrow_schema::Field;
 
 use super::{
+    kept::Kept,
     kind::{Kind, recognise},
     source::Source,
     tests::{self, Test},
@@ -12,16 +17,24 @@ use super::{
 };
 use crate::{
     cell::unit,
-    error::{FileError, FileProblem, shorten},
+    error::{FileError, FileProblem, few, shorten, shown},
+    faults::admits,
     input::Input,
     table::{ColumnInfo, ColumnKind, Columns, Found, Part, ReadOptions, ReadPart, SkippedPart},
 };
+
+/// Most columns of all tests together: each test describes its own.
+const MOST_DESCRIBED: u64 = 1 << 20;
+
+/// Most columns that are named where they are skipped.
+const MOST_NAMED: usize = 8;
 
 struct Table {
     source: Source,
     /// Index in the file of every column that can be read, and how.
     columns: Vec<(usize, Reading)>,
     tests: Vec<Test>,
+    kept: Mutex<Kept>,
 }
 
 /// Looks into a file of typed columns.
@@ -37,6 +50,12 @@ pub(crate) fn look_into(input: &Input, _options: &ReadOptions) -> Result<Found, 
         Some(column) => {
             let name = source.schema.field(column).name().clone();
             let (tests, without) = tests::reported_apart(&source, column)?;
+            if !admits((tests.len() * columns.len()) as u64, MOST_DESCRIBED) {
+                let expected = format!("at most {MOST_DESCRIBED} columns of all tests together");
+                let found = format!("{} tests of {} columns", tests.len(), columns.len());
+                let hint = "rename the column if it does not identify tests, or leave columns out that are not needed";
+                return Err(input.wrong(FileProblem::bad_cell(&format!("column {name}"), expected, found, hint)));
+            }
             if without > 0 {
                 skipped.push(SkippedPart::new(format!("{without} rows"), format!("nothing in column {name}")));
             }
@@ -68,7 +87,12 @@ pub(crate) fn look_into(input: &Input, _options: &ReadOptions) -> Result<Found, 
         let reason = if columns.is_empty() { "no column of numbers" } else { "no rows" };
         skipped.push(SkippedPart::new("the table", reason));
     }
-    let reader = Box::new(Table { source, columns, tests });
+    let reader = Box::new(Table {
+        source,
+        columns,
+        tests,
+        kept: Mutex::default(),
+    });
     Ok(Found { parts, skipped, reader })
 }
 
@@ -83,7 +107,8 @@ fn written(kind: Kind, by: Option<&str>, test: &Test, passed: &[&str]) -> String
         written.push_str(&format!(", rows with {by} {name}"));
     }
     if !passed.is_empty() {
-        written.push_str(&format!(", skipped columns without single values: {}", passed.join(", ")));
+        let passed = few(passed.iter().map(|name| shown(name)), MOST_NAMED, ", ");
+        written.push_str(&format!(", skipped columns without single values: {passed}"));
     }
     written
 }
@@ -135,48 +160,42 @@ fn samples(source: &Source, columns: &[(usize, Reading)]) -> Result<Vec<String>,
 
 impl ReadPart for Table {
     fn read(&self, part: usize, columns: &[usize], progress: &mut dyn FnMut(u64, u64)) -> Result<Columns, FileError> {
-        let mut read = Columns::of(columns.len());
         let Some(Test { rows, .. }) = self.tests.get(part) else {
-            return Ok(read);
+            return Ok(Columns::of(columns.len()));
         };
         let fields: Vec<usize> = columns.iter().map(|number| self.columns[number - 1].0).collect();
         let mut indices = fields.clone();
         indices.sort_unstable();
         indices.dedup();
-        // Where in a batch every chosen column is.
-        let places: Vec<usize> = fields.iter().filter_map(|field| indices.binary_search(field).ok()).collect();
+        let mut taking = Taking {
+            table: self,
+            // Where in a batch every chosen column is.
+            places: fields.iter().filter_map(|field| indices.binary_search(field).ok()).collect(),
+            fields,
+            stretches: rows,
+            row: vec![0.0; columns.len()],
+            read: Columns::of(columns.len()),
+        };
         let span = rows.first().map_or(0, |rows| rows.start)..rows.last().map_or(0, |rows| rows.end);
         let size = self.source.input.size;
-        let (mut next, mut row) = (0, vec![0.0; columns.len()]);
-        self.source.visit(&indices, span.clone(), &mut |first, batch, (done, total)| {
-            let end = first.saturating_add(batch.num_rows() as u64);
-            let arrays: Option<Vec<Vec<Option<f64>>>> = batch.columns().iter().map(values::numbers).collect();
-            let Some(arrays) = arrays else {
-                return Err(self.text_chosen(&fields));
-            };
-            while let Some(stretch) = rows.get(next).filter(|stretch| stretch.start < end) {
-                for number in stretch.start.max(first)..stretch.end.min(end) {
-                    let index = (number - first) as usize;
-                    let value = |place: &usize| arrays[*place][index];
-                    if places.iter().all(|place| value(place).is_none_or(f64::is_nan)) {
-                        read.ignored.blank += 1;
-                        continue;
-                    }
-                    for (target, (place, field)) in row.iter_mut().zip(places.iter().zip(&fields)) {
-                        let found = value(place);
-                        let finite = found.filter(|value| value.is_finite());
-                        *target = finite.ok_or_else(|| self.missing(*field, number, found))?;
-                    }
-                    read.push(&row, number as usize + 1);
-                }
-                if stretch.end > end {
-                    break;
-                }
-                next += 1;
+        let mut kept = self.kept.lock().unwrap_or_else(PoisonError::into_inner);
+        if self.tests.len() > 1 && kept.provide(&self.source, &indices, &span)? {
+            let mut row = span.start;
+            while let Some(stretch) = taking.stretches.first() {
+                row = row.max(stretch.start);
+                let Some((first, batch)) = kept.batch(row) else { break };
+                taking.take(first, batch)?;
+                row = first.saturating_add(batch.num_rows() as u64);
             }
-            progress((done as f64 / total.max(1) as f64 * size as f64) as u64, size);
-            Ok(if end >= span.end { ControlFlow::Break(()) } else { ControlFlow::Continue(()) })
-        })?;
+        } else {
+            self.source.visit(&indices, span.clone(), &mut |first, batch, (done, total)| {
+                taking.take(first, batch)?;
+                progress((done as f64 / total.max(1) as f64 * size as f64) as u64, size);
+                let end = first.saturating_add(batch.num_rows() as u64);
+                Ok(if end >= span.end { ControlFlow::Break(()) } else { ControlFlow::Continue(()) })
+            })?;
+        }
+        let mut read = taking.read;
         if read.rows() == 0 {
             let name = self.tests[part].name.as_deref().unwrap_or("the table");
             return Err(self.source.input.wrong(FileProblem::NoParts(vec![(name.to_owned(), "no rows".to_owned())])));
@@ -184,6 +203,57 @@ impl ReadPart for Table {
         progress(size, size);
         read.finish();
         Ok(read)
+    }
+}
+
+/// Rows of a test that are taken out of batches.
+struct Taking<'a> {
+    table: &'a Table,
+    /// The chosen columns: their indices in the file, and in a batch.
+    fields: Vec<usize>,
+    places: Vec<usize>,
+    /// The stretches of rows that are not taken as a whole yet.
+    stretches: &'a [Range<u64>],
+    row: Vec<f64>,
+    read: Columns,
+}
+
+impl Taking<'_> {
+    /// Takes the rows of the test that a batch holds.
+    fn take(&mut self, first: u64, batch: &RecordBatch) -> Result<(), FileError> {
+        let end = first.saturating_add(batch.num_rows() as u64);
+        while let Some(stretch) = self.stretches.first().filter(|stretch| stretch.start < end) {
+            let (from, to) = (stretch.start.max(first), stretch.end.min(end));
+            if from < to {
+                self.take_rows(from, &batch.slice((from - first) as usize, (to - from) as usize))?;
+            }
+            if stretch.end > end {
+                break;
+            }
+            self.stretches = &self.stretches[1..];
+        }
+        Ok(())
+    }
+
+    /// Takes all rows of a batch that begins with the row `first`.
+    fn take_rows(&mut self, first: u64, batch: &RecordBatch) -> Result<(), FileError> {
+        let arrays: Option<Vec<Vec<Option<f64>>>> = batch.columns().iter().map(values::numbers).collect();
+        let arrays = arrays.ok_or_else(|| self.table.text_chosen(&self.fields))?;
+        for number in first..first.saturating_add(batch.num_rows() as u64) {
+            let index = (number - first) as usize;
+            let value = |place: &usize| arrays[*place][index];
+            if self.places.iter().all(|place| value(place).is_none_or(f64::is_nan)) {
+                self.read.ignored.blank += 1;
+                continue;
+            }
+            for (target, (place, field)) in self.row.iter_mut().zip(self.places.iter().zip(&self.fields)) {
+                let found = value(place);
+                let finite = found.filter(|value| value.is_finite());
+                *target = finite.ok_or_else(|| self.table.missing(*field, number, found))?;
+            }
+            self.read.push(&self.row, number as usize + 1);
+        }
+        Ok(())
     }
 }
 
