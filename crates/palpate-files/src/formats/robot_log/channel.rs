@@ -1,12 +1,14 @@
 //! The channels of a log: whose messages can be read, and how.
 
+use std::sync::Arc;
+
 use super::{cdr, fields::Fields, json, schema::Schema};
 
 /// How the messages of a channel are read.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) enum Decoder {
     /// CDR of ROS 2, with the layout of its messages.
-    Cdr(Schema),
+    Cdr(Arc<Schema>),
     /// JSON.
     Json,
 }
@@ -19,15 +21,24 @@ pub(super) struct Definition {
     pub(super) text: Vec<u8>,
 }
 
+impl Definition {
+    /// How messages are laid out by it, or in words what is wrong with it.
+    pub(super) fn layout(&self) -> Result<Schema, String> {
+        let text = std::str::from_utf8(&self.text).map_err(|_| "its definition is no text".to_owned())?;
+        Schema::parse(&self.name, text)
+    }
+}
+
 impl Decoder {
-    /// A decoder for messages of this encoding and definition, or in words why there is none.
-    pub(super) fn of(encoding: &str, definition: Option<&Definition>) -> Result<Self, String> {
+    /// A decoder for messages of this encoding and definition, or in words why there is none; `layout` gives that of the definition.
+    pub(super) fn of(
+        encoding: &str,
+        definition: Option<&Definition>,
+        layout: impl FnOnce(&Definition) -> Result<Arc<Schema>, String>,
+    ) -> Result<Self, String> {
         match (encoding, definition) {
             ("json", _) => Ok(Self::Json),
-            ("cdr", Some(definition)) if definition.encoding == "ros2msg" => {
-                let text = std::str::from_utf8(&definition.text).map_err(|_| "its definition is no text".to_owned())?;
-                Schema::parse(&definition.name, text).map(Self::Cdr)
-            }
+            ("cdr", Some(definition)) if definition.encoding == "ros2msg" => layout(definition).map(Self::Cdr),
             ("cdr", Some(definition)) => Err(format!(
                 "the definition of its messages is written as \"{}\"; \"ros2msg\" is read",
                 definition.encoding

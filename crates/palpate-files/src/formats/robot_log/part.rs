@@ -1,6 +1,6 @@
 //! A log as a file that holds one test: the fields of its topics as columns, each topic with clocks of its own.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeSet, HashMap};
 
 use super::{
     container,
@@ -41,10 +41,11 @@ impl Log {
             ..Part::default()
         };
         let mut sources = Vec::new();
+        let mut of_topic: HashMap<&str, usize> = HashMap::new();
         for (index, series) in survey.series.iter().enumerate().filter(|(_, series)| !series.fields.is_empty()) {
-            let before = survey.series[..index].iter().filter(|other| other.topic == series.topic);
-            let again = before.filter(|other| !other.fields.is_empty()).count();
-            let suffix = if again == 0 { String::new() } else { format!(" ({})", again + 1) };
+            let nth = of_topic.entry(series.topic.as_str()).or_default();
+            *nth += 1;
+            let suffix = if *nth == 1 { String::new() } else { format!(" ({nth})") };
             let clocks = if series.stamped { &[Source::Stamps, Source::LogTimes][..] } else { &[Source::LogTimes] };
             part.clocks.push(Clock {
                 column: part.columns.len() + 1,
@@ -76,10 +77,8 @@ impl Log {
 impl ReadPart for Log {
     fn read(&self, _part: usize, columns: &[usize], progress: &mut dyn FnMut(u64, u64)) -> Result<Columns, FileError> {
         let chosen: Vec<(usize, Source)> = columns.iter().map(|number| self.sources[number - 1]).collect();
-        let of_series = |series: usize| -> Vec<Source> {
-            chosen.iter().filter(|(of, _)| *of == series).map(|(_, source)| *source).collect()
-        };
-        let wanted: Vec<Vec<Source>> = (0..self.survey.series.len()).map(of_series).collect();
+        let mut wanted: Vec<Vec<Source>> = vec![Vec::new(); self.survey.series.len()];
+        chosen.iter().for_each(|(series, source)| wanted[*series].push(*source));
         let mut read: Vec<Columns> = wanted.iter().map(|wanted| Columns::of(wanted.len())).collect();
         let mut row = Vec::new();
         let start = i128::from(self.survey.start.unwrap_or(0));

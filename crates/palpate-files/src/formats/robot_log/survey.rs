@@ -3,18 +3,25 @@
 //! The messages of one topic may differ in their fields: two drivers may write the joints of an arm and those of a
 //! gripper to one topic. Messages with the same fields form a series; each series is a clock of its own.
 
-use std::collections::{BTreeSet, HashMap};
+use std::{
+    collections::{BTreeSet, HashMap, HashSet},
+    sync::Arc,
+};
 
 use super::{
     channel::{Decoder, Definition},
     container,
     fields::Fields,
     record::Entry,
+    schema::Schema,
 };
-use crate::{error::FileError, input::Input, table::SkippedPart};
+use crate::{error::FileError, faults::admits, input::Input, table::SkippedPart};
 
 /// Most different sets of fields, and orders of them, that the messages of a topic may have.
 const MOST_SERIES: usize = 16;
+
+/// Most bytes of the names of all columns (64 MiB): a topic and a definition are written once, and their names stand in every column.
+const MOST_OF_NAMES: usize = 64 << 20;
 
 /// A field of a series.
 #[derive(Debug, Clone)]
@@ -71,16 +78,30 @@ pub(super) fn survey(input: &Input) -> Result<Survey, FileError> {
         input,
         survey: Survey::default(),
         definitions: HashMap::new(),
+        schemas: HashMap::new(),
+        known: Known::default(),
         refused: HashMap::new(),
     };
     container::walk(input, &mut |_, _| {}, &mut |entry| surveyor.entry(entry))?;
     Ok(surveyor.finish())
 }
 
+/// What is known of the series of all topics.
+#[derive(Default)]
+struct Known {
+    /// The series of every topic.
+    of_topic: HashMap<String, Vec<usize>>,
+    /// Bytes of the names of all columns.
+    names: usize,
+}
+
 struct Surveyor<'a> {
     input: &'a Input,
     survey: Survey,
     definitions: HashMap<u16, Definition>,
+    /// The layouts of the definitions, each read once for all channels that have it.
+    schemas: HashMap<u16, Result<Arc<Schema>, String>>,
+    known: Known,
     /// Topics of channels that cannot be read.
     refused: HashMap<u16, String>,
 }
@@ -123,7 +144,11 @@ impl Surveyor<'_> {
         if schema != 0 && definition.is_none() {
             return Err(self.input.damaged(format!("channel {topic}"), format!("schema {schema} before it"), "none"));
         }
-        match Decoder::of(encoding, definition) {
+        let layout = |definition: &Definition| {
+            let known = self.schemas.entry(schema);
+            known.or_insert_with(|| definition.layout().map(Arc::new)).clone()
+        };
+        match Decoder::of(encoding, definition, layout) {
             Ok(decoder) => {
                 let channel = Channel {
                     topic: topic.to_owned(),
@@ -154,13 +179,13 @@ impl Surveyor<'_> {
             let place = format!("message {}", survey.messages);
             return Err(self.input.damaged(place, format!("a channel {id} before it"), "none"));
         };
-        let reason = match channel.belongs(&mut survey.series, data) {
-            Ok(Some((fields, belongs))) => {
+        let reason = match channel.belongs(&mut survey.series, &mut self.known, data) {
+            Ok((fields, belongs)) => {
                 survey.series[belongs.series].add(&fields, &belongs.places);
                 return Ok(());
             }
-            Ok(None) => format!("its messages have more than {MOST_SERIES} different sets of fields"),
-            Err(fault) => format!("message {} of the log{fault}", survey.messages),
+            Err(Unfit::Message(fault)) => format!("message {} of the log{fault}", survey.messages),
+            Err(Unfit::Topic(reason)) => reason,
         };
         if let Some(channel) = self.survey.channels.remove(&id) {
             self.refuse(id, channel.topic, reason);
@@ -171,16 +196,17 @@ impl Surveyor<'_> {
     /// Drops what cannot be read: series of topics that were refused, and those without fields.
     fn finish(self) -> Survey {
         let mut survey = self.survey;
-        let refused: Vec<&String> = self.refused.values().collect();
+        let refused: HashSet<&String> = self.refused.values().collect();
         for series in &mut survey.series {
-            if refused.contains(&&series.topic) {
+            if refused.contains(&series.topic) {
                 series.fields.clear();
                 series.messages = 0;
             }
         }
-        survey.channels.retain(|_, channel| !refused.contains(&&channel.topic));
-        let holds = |topic: &str| survey.series.iter().any(|own| own.topic == topic && !own.fields.is_empty());
-        let topics = survey.channels.values().map(|channel| &channel.topic).filter(|topic| !holds(topic));
+        survey.channels.retain(|_, channel| !refused.contains(&channel.topic));
+        let hold: HashSet<&String> =
+            survey.series.iter().filter(|own| !own.fields.is_empty()).map(|own| &own.topic).collect();
+        let topics = survey.channels.values().map(|channel| &channel.topic).filter(|topic| !hold.contains(topic));
         let bare: BTreeSet<String> = topics.cloned().collect();
         let skipped = |topic| SkippedPart::new(topic, "no message of it holds a number");
         survey.skipped.extend(bare.into_iter().map(skipped));
@@ -188,45 +214,70 @@ impl Surveyor<'_> {
     }
 }
 
+/// Why a message cannot be read.
+enum Unfit {
+    /// A fault of it.
+    Message(String),
+    /// A limit that its topic goes beyond with it.
+    Topic(String),
+}
+
 impl Channel {
-    /// The numbers of a message and the series that it belongs to; `None` where it would be one series too many.
-    fn belongs(&mut self, all: &mut Vec<Series>, data: &[u8]) -> Result<Option<(Fields, &Belongs)>, String> {
-        let mut fields = self.decoder.read(data, false)?;
+    /// The numbers of a message and the series that it belongs to.
+    fn belongs(&mut self, all: &mut Vec<Series>, known: &mut Known, data: &[u8]) -> Result<(Fields, &Belongs), Unfit> {
+        let mut fields = self.decoder.read(data, false).map_err(Unfit::Message)?;
         if !self.known.contains_key(&fields.signature) {
-            fields = self.decoder.read(data, true)?;
-            if self.known.len() == MOST_SERIES {
-                return Ok(None);
-            }
-            let belongs = self.place(all, fields.names.as_deref().unwrap_or_default());
-            self.known.insert(fields.signature.clone(), belongs);
+            fields = self.decoder.read(data, true).map_err(Unfit::Message)?;
+            let belongs = match self.known.len() {
+                MOST_SERIES => None,
+                _ => self.place(all, known, fields.names.as_deref().unwrap_or_default())?,
+            };
+            let many = || Unfit::Topic(format!("its messages have more than {MOST_SERIES} different sets of fields"));
+            self.known.insert(fields.signature.clone(), belongs.ok_or_else(many)?);
         }
-        Ok(self.known.get(&fields.signature).map(|belongs| (fields, belongs)))
+        let lost = || Unfit::Message(": expected a known set of fields, found another".to_owned());
+        self.known.get(&fields.signature).map(|belongs| (fields, belongs)).ok_or_else(lost)
     }
 
-    /// The series for a message whose fields were not observed in this order before: one with the same, or a new one.
-    fn place(&self, all: &mut Vec<Series>, names: &[String]) -> Belongs {
+    /// The series for a message whose fields were not observed in this order before: one with the same, or a new one; `None` where it would
+    /// be one too many.
+    fn place(&self, all: &mut Vec<Series>, known: &mut Known, names: &[String]) -> Result<Option<Belongs>, Unfit> {
         let places_in = |series: &Series| -> Option<Vec<usize>> {
-            if series.topic != self.topic || series.kind != self.kind || series.fields.len() != names.len() {
+            if series.kind != self.kind || series.fields.len() != names.len() {
                 return None;
             }
-            names.iter().map(|name| series.fields.iter().position(|field| field.name == *name)).collect()
+            let places: HashMap<&str, usize> =
+                series.fields.iter().enumerate().rev().map(|(place, field)| (field.name.as_str(), place)).collect();
+            names.iter().map(|name| places.get(name.as_str()).copied()).collect()
         };
-        let known = all.iter().enumerate().find_map(|(series, own)| Some((series, places_in(own)?)));
-        let (series, places) = known.unwrap_or_else(|| (all.len(), (0..names.len()).collect()));
-        if series == all.len() {
-            let unseen = |name: &String| FieldObserved {
-                name: name.clone(),
-                sample: None,
-            };
-            all.push(Series {
-                topic: self.topic.clone(),
-                kind: self.kind.clone(),
-                fields: names.iter().map(unseen).collect(),
-                messages: 0,
-                stamped: true,
-            });
+        let of_topic = known.of_topic.entry(self.topic.clone()).or_default();
+        let found = of_topic.iter().find_map(|series| Some((*series, places_in(&all[*series])?)));
+        if let Some((series, places)) = found {
+            return Ok(Some(Belongs { series, places }));
         }
-        Belongs { series, places }
+        if of_topic.len() == MOST_SERIES {
+            return Ok(None);
+        }
+        known.names += names.iter().map(|name| self.topic.len() + name.len()).sum::<usize>();
+        if !admits(known.names as u64, MOST_OF_NAMES as u64) {
+            return Err(Unfit::Topic("the names of all columns exceed the limit of 64 MiB".to_owned()));
+        }
+        of_topic.push(all.len());
+        let unseen = |name: &String| FieldObserved {
+            name: name.clone(),
+            sample: None,
+        };
+        all.push(Series {
+            topic: self.topic.clone(),
+            kind: self.kind.clone(),
+            fields: names.iter().map(unseen).collect(),
+            messages: 0,
+            stamped: true,
+        });
+        Ok(Some(Belongs {
+            series: all.len() - 1,
+            places: (0..names.len()).collect(),
+        }))
     }
 }
 
