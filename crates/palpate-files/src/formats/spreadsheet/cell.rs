@@ -17,9 +17,37 @@ pub(super) enum Value {
     Fault(String),
 }
 
+/// Most bytes of a text that are kept: more than Excel writes into a cell. One text can stand in any number of cells.
+const MOST_OF_TEXT: usize = 1 << 15;
+
+/// A text as it is kept, with … in place of what is too much.
+fn kept(text: &str) -> String {
+    let mut end = MOST_OF_TEXT;
+    while !text.is_char_boundary(end) {
+        end -= 1;
+    }
+    format!("{}…", &text[..end])
+}
+
 impl Value {
+    /// What `calamine` refers to; `None` where this is nothing, or only white space.
+    pub(super) fn of_ref(data: &calamine::DataRef<'_>, days_to_epoch: f64) -> Option<Self> {
+        match data {
+            calamine::DataRef::SharedString(text) if text.len() > MOST_OF_TEXT => Some(Self::Text(kept(text))),
+            other => Self::of(other.clone().into(), days_to_epoch),
+        }
+    }
+
+    /// What `calamine` has kept; `None` where this is nothing, or only white space.
+    pub(super) fn of_kept(data: &calamine::Data, days_to_epoch: f64) -> Option<Self> {
+        match data {
+            calamine::Data::String(text) if text.len() > MOST_OF_TEXT => Some(Self::Text(kept(text))),
+            other => Self::of(other.clone(), days_to_epoch),
+        }
+    }
+
     /// What `calamine` has read; `None` where this is nothing, or only white space.
-    pub(super) fn of(data: calamine::Data, days_to_epoch: f64) -> Option<Self> {
+    fn of(data: calamine::Data, days_to_epoch: f64) -> Option<Self> {
         use calamine::Data;
         Some(match data {
             Data::Empty => return None,
@@ -35,6 +63,7 @@ impl Value {
                 None => Self::Text(text),
             },
             Data::String(text) | Data::DurationIso(text) if text.trim().is_empty() => return None,
+            Data::String(text) if text.len() > MOST_OF_TEXT => Self::Text(kept(&text)),
             Data::String(text) | Data::DurationIso(text) => Self::Text(text),
             Data::Bool(truth) => Self::Truth(truth),
             Data::Error(fault) => Self::Fault(fault.to_string()),

@@ -11,11 +11,13 @@
 //! | `table.rs` | finding the tables in it |
 //! | `stacked.rs` | tables one below the other |
 //! | `read.rs` | reading chosen columns of a table |
+//! | `gathered.rs` | the cells of several tables of one sheet |
 //! | `xlsx/` | workbooks of Office Open XML |
 //! | `xls/` | workbooks of Excel 97 to 2003 |
 
 mod book;
 mod cell;
+mod gathered;
 mod moment;
 mod part;
 mod read;

@@ -1,7 +1,13 @@
 //! A workbook as a file that holds several tests.
 
+use std::{
+    ops::ControlFlow,
+    sync::{Mutex, PoisonError},
+};
+
 use super::{
-    book::Book,
+    book::{Book, Visitor},
+    gathered::Gathered,
     read,
     sample::Sample,
     stacked,
@@ -44,6 +50,7 @@ struct Workbook {
     input: Input,
     book: Box<dyn Book>,
     places: Vec<Place>,
+    gathered: Mutex<Gathered>,
 }
 
 /// Looks for tests in every sheet of a workbook.
@@ -129,7 +136,12 @@ fn chosen(
     Found {
         parts,
         skipped: skipped.into_iter().map(|(_, part)| part).collect(),
-        reader: Box::new(Workbook { input, book, places }),
+        reader: Box::new(Workbook {
+            input,
+            book,
+            places,
+            gathered: Mutex::default(),
+        }),
     }
 }
 
@@ -165,6 +177,31 @@ impl ReadPart for Workbook {
             let share = done as f64 / total.max(1) as f64;
             progress((share * size as f64) as u64, size);
         };
-        read::read(&self.input, self.book.as_ref(), (*sheet, name, table), columns, &mut share)
+        let days_to_epoch = self.book.days_to_epoch();
+        let visit = |each: &mut Visitor<'_>| self.visit(part, *sheet, each);
+        read::read(&self.input, (name, table, days_to_epoch), &visit, columns, &mut share)
+    }
+}
+
+impl Workbook {
+    /// Visits the cells of a table, perhaps with others around it.
+    fn visit(&self, part: usize, sheet: usize, each: &mut Visitor<'_>) -> Result<(), FileError> {
+        let in_sheet = |place: Option<&Place>| place.is_some_and(|place| place.sheet == sheet);
+        let several = in_sheet(self.places.get(part + 1)) || part > 0 && in_sheet(self.places.get(part - 1));
+        if several {
+            let mut gathered = self.gathered.lock().unwrap_or_else(PoisonError::into_inner);
+            let from_here = self.places.iter().enumerate().skip(part).take_while(|(_, place)| place.sheet == sheet);
+            let tables = from_here.map(|(number, place)| (number, &place.table));
+            if let Some(cells) = gathered.of(self.book.as_ref(), (sheet, part), tables)? {
+                let total = cells.len() as u64;
+                for (done, cell) in (1..).zip(cells) {
+                    if each(cell.clone(), done, total)? == ControlFlow::Break(()) {
+                        break;
+                    }
+                }
+                return Ok(());
+            }
+        }
+        self.book.visit(sheet, each)
     }
 }

@@ -3,7 +3,7 @@
 use std::ops::ControlFlow;
 
 use super::{
-    book::Book,
+    book::Visitor,
     cell::{Value, letters},
     table::Table,
 };
@@ -17,11 +17,14 @@ use crate::{
 /// How many rows go by between two reports of progress.
 const ROWS_A_REPORT: usize = 4096;
 
-/// Reads columns (numbers from 1) of a table.
+/// What visits the cells of a table, perhaps with others around it.
+type Visit<'a> = dyn Fn(&mut Visitor<'_>) -> Result<(), FileError> + 'a;
+
+/// Reads columns (numbers from 1) of a table in a sheet of this name, in a workbook that counts day 0 so many days before 1970.
 pub(super) fn read(
     input: &Input,
-    book: &dyn Book,
-    (sheet, name, table): (usize, &str, &Table),
+    (name, table, days_to_epoch): (&str, &Table, f64),
+    visit: &Visit<'_>,
     columns: &[usize],
     progress: &mut dyn FnMut(u64, u64),
 ) -> Result<Columns, FileError> {
@@ -30,7 +33,7 @@ pub(super) fn read(
         name,
         table,
         chosen: columns.iter().map(|column| column - 1).collect(),
-        days_to_epoch: book.days_to_epoch(),
+        days_to_epoch,
         row: vec![None; table.places.len()],
         number: None,
         out: vec![0.0; columns.len()],
@@ -39,7 +42,7 @@ pub(super) fn read(
         suspect: None,
     };
     let mut ends = (0, 0);
-    book.visit(sheet, &mut |cell, done, total| {
+    visit(&mut |cell, done, total| {
         if cell.row < table.first_row {
             return Ok(ControlFlow::Continue(()));
         }

@@ -5,12 +5,13 @@ use std::{collections::BTreeSet, ops::ControlFlow};
 use super::{
     book::Book,
     cell::{Cell, Value},
+    gathered::weight,
 };
 use crate::error::FileError;
 
 /// Most rows looked at; what they do not show of a table, more would not either.
 const MOST_ROWS: usize = 4000;
-/// Most cells looked at.
+/// Most cells looked at, a long text as several.
 const MOST_CELLS: usize = 400_000;
 
 /// The first rows of a sheet, those without a cell left out.
@@ -59,10 +60,10 @@ impl Sample {
                     cells: Vec::new(),
                 });
             }
+            cells += weight(&cell.value);
             if let Some(row) = sample.rows.last_mut() {
                 row.cells.push((cell.column, cell.value));
             }
-            cells += 1;
             Ok(ControlFlow::Continue(()))
         })?;
         Ok(sample)

@@ -4,6 +4,7 @@
 //! |---|---|
 //! | `compound.rs` | streams of a compound file |
 //! | `records.rs` | records of a stream |
+//! | `texts.rs` | how long the texts are that the sheets share |
 //! | `sift.rs` | the records that `calamine` is given, bounded by the bytes that are there |
 //! | `container.rs` | a compound file around them |
 
@@ -11,6 +12,7 @@ mod compound;
 mod container;
 mod records;
 mod sift;
+mod texts;
 
 use std::{collections::BTreeSet, io::Cursor, ops::ControlFlow};
 
@@ -117,7 +119,7 @@ impl Book for Xls {
             let done = row as u64 + 1;
             // A sheet of this format has 65,536 rows at most.
             let (row, column) = (first_row + row as u32, first_column + column as u32);
-            let Some(value) = Value::of(data.clone(), self.days_to_epoch()) else {
+            let Some(value) = Value::of_kept(data, self.days_to_epoch()) else {
                 continue;
             };
             if each(Cell { row, column, value }, done, rows)? == ControlFlow::Break(()) {

@@ -6,13 +6,18 @@
 //! So dimensions, formulas, drawings and names are left out, formulas become the values they had, and what is left is
 //! counted first.
 
-use super::records::{Record, Records, letters, u16_at, u32_at};
+use super::{
+    records::{Record, Records, letters, u16_at, u32_at},
+    texts,
+};
 use crate::formats::spreadsheet::book::Sheet;
 
 /// Most cells from the first to the last of every sheet, all sheets together: some 0.5 GB while they are read.
 const MOST_CELLS: u64 = 8 << 20;
 /// Most records that the texts of the sheets go on in: `calamine` shifts all that are left for each.
 const MOST_CONTINUED: usize = 1 << 14;
+/// Most letters of shared texts in all cells: each cell has its own copy.
+const MOST_LETTERS: u64 = 32 << 20;
 /// The number of the last column that a sheet of this format can have, from 0.
 const LAST_COLUMN: u16 = 255;
 
@@ -34,6 +39,10 @@ pub(super) struct Sifted {
     /// How many cells of every sheet hold anything.
     pub(super) held: Vec<usize>,
     pub(super) encrypted: bool,
+    /// Letters of every shared text.
+    texts: Vec<u32>,
+    /// Letters of shared texts in all cells.
+    letters: u64,
 }
 
 /// Where in a stream it is damaged, and what was expected there.
@@ -61,6 +70,9 @@ pub(super) fn sift(stream: &[u8]) -> Result<Sifted, Wrong> {
                 return Err((place, "at most 8388608 cells from first to last of all sheets"));
             };
             room = left;
+            if sifted.letters > MOST_LETTERS {
+                return Err((place, "at most 33554432 letters of shared texts in all cells"));
+            }
         }
         sifted.held.push(cells.held());
         sifted.put(END, &[]);
@@ -111,11 +123,14 @@ impl Sifted {
                 }
                 TEXTS => {
                     self.put(TEXTS, bytes);
+                    let mut pieces = vec![bytes];
                     let mut left = MOST_CONTINUED;
                     while let Some(more) = records.next_if(|record| record.kind == CONTINUE) {
                         left = left.checked_sub(1).ok_or("shared texts in at most 16384 records")?;
                         self.put(CONTINUE, more.bytes);
+                        pieces.push(more.bytes);
                     }
+                    self.texts = texts::lengths(&pieces);
                 }
                 // How days are counted; number formats; styles of cells.
                 0x0022 | 0x041E | 0x00E0 if bytes.len() >= 2 => self.put(kind, bytes),
@@ -179,7 +194,11 @@ impl Cells {
                 })
             }
             // The number of a shared text.
-            0x00FD => self.put(into, kind, bytes.get(..10)?),
+            0x00FD => {
+                let text = u32_at(bytes, 6)?;
+                into.letters += u64::from(into.texts.get(text as usize).copied().unwrap_or(0));
+                self.put(into, kind, bytes.get(..10)?)
+            }
             LABEL | 0x00D6 => self.text(into, bytes.get(..6)?, bytes.get(6..)?),
             TRUTH_OR_FAULT => self.put(into, TRUTH_OR_FAULT, bytes.get(..8)?),
             // A formula, with the value it had.

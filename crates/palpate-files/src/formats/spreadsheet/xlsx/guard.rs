@@ -11,9 +11,10 @@ use quick_xml::{
     events::{BytesStart, Event, attributes::Attribute},
 };
 
-use super::package::{MOST_KEPT, MOST_OF_SHEET, Package};
+use super::package::{MOST_KEPT, MOST_OF_CELL, MOST_OF_SHEET, Package, WHAT_OF_CELL};
 use crate::{
     error::{FileError, FileProblem},
+    faults::admits,
     formats::spreadsheet::{
         book::MOST_SHEETS,
         cell::{MOST_COLUMNS, MOST_ROWS, letters, reference},
@@ -37,6 +38,8 @@ pub(super) struct Found {
     /// Whether that part names sheets.
     pub(super) has_sheets: bool,
     texts: u64,
+    /// Bytes of the parts gone over.
+    unpacked: u64,
 }
 
 /// Goes over every part of XML.
@@ -65,7 +68,7 @@ struct Checked<'a> {
     rows: Option<Rows>,
 }
 
-/// What a part has many of.
+/// What a part has many of, and what is large in it.
 #[derive(Default)]
 struct Tally {
     is_sheet: bool,
@@ -74,6 +77,8 @@ struct Tally {
     styles: u64,
     sheets: usize,
     longest_name: u64,
+    /// Where the cell or the shared text that is open began.
+    open: Option<u64>,
 }
 
 /// Where in the rows of a sheet.
@@ -108,6 +113,9 @@ impl Checked<'_> {
         if !self.tally.is_sheet {
             self.package.input.bounded(done, "a part of the workbook", MOST_KEPT)?;
         }
+        // Members of an archive may be the same bytes.
+        self.package.input.bounded(self.found.unpacked + done, "the workbook", u64::MAX)?;
+        self.measure(event, done)?;
         match event {
             Event::Start(element) if self.rows.is_some() => self.begin_in_rows(element),
             Event::Start(element) => self.begin(element),
@@ -130,6 +138,23 @@ impl Checked<'_> {
             Event::Eof => self.finish(done),
             // A remark, an instruction, a section of raw text.
             _ => self.in_value(|cell| cell.kind == "inlineStr", "something else"),
+        }
+    }
+
+    /// A cell and a shared text are held in memory with all that they are made of.
+    fn measure(&mut self, event: &Event<'_>, done: u64) -> Result<(), FileError> {
+        match event {
+            Event::Start(element) if matches!(element.local_name().as_ref(), "c" | "si") => {
+                self.tally.open = Some(done);
+            }
+            Event::End(element) if matches!(element.local_name().as_ref(), "c" | "si") => self.tally.open = None,
+            _ => {}
+        }
+        match self.tally.open {
+            Some(began) if !admits(done - began, MOST_OF_CELL) => {
+                Err(self.package.input.too_large(WHAT_OF_CELL, MOST_OF_CELL))
+            }
+            _ => Ok(()),
         }
     }
 
@@ -292,6 +317,7 @@ impl Checked<'_> {
         let tally = &self.tally;
         let damaged = |expected: &str, found: u64| Err(self.package.damaged(self.path, expected, &found.to_string()));
         self.found.texts += tally.texts;
+        self.found.unpacked += done;
         // The shortest is `<si/>`.
         if tally.texts_stated > done / 5 {
             return damaged("as many shared texts as there are bytes for", tally.texts_stated);

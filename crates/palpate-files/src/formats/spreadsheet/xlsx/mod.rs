@@ -102,7 +102,7 @@ impl Book for Xlsx {
             let rows = u64::from(cells.dimensions().end.0) + 1;
             while let Some(found) = cells.next_cell().map_err(wrong)? {
                 let (row, column) = found.get_position();
-                let Some(value) = Value::of(found.get_value().clone().into(), self.days_to_epoch()) else {
+                let Some(value) = Value::of_ref(found.get_value(), self.days_to_epoch()) else {
                     continue;
                 };
                 if each(Cell { row, column, value }, u64::from(row) + 1, rows)? == ControlFlow::Break(()) {

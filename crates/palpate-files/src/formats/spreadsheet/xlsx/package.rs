@@ -1,8 +1,9 @@
 //! The parts of the archive, and reading their XML.
 
 use std::{
+    cell::RefCell,
     collections::BTreeMap,
-    io::{BufReader, Read},
+    io::{self, BufReader, Read},
 };
 
 use quick_xml::{Reader, events::Event};
@@ -10,19 +11,49 @@ use zip::ZipArchive;
 
 use crate::{
     error::{FileError, shown},
-    input::{Input, MOST_IN_MEMORY},
+    input::{Input, MOST_IN_MEMORY, Seekable},
 };
 
 /// Most bytes that a part which is kept in memory may unpack to (256 MiB): texts, styles, names of sheets.
 pub(super) const MOST_KEPT: u64 = 256 << 20;
-/// Most bytes that a sheet may unpack to: they are streamed, and one cell can hold all of them.
+/// Most bytes that a sheet may unpack to: they are streamed.
 pub(super) const MOST_OF_SHEET: u64 = MOST_IN_MEMORY;
+/// Most bytes of XML between two tags, of a tag, and of a cell with all that is inside (16 MiB): such a piece is held in memory. Excel writes
+/// at most 32,767 characters into a cell.
+pub(super) const MOST_OF_CELL: u64 = 16 << 20;
+/// Most members of an archive: each is looked for by its name.
+const MOST_MEMBERS: usize = 1 << 16;
+
+/// What goes beyond [`MOST_OF_CELL`].
+pub(super) const WHAT_OF_CELL: &str = "a cell, a shared string or a tag of the workbook";
+
+/// Bytes taken from an archive at once.
+const PIECE: usize = 1 << 16;
 
 /// A zip archive of parts that are known by their paths.
 pub(super) struct Package {
     pub(super) input: Input,
     /// Names in the archive by their paths in lower case and with `/` between folders.
     names: BTreeMap<String, String>,
+    /// Open for all parts: its list of members is as long as the workbook has sheets.
+    archive: RefCell<ZipArchive<BufReader<Box<dyn Seekable>>>>,
+}
+
+/// A reader, and how many bytes it may give before it is asked again.
+struct Piecewise<R> {
+    inner: R,
+    left: u64,
+}
+
+impl<R: Read> Read for Piecewise<R> {
+    fn read(&mut self, into: &mut [u8]) -> io::Result<usize> {
+        if self.left == 0 {
+            return Err(io::ErrorKind::FileTooLarge.into());
+        }
+        let got = self.inner.read(into)?;
+        self.left = self.left.saturating_sub(got as u64);
+        Ok(got)
+    }
 }
 
 /// Whether the archive has a part of this path.
@@ -37,7 +68,12 @@ fn same_path(name: &str) -> String {
 
 impl Package {
     pub(super) fn open(input: &Input) -> Result<Self, FileError> {
-        let archive = ZipArchive::new(input.seekable()?).map_err(|error| broken(input, "zip archive", &error))?;
+        let stored = BufReader::with_capacity(PIECE, input.seekable()?);
+        let archive = ZipArchive::new(stored).map_err(|error| broken(input, "zip archive", &error))?;
+        if archive.len() > MOST_MEMBERS {
+            let expected = format!("at most {MOST_MEMBERS} members");
+            return Err(input.damaged("zip archive", expected, archive.len().to_string()));
+        }
         let mut names = BTreeMap::new();
         for name in archive.file_names().flatten() {
             if let Some(twin) = names.insert(same_path(&name), name.into_owned()) {
@@ -47,6 +83,7 @@ impl Package {
         Ok(Self {
             input: input.clone(),
             names,
+            archive: RefCell::new(archive),
         })
     }
 
@@ -66,20 +103,28 @@ impl Package {
         step: &mut dyn FnMut(&Event<'_>, u64) -> Result<(), FileError>,
     ) -> Result<(), FileError> {
         let name = self.names.get(path).map_or(path, String::as_str);
-        let stored = BufReader::with_capacity(1 << 16, self.input.seekable()?);
-        let mut archive = ZipArchive::new(stored).map_err(|error| broken(&self.input, "zip archive", &error))?;
+        let mut archive = self.archive.borrow_mut();
         let member = archive.by_name(name).map_err(|error| broken(&self.input, path, &error))?;
-        // One byte more tells whether there is more.
-        let mut xml = Reader::from_reader(BufReader::with_capacity(1 << 16, member.take(most + 1)));
+        let member = Piecewise {
+            // One byte more tells whether there is more.
+            inner: member.take(most + 1),
+            left: 0,
+        };
+        let mut xml = Reader::from_reader(BufReader::with_capacity(PIECE, member));
         xml.config_mut().check_end_names = false;
         xml.config_mut().expand_empty_elements = true;
         let mut buffer = Vec::new();
         loop {
             buffer.clear();
+            xml.get_mut().get_mut().left = MOST_OF_CELL;
             let event = xml.read_event_into(&mut buffer);
             let done = xml.buffer_position();
-            if xml.get_ref().get_ref().limit() == 0 {
+            let Piecewise { inner, left } = xml.get_ref().get_ref();
+            if inner.limit() == 0 {
                 return Err(self.input.too_large("a part of the workbook", most));
+            }
+            if *left == 0 && event.is_err() {
+                return Err(self.input.too_large(WHAT_OF_CELL, MOST_OF_CELL));
             }
             let event = event.map_err(|error| self.damaged(path, "XML", &error.to_string()))?;
             step(&event, done)?;
