@@ -1,10 +1,10 @@
 //! Which columns the segments of a curve make together.
 
-use std::collections::HashSet;
+use std::collections::{HashMap, HashSet};
 
 use super::curve::{Curve, Formula, Line, Segment};
 use crate::{
-    error::shorten,
+    error::{few, shorten},
     formats::afm::metadata,
     naming::UNCALIBRATED,
     table::{ColumnInfo, ColumnKind, Label, Metadata, Part, SkippedPart},
@@ -30,6 +30,9 @@ const TIPS: [&str; 2] = ["verticalTipPosition", "tip position"];
 
 /// The channel that JPK's programs write the cantilever's bending to.
 pub(super) const BENDING: &str = "vDeflection";
+
+/// Most channels that are named where they are left out.
+const MOST_NAMED: usize = 8;
 
 /// A channel of a segment.
 #[derive(Debug, Clone, PartialEq)]
@@ -110,7 +113,7 @@ pub(super) fn assemble(drafts: Vec<Draft>, mut part: Part) -> (Option<Curve>, Ve
     let mut columns = derived(&segments, &mut part.metadata);
     let left_out = add_channels(&segments, &mut columns);
     if !left_out.is_empty() {
-        let value = format!("{} (not in every segment)", left_out.join(", "));
+        let value = format!("{} (not in every segment)", few(left_out.into_iter(), MOST_NAMED, ", "));
         part.metadata.push(metadata("channels left out", &value));
     }
     let sample = |column: &Column| match (&first.first, column.formulas.first()) {
@@ -138,14 +141,20 @@ pub(super) fn assemble(drafts: Vec<Draft>, mut part: Part) -> (Option<Curve>, Ve
 
 /// What the segments are called: their style, and its how many-th where there are several of that style.
 fn titles(drafts: &[Draft]) -> Vec<String> {
-    let title = |(index, draft): (usize, &Draft)| {
-        let same = |other: &&Draft| other.style == draft.style;
-        match (drafts.iter().filter(same).count(), drafts[..=index].iter().filter(same).count()) {
-            (1, _) => draft.style.clone(),
-            (_, nth) => format!("{} ({nth})", draft.style),
-        }
+    let mut of_style: HashMap<&str, usize> = HashMap::new();
+    drafts.iter().for_each(|draft| *of_style.entry(draft.style.as_str()).or_default() += 1);
+    let mut before: HashMap<&str, usize> = HashMap::new();
+    let title = |draft: &Draft, nth: usize| match of_style.get(draft.style.as_str()) {
+        Some(1) => draft.style.clone(),
+        _ => format!("{} ({nth})", draft.style),
     };
-    drafts.iter().enumerate().map(title).collect()
+    let mut titles = Vec::new();
+    for draft in drafts {
+        let nth = before.entry(draft.style.as_str()).or_default();
+        *nth += 1;
+        titles.push(title(draft, *nth));
+    }
+    titles
 }
 
 /// Takes out segments that hold nothing, or lack what makes a test of the others.

@@ -30,8 +30,8 @@ const MOST_SEGMENTS: usize = 4096;
 pub(super) const HEADER: &str = "header.properties";
 
 /// An archive whose members are known by name.
-pub(super) struct Archive<'a> {
-    input: &'a Input,
+pub(super) struct Archive {
+    input: Input,
     zip: ZipArchive<Box<dyn Seekable>>,
     members: BTreeMap<String, usize>,
 }
@@ -44,8 +44,8 @@ pub(super) struct Place {
     pub(super) segments: usize,
 }
 
-impl<'a> Archive<'a> {
-    pub(super) fn open(input: &'a Input) -> Result<Self, FileError> {
+impl Archive {
+    pub(super) fn open(input: &Input) -> Result<Self, FileError> {
         let broken = |error: &ZipError| input.damaged("zip archive", "a whole archive", error.to_string());
         let zip = ZipArchive::new(input.seekable()?).map_err(|error| broken(&error))?;
         if zip.len() > MOST_MEMBERS {
@@ -53,7 +53,11 @@ impl<'a> Archive<'a> {
         }
         let member = |index| Some((zip.name_for_index(index)?.ok()?.into_owned(), index));
         let members = (0..zip.len()).filter_map(member).collect();
-        Ok(Self { input, zip, members })
+        Ok(Self {
+            input: input.clone(),
+            zip,
+            members,
+        })
     }
 
     pub(super) fn has(&self, name: &str) -> bool {
@@ -62,7 +66,7 @@ impl<'a> Archive<'a> {
 
     /// The first bytes of a member, no more than `most` of them.
     pub(super) fn beginning(&mut self, name: &str, most: u64) -> Result<Vec<u8>, FileError> {
-        let input = self.input;
+        let input = &self.input;
         let Some(&index) = self.members.get(name) else {
             return Err(input.damaged(name, "a member of the archive", "none of that name"));
         };

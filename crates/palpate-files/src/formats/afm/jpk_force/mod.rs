@@ -18,6 +18,8 @@ mod scaling;
 mod segment;
 mod stored;
 
+use std::sync::{Mutex, PoisonError};
+
 use crate::{
     error::{FileError, FileProblem},
     faults::admits,
@@ -51,6 +53,8 @@ pub(crate) fn recognise(input: &Input) -> bool {
 /// An archive of force curves.
 struct JpkForce {
     input: Input,
+    /// Open from one curve to the next: its list of members is as long as the map.
+    archive: Mutex<Archive>,
     shared: List,
     /// One a part.
     places: Vec<Place>,
@@ -89,6 +93,7 @@ pub(crate) fn look_into(input: &Input, _options: &ReadOptions) -> Result<Found, 
         skipped,
         reader: Box::new(JpkForce {
             input: input.clone(),
+            archive: Mutex::new(archive),
             shared,
             places,
         }),
@@ -110,7 +115,7 @@ type Understood = (Option<(Curve, Members)>, Vec<SkippedPart>);
 /// Understands the headers of one curve.
 fn curve(
     input: &Input,
-    archive: &mut Archive<'_>,
+    archive: &mut Archive,
     shared: &List,
     place: &Place,
     sampled: bool,
@@ -138,7 +143,7 @@ fn curve(
 }
 
 /// The entries of the header of a curve.
-fn of_header(archive: &mut Archive<'_>, place: &Place) -> Result<Vec<Metadata>, FileError> {
+fn of_header(archive: &mut Archive, place: &Place) -> Result<Vec<Metadata>, FileError> {
     let member = format!("{}{HEADER}", place.folder);
     if !archive.has(&member) {
         return Ok(Vec::new());
@@ -149,7 +154,7 @@ fn of_header(archive: &mut Archive<'_>, place: &Place) -> Result<Vec<Metadata>, 
 }
 
 /// What the channels of a segment hold in the first row; `None` where one holds nothing.
-fn first_row(archive: &mut Archive<'_>, segment: &StoredSegment) -> Result<Option<Vec<f64>>, FileError> {
+fn first_row(archive: &mut Archive, segment: &StoredSegment) -> Result<Option<Vec<f64>>, FileError> {
     let mut row = Vec::new();
     for channel in &segment.channels {
         let width = channel.stored.width();
@@ -164,7 +169,7 @@ fn first_row(archive: &mut Archive<'_>, segment: &StoredSegment) -> Result<Optio
 
 impl ReadPart for JpkForce {
     fn read(&self, part: usize, columns: &[usize], progress: &mut dyn FnMut(u64, u64)) -> Result<Columns, FileError> {
-        let mut archive = Archive::open(&self.input)?;
+        let mut archive = self.archive.lock().unwrap_or_else(PoisonError::into_inner);
         let nothing = || self.input.damaged("segments", "the curve that was there before", "none");
         let place = self.places.get(part).ok_or_else(nothing)?;
         let (found, _) = curve(&self.input, &mut archive, &self.shared, place, false)?;
@@ -184,7 +189,7 @@ impl ReadPart for JpkForce {
 impl JpkForce {
     fn read_segment(
         &self,
-        archive: &mut Archive<'_>,
+        archive: &mut Archive,
         segment: &Segment,
         channels: &[StoredChannel],
         columns: &[usize],
@@ -226,7 +231,7 @@ impl JpkForce {
     }
 
     /// The bytes of a channel; of numbers there must be as many as rows.
-    fn take(&self, archive: &mut Archive<'_>, channel: &StoredChannel, rows: usize) -> Result<Vec<u8>, FileError> {
+    fn take(&self, archive: &mut Archive, channel: &StoredChannel, rows: usize) -> Result<Vec<u8>, FileError> {
         let width = channel.stored.width();
         if width == 0 {
             return Ok(Vec::new());

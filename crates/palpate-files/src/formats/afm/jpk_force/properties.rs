@@ -77,8 +77,8 @@ fn unescaped(text: &str) -> String {
 pub(super) struct Properties<'a> {
     own: List,
     shared: &'a List,
-    /// `channel.height`, `lcd-info.3`.
-    references: Vec<(String, String)>,
+    /// `channel.height`: `lcd-info.3`.
+    references: BTreeMap<String, Vec<String>>,
 }
 
 impl<'a> Properties<'a> {
@@ -87,7 +87,10 @@ impl<'a> Properties<'a> {
             let (head, kind) = key.strip_suffix(".*")?.rsplit_once('.')?;
             Some((head.to_owned(), format!("{kind}.{value}")))
         };
-        let references = own.iter().filter_map(reference).collect();
+        let mut references: BTreeMap<String, Vec<String>> = BTreeMap::new();
+        for (head, target) in own.iter().filter_map(reference) {
+            references.entry(head).or_default().push(target);
+        }
         Self {
             own,
             shared,
@@ -98,9 +101,10 @@ impl<'a> Properties<'a> {
     /// The value of a property that is not empty.
     pub(super) fn value(&self, key: &str) -> Option<&str> {
         let shared = || {
-            self.references.iter().find_map(|(head, target)| {
-                let rest = key.strip_prefix(head.as_str())?.strip_prefix('.')?;
-                self.shared.get(&format!("{target}.{rest}"))
+            key.match_indices('.').find_map(|(place, _)| {
+                let (head, rest) = (&key[..place], &key[place + 1..]);
+                let targets = self.references.get(head)?;
+                targets.iter().find_map(|target| self.shared.get(&format!("{target}.{rest}")))
             })
         };
         let value = self.own.get(key).or_else(shared)?;

@@ -49,7 +49,7 @@ pub(super) struct Header<'a> {
 /// Reads the header of segment `number` of the curve at `place`.
 pub(super) fn read(
     input: &Input,
-    archive: &mut Archive<'_>,
+    archive: &mut Archive,
     shared: &List,
     place: &Place,
     number: usize,
@@ -145,7 +145,7 @@ impl Header<'_> {
     }
 
     /// How a channel is stored.
-    fn channel(&self, archive: &Archive<'_>, folder: &str, name: &str) -> Result<StoredChannel, FileError> {
+    fn channel(&self, archive: &Archive, folder: &str, name: &str) -> Result<StoredChannel, FileError> {
         let keys = |end: &str| [format!("channel.{name}.data.{end}"), format!("channel.{name}.{end}")];
         let text = |end: &str| self.properties.first(&keys(end));
         let number = |end: &str| {

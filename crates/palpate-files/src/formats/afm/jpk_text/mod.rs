@@ -50,7 +50,7 @@ pub(crate) fn look_into(input: &Input, _options: &ReadOptions) -> Result<Found, 
 fn of_headers(blocks: &[Block], clock: &'static str) -> Vec<Metadata> {
     let mut observed = std::collections::HashSet::new();
     let mut all = Vec::new();
-    for (key, value) in blocks.iter().flat_map(|block| &block.header) {
+    for (key, value) in blocks.iter().flat_map(Block::header) {
         let layout = matches!(key.as_str(), "columns" | "units" | "fancyNames" | "calibrationSlots" | "segment");
         if !layout && !value.is_empty() && observed.insert((key, value)) {
             all.push(metadata(key, value));
