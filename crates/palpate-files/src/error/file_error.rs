@@ -136,6 +136,14 @@ pub enum FileProblem {
         /// Longest line that is read, in bytes.
         limit: usize,
     },
+    /// A packed file unpacks to lines that hold no row.
+    #[error(", line {line}: expected rows of numbers, found more than {} of packed lines without any", bytes(*most_bytes))]
+    Idle {
+        /// Line, from 1, up to which there were so many.
+        line: usize,
+        /// Most bytes of such lines.
+        most_bytes: u64,
+    },
     /// The rows of numbers do not fall into columns.
     #[error(", line {line}: expected two or more columns, found one: `{}`", shown(found))]
     OneColumn {

@@ -38,6 +38,9 @@ impl FileError {
                 "copy or export it again; if you trust it, unpack it, or write it without compression"
             }
             FileProblem::NoParts(_) => "a test needs a table of numbers with time and force side by side",
+            FileProblem::Idle { .. } => {
+                "remove the blank lines and those without numbers; if you trust the file, unpack it"
+            }
             FileProblem::LineTooLong { .. } => "check line ends and encoding of the file",
             FileProblem::OneColumn { delimiter, .. } => match delimiter {
                 Some(by) => return Some(format!("the delimiter is fixed to {by}: omit it to have it detected")),

@@ -43,10 +43,10 @@ pub(crate) fn shown(text: &str) -> String {
     plain(&short)
 }
 
-/// At most so many of some texts, with a mark between them, and … where there are more.
+/// At most so many of some texts, with a mark between them, and how many more there are.
 pub(crate) fn few(texts: impl ExactSizeIterator<Item = String>, most: usize, between: &str) -> String {
-    let more = texts.len() > most;
-    let shown: Vec<String> = texts.take(most).chain(more.then(|| "…".to_owned())).collect();
+    let more = texts.len().checked_sub(most).filter(|more| *more > 0).map(|more| format!("and {more} more"));
+    let shown: Vec<String> = texts.take(most).chain(more).collect();
     shown.join(between)
 }
 

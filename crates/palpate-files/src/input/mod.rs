@@ -9,6 +9,7 @@
 //! | `regular.rs` | the one way in: regular files, up to a limit |
 //! | `packing.rs` | telling packed files by their content, and unpacking them |
 //! | `counting.rs` | how far a reader has got |
+//! | `idle.rs` | bytes of a packed file that hold nothing |
 //! | `binary.rs` | numbers as bytes |
 //! | `contained.rs` | readers of other crates that panic on damaged files |
 //! | `encoding.rs` | bytes as letters ([`Encoding`]) |
@@ -19,6 +20,7 @@ mod contained;
 mod counting;
 pub(crate) mod encoding;
 mod feed;
+mod idle;
 pub(crate) mod lines;
 mod packing;
 mod regular;
@@ -29,6 +31,8 @@ pub(crate) use binary::Number;
 pub(crate) use contained::caught;
 pub(crate) use contained::contained;
 pub use encoding::Encoding;
+pub use idle::IDLE_A_ROW;
+pub(crate) use idle::Idle;
 pub(crate) use lines::{LONGEST_LINE, LineReader};
 pub(crate) use packing::is_zip;
 pub use packing::{MOST_UNPACKED, Packing};

@@ -20,6 +20,9 @@ use crate::{
     table::{ColumnInfo, ColumnKind, EPOCH, Part, epoch, recognise},
 };
 
+/// Most candidates that are named.
+const MOST_NAMED: usize = 8;
+
 /// What stands where the file does not tell; reading with it is an error that names the key.
 const ASK: &str = "?";
 
@@ -214,8 +217,8 @@ fn write_questions(out: &mut String, part: &Part) {
             }
             [] => format!("\"{ASK}\"    # no column name matches"),
             ref several => {
-                let numbers: Vec<String> = several.iter().map(|column| column.number.to_string()).collect();
-                format!("\"{ASK}\"    # {} are all candidates", numbers.join(", "))
+                let numbers = few(several.iter().map(|column| column.number.to_string()), MOST_NAMED, ", ");
+                format!("\"{ASK}\"    # {numbers} are all candidates")
             }
         };
         let unit = requested_unit(quantity, &candidates);

@@ -8,7 +8,7 @@ use super::{lever, named::NamedColumn, snippet};
 use crate::{
     cell::DecimalMark,
     description::machines_of,
-    error::{FileError, few},
+    error::{FileError, few, shown},
     naming::{Quantity, UNCALIBRATED, unit_factor},
     table::{ColumnInfo, ColumnRef, Part},
 };
@@ -88,7 +88,7 @@ pub enum ColumnError {
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub enum UnitProblem {
     /// A header gives a unit that is none of the quantity in the column.
-    #[error("\"{}\" is not a unit of {} (accepted: {})", .1, .0, .0.dimension().accepted())]
+    #[error("\"{}\" is not a unit of {} (accepted: {})", shown(.1), .0, .0.dimension().accepted())]
     Unknown(Quantity, String),
     /// The conventions of a machine say one unit, the header another.
     #[error("expected {stated}, the unit of machine.preset = \"{machine}\", found {written} in the header")]
@@ -220,8 +220,14 @@ impl UnitProblem {
     }
 }
 
-fn listed<'c>(columns: impl IntoIterator<Item = &'c NamedColumn>, between: &str) -> String {
-    columns.into_iter().map(ToString::to_string).collect::<Vec<_>>().join(between)
+/// The first few of some columns.
+fn listed<'c>(
+    columns: impl IntoIterator<Item = &'c NamedColumn, IntoIter: ExactSizeIterator>,
+    between: &str,
+) -> String {
+    let columns = columns.into_iter();
+    let between = if columns.len() > snippet::MOST { ", " } else { between };
+    few(columns.map(ToString::to_string), snippet::MOST, between)
 }
 
 fn is_displacement(columns: &[NamedColumn]) -> &'static str {
@@ -347,7 +353,7 @@ fn behind_comma(what: Option<&impl fmt::Display>) -> String {
 
 /// What could be stated of a file with these parts.
 fn one_of_parts(parts: &[String]) -> String {
-    let numbered = parts.iter().enumerate().map(|(index, part)| format!("{} (\"{part}\")", index + 1));
+    let numbered = parts.iter().enumerate().map(|(index, part)| format!("{} (\"{}\")", index + 1, shown(part)));
     match parts.len() {
         1 => "the one test that the file holds".to_owned(),
         _ => format!("one of {} parts, {}", parts.len(), few(numbered, 12, ", ")),
@@ -356,7 +362,7 @@ fn one_of_parts(parts: &[String]) -> String {
 
 /// The first few names of parts.
 fn first(parts: &[String]) -> String {
-    few(parts.iter().map(|part| format!("\"{part}\"")), 5, ", ")
+    few(parts.iter().map(|part| format!("\"{}\"", shown(part))), 5, ", ")
 }
 
 /// The message of a record error; less its row where a line of the file is known, which says more. Records count their

@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use crate::table::ColumnInfo;
+use crate::{error::shown, table::ColumnInfo};
 
 /// A column as messages name it: `column 3 (Force)`.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -15,7 +15,7 @@ pub struct NamedColumn {
 
 impl fmt::Display for NamedColumn {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let name = self.name.as_ref().map_or_else(String::new, |name| format!(" ({name})"));
+        let name = self.name.as_ref().map_or_else(String::new, |name| format!(" ({})", shown(name)));
         write!(f, "column {}{name}", self.number)
     }
 }

@@ -4,12 +4,16 @@ use palpate::units::Dimension;
 
 use super::named::NamedColumn;
 use crate::{
+    error::{few, shown},
     naming::{Quantity, topic_and_field, unit_factor},
     table::{ColumnInfo, ColumnKind, recognise},
 };
 
 /// Most columns that a message shows.
-const MOST: usize = 8;
+pub(super) const MOST: usize = 8;
+
+/// Longest name, in bytes, that an option is proposed with.
+const LONGEST: usize = 240;
 
 /// All columns of a file, for a message.
 pub(super) fn described(columns: &[ColumnInfo]) -> String {
@@ -31,16 +35,12 @@ pub(super) fn described(columns: &[ColumnInfo]) -> String {
 pub(super) fn choices(columns: &[ColumnInfo]) -> String {
     let count = columns.len();
     let names = columns.iter().filter_map(|column| column.name.as_deref());
-    let mut names: Vec<String> = names.map(|name| format!("\"{name}\"")).collect();
-    if names.len() > MOST {
-        let more = names.len() - MOST;
-        names.truncate(MOST);
-        names.push(format!("… and {more} more"));
-    }
+    let names: Vec<&str> = names.collect();
     if names.is_empty() {
         return format!("a number from 1 to {count} (the columns have no names)");
     }
-    format!("a number from 1 to {count} or a name that one column has ({})", names.join(", "))
+    let names = few(names.into_iter().map(|name| format!("\"{}\"", shown(name))), MOST, ", ");
+    format!("a number from 1 to {count} or a name that one column has ({names})")
 }
 
 /// A column for a quantity as a message proposes it.
@@ -139,7 +139,7 @@ fn is_volts(unit: &str) -> bool {
 
 fn line_of(Proposed { quantity, column, unit }: &Proposed<'_>) -> String {
     let scale = if is_volts(unit) { format!(", scale = \"1 {}/V\"", quantity.usual_unit()) } else { String::new() };
-    let name = column.name.as_deref().map_or_else(String::new, |name| format!("{name}, which "));
+    let name = column.name.as_deref().map_or_else(String::new, |name| format!("{}, which ", shown(name)));
     let optional = if *quantity == Quantity::Displacement { "; omit if there is none" } else { "" };
     let number = column.number;
     format!(
@@ -157,7 +157,11 @@ pub(super) fn option(entries: impl IntoIterator<Item = String>) -> String {
 pub(super) fn entry(quantity: Quantity, column: &NamedColumn, unit: Option<&str>, has_no_twin: bool) -> String {
     let plain = |name: &&String| {
         let parts = |letter: char| "\"$`\\!:,=\u{FFFD}".contains(letter) || letter.is_control();
-        has_no_twin && !name.contains(parts) && name.trim() == *name && name.parse::<f64>().is_err()
+        has_no_twin
+            && name.len() <= LONGEST
+            && !name.contains(parts)
+            && name.trim() == *name
+            && name.parse::<f64>().is_err()
     };
     let name = column.name.as_ref().filter(plain).map_or_else(|| column.number.to_string(), String::clone);
     let unit = unit.map_or_else(String::new, |unit| format!(":{unit}"));

@@ -7,7 +7,7 @@ use super::{
 use crate::{
     cell::{DecimalMark, Delimiter},
     error::{DecimalDoubt, FileError, FileProblem},
-    input::{Input, LineReader},
+    input::{Idle, Input, LineReader},
     table::{Columns, Lacking, Layout, Suspect, decimal},
 };
 
@@ -22,7 +22,8 @@ const TRIES: usize = 3;
 ///
 /// Blank lines are passed over and counted. Lines at the very end that do not start like data are
 /// passed over as a footer, up to 50 of them. Rows in which a cell is empty or says that there is no number (`n/a`, `NaN`, `-`)
-/// are left out and counted where they are at most 3 % of all. Every other line must be a full row.
+/// are left out and counted where they are at most 3 % of all. Every other line must be a full row. Of a packed file, blank lines and those that
+/// are left out have a limit ([`FileProblem::Idle`]).
 ///
 /// # Errors
 ///
@@ -44,6 +45,7 @@ pub fn read_columns(
     let mut row = vec![0.0; distinct.len()];
     let mut suspect: Option<Suspect> = None;
     let mut lacking = Lacking::default();
+    let mut idle = Idle::of(input);
     let (mut reported, mut reserved) = (0, false);
     let mut blocks = RowsAhead::new(distinct.len());
     let mut tries = if plan.may_be_plain() && !distinct.is_empty() { TRIES } else { 0 };
@@ -81,9 +83,13 @@ pub fn read_columns(
                 }
                 read.push(&row, number);
             }
-            Err(_) if is_blank(line, layout.delimiter) => read.ignored.blank += 1,
+            Err(_) if is_blank(line, layout.delimiter) => {
+                read.ignored.blank += 1;
+                idle.pass(line.len(), number, read.rows())?;
+            }
             Err(fault) if suspect.is_none() && plan.lacks_numbers(line) => {
                 lacking.leave_out(number, || plan.error(fault, line, number));
+                idle.pass(line.len(), number, read.rows())?;
             }
             Err(fault) if plan.is_data(line) => return Err(plan.error(fault, line, number)),
             Err(fault) => {

@@ -78,6 +78,7 @@ fn without_numbers(lines: &[&str], skip: usize) -> FileProblem {
 }
 
 fn columns(lines: &[&str], block: &Block, header: &Header) -> Vec<ColumnInfo> {
+    let rows: Vec<SplitRow<'_>> = block.rows().map(|(line, row)| (cells(lines[line], block.delimiter), row)).collect();
     let mut columns: Vec<ColumnInfo> = header
         .labels
         .iter()
@@ -88,10 +89,10 @@ fn columns(lines: &[&str], block: &Block, header: &Header) -> Vec<ColumnInfo> {
             name: name.clone(),
             unit: unit.clone(),
             kind: match kind {
-                ColumnKind::Text if held(lines, block, index).all(|(cell, _)| is_date(cell)) => ColumnKind::DateTime,
+                ColumnKind::Text if held(&rows, index).all(|(cell, _)| is_date(cell)) => ColumnKind::DateTime,
                 other => other,
             },
-            sample: sample(lines, block, index, kind),
+            sample: sample(&rows, index, kind),
         })
         .collect();
     // What a delimiter at the end of every row leaves behind is no column.
@@ -106,17 +107,17 @@ fn is_date(cell: &str) -> bool {
     date::parse(cell.as_bytes()).is_some()
 }
 
+/// The cells of a row of the block, and what they are.
+type SplitRow<'a> = (Vec<&'a str>, &'a [Cell]);
+
 /// The cells of a column in the rows of the block, and what they are.
-fn held<'a>(lines: &'a [&str], block: &'a Block, column: usize) -> impl Iterator<Item = (&'a str, Cell)> {
-    block.rows().map(move |(line, row)| {
-        let line: &str = lines[line];
-        (cells(line, block.delimiter).get(column).copied().unwrap_or_default(), row[column])
-    })
+fn held<'a>(rows: &'a [SplitRow<'a>], column: usize) -> impl Iterator<Item = (&'a str, Cell)> {
+    rows.iter().map(move |(texts, row)| (texts.get(column).copied().unwrap_or_default(), row[column]))
 }
 
 /// The first cell that holds anything; of texts, that keeps the column from being one of numbers.
-fn sample(lines: &[&str], block: &Block, column: usize, kind: ColumnKind) -> String {
-    let mut filled = held(lines, block, column).filter(|(cell, _)| !cell.is_empty()).peekable();
+fn sample(rows: &[SplitRow<'_>], column: usize, kind: ColumnKind) -> String {
+    let mut filled = held(rows, column).filter(|(cell, _)| !cell.is_empty()).peekable();
     let first = filled.peek().copied();
     let text = match kind {
         ColumnKind::Text => filled.find(|(_, cell)| !cell.is_numeric()),

@@ -1,9 +1,11 @@
 //! Finding the blocks of a text export: a header of comment lines, then rows.
 
+use std::collections::HashMap;
+
 use crate::{
     error::FileError,
     formats::afm::rows::Rows,
-    input::{Encoding, Input, LineReader},
+    input::{Encoding, Idle, Input, LineReader},
 };
 
 /// Most blocks of a file. A program of segments has a few, a thousand at most.
@@ -19,7 +21,9 @@ const MOST_HEADER: usize = 64 << 20;
 #[derive(Default)]
 pub(super) struct Block {
     /// Every `key: value`, in order.
-    pub(super) header: Vec<(String, String)>,
+    header: Vec<(String, String)>,
+    /// Where in them every key has its first value that is not empty.
+    places: HashMap<String, usize>,
     pub(super) layout: Rows,
     pub(super) rows: usize,
     /// The first row as it stands there, and the last.
@@ -30,8 +34,18 @@ pub(super) struct Block {
 impl Block {
     /// The value under a key that is not empty.
     pub(super) fn value(&self, key: &str) -> Option<&str> {
-        let found = self.header.iter().find(|(own, value)| own == key && !value.is_empty());
-        found.map(|(_, value)| value.as_str())
+        self.header.get(*self.places.get(key)?).map(|(_, value)| value.as_str())
+    }
+
+    pub(super) fn header(&self) -> &[(String, String)] {
+        &self.header
+    }
+
+    fn add(&mut self, (key, value): (String, String)) {
+        if !value.is_empty() {
+            self.places.entry(key.clone()).or_insert(self.header.len());
+        }
+        self.header.push((key, value));
     }
 }
 
@@ -48,15 +62,19 @@ pub(super) fn blocks(input: &Input) -> Result<Vec<Block>, FileError> {
     let mut blocks: Vec<Block> = Vec::new();
     let mut open = Block::default();
     let mut in_header = 0;
+    let (mut idle, mut rows) = (Idle::of(input), 0);
     loop {
         let number = lines.line() + 1;
         let Some(line) = lines.next_line()? else { break };
+        let whole = line.len();
         let line = line.trim_ascii_end();
         if line.is_empty() {
+            idle.pass(whole, number, rows)?;
             continue;
         }
         if !line.starts_with(b"#") {
             add_row(input, &mut open, line, number)?;
+            rows += 1;
             continue;
         }
         in_header += line.len();
@@ -74,7 +92,7 @@ pub(super) fn blocks(input: &Input) -> Result<Vec<Block>, FileError> {
                 return Err(input.damaged("segments", format!("at most {MOST_BLOCKS}"), found));
             }
         }
-        open.header.extend(entry);
+        entry.into_iter().for_each(|entry| open.add(entry));
     }
     if open.rows > 0 || open.value("columns").is_some() {
         blocks.push(open);

@@ -5,7 +5,7 @@ use serde_json::{Map, Value};
 use crate::{
     error::{FileError, shorten},
     formats::afm::rows::Rows,
-    input::{Encoding, Input, LineReader},
+    input::{Encoding, Idle, Input, LineReader},
 };
 
 /// What stands before and behind the metadata.
@@ -30,9 +30,13 @@ pub(super) fn read(input: &Input) -> Result<Header, FileError> {
     let mut lines = LineReader::open(input, Encoding::Utf8)?;
     let (mut json, mut names, mut bytes) = (None::<String>, Vec::new(), 0);
     let mut inside = false;
-    while let Some(line) = lines.next_line()? {
+    let mut idle = Idle::of(input);
+    loop {
+        let number = lines.line() + 1;
+        let Some(line) = lines.next_line()? else { break };
         let Some(comment) = line.strip_prefix(b"#") else {
             if line.trim_ascii().is_empty() {
+                idle.pass(line.len(), number, 0)?;
                 continue;
             }
             break;

@@ -4,7 +4,7 @@ use super::header::Header;
 use crate::{
     error::FileError,
     formats::afm::rows::is_row,
-    input::{Encoding, Input, LineReader},
+    input::{Encoding, Idle, Input, LineReader},
 };
 
 /// Most segments that are distinguished; more are no segments.
@@ -24,6 +24,7 @@ pub(super) fn scan(input: &Input, Header { rows, .. }: &Header) -> Result<Scan, 
     let mut channels: Vec<usize> = (0..rows.columns.len()).collect();
     let mut stored = vec![0.0; rows.columns.len()];
     let mut scan = Scan::default();
+    let mut idle = Idle::of(input);
     let mut lines = LineReader::open(input, Encoding::Utf8)?;
     loop {
         let number = lines.line() + 1;
@@ -31,6 +32,7 @@ pub(super) fn scan(input: &Input, Header { rows, .. }: &Header) -> Result<Scan, 
             return Ok(scan);
         };
         if !is_row(line) {
+            idle.pass(line.len(), number, scan.rows)?;
             continue;
         }
         rows.read(input, (line, number), &channels, &mut stored)?;
