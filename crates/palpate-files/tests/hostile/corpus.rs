@@ -4,7 +4,7 @@ use std::{fs, path::PathBuf};
 
 use crate::{
     any_file::{self, Complaint, DescriptionKind, Kind, describe_any},
-    memory::bounded,
+    budget::bounded,
 };
 
 /// The folders of the corpus by what their files are.
@@ -63,18 +63,23 @@ impl Example {
         self.kind.map_or_else(|| self.bytes.clone(), |kind| any_file::packed(kind, &self.bytes))
     }
 
-    /// What is stated of it, in memory that its size warrants.
+    /// What is stated of it, in time and memory that its size warrants.
     pub(crate) fn read(&self) -> Result<(), Complaint> {
+        bounded(self.file().len(), || self.read_freely())
+    }
+
+    /// What is stated of it.
+    pub(crate) fn read_freely(&self) -> Result<(), Complaint> {
         let file = self.file();
         if self.kind.is_some() {
-            return bounded(file.len(), || any_file::read_all(self.name(), &file).map(drop));
+            return any_file::read_all(self.name(), &file).map(drop);
         }
         let kind = match self.name().split('_').next() {
             Some("test") => DescriptionKind::Test,
             Some("protocol") => DescriptionKind::Protocol,
             _ => DescriptionKind::Sweep,
         };
-        bounded(file.len(), || any_file::read_description(kind, self.name(), &file))
+        any_file::read_description(kind, self.name(), &file)
     }
 
     /// Does with it, or with other bytes in its place, what its fuzz target does.

@@ -6,9 +6,11 @@
 
 #[path = "../any_file/mod.rs"]
 mod any_file;
+#[path = "../budget/mod.rs"]
+mod budget;
 mod corpus;
+mod cost;
 mod damage;
 mod escape;
 mod made;
-mod memory;
 mod messages;

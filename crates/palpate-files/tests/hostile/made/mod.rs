@@ -3,11 +3,14 @@
 //! `cargo test -p palpate-files --test hostile -- --ignored write_binary_files` writes them anew. Only the table of
 //! messages says what they must be good for, so that another version of a library may write other bytes.
 
+mod many;
 mod tables;
 mod xls;
 #[allow(dead_code, reason = "other tests use the rest of it")]
 #[path = "../../reading/spreadsheet/xls_book.rs"]
 mod xls_book;
+
+pub(crate) use many::{curves, log, sheets, tables_side_by_side, tables_stacked, tests_of_arrow, tests_of_parquet};
 
 /// Name of a file of the corpus, and its bytes.
 type Made = (&'static str, Vec<u8>);
