@@ -6,5 +6,8 @@ use libfuzzer_sys::fuzz_target;
 
 #[path = "../../crates/palpate/tests/any_hold/mod.rs"]
 mod any_hold;
+#[allow(dead_code, reason = "tests use the rest of it")]
+#[path = "../../crates/palpate-files/tests/budget/mod.rs"]
+mod budget;
 
-fuzz_target!(|bytes: &[u8]| any_hold::fit_any(bytes));
+fuzz_target!(|bytes: &[u8]| budget::bounded(bytes.len(), || any_hold::fit_any(bytes)));
