@@ -12,6 +12,9 @@ use palpate_report::table::{Cell, Table};
 /// Most named values that are shown: force curves of an AFM have hundreds.
 const MOST_METADATA: usize = 16;
 
+/// Most letters of a name in a table.
+const MOST_LETTERS: usize = 120;
+
 /// How one test is written, what stands beside its data, and what the file labels.
 pub(super) fn part_facts(part: &Part, format: Format) -> String {
     let mut out = String::new();
@@ -40,11 +43,21 @@ pub(super) fn part_facts(part: &Part, format: Format) -> String {
 pub(super) fn columns_table(part: &Part, file: Option<&RecordFile>) -> Table {
     Table::of("columns", "Columns", &part.columns)
         .column("Column", "number", "", |column| Cell::Integer(column.number as i64))
-        .column("Name", "name", "", |column| Cell::text(column.name.as_deref().unwrap_or("")))
-        .column("Unit", "unit", "", |column| Cell::text(column.unit.as_deref().unwrap_or("")))
+        .column("Name", "name", "", |column| Cell::text(short(column.name.as_deref())))
+        .column("Unit", "unit", "", |column| Cell::text(short(column.unit.as_deref())))
         .column("First value", "sample", "", |column| Cell::text(column.sample.as_str()))
         .column("Used as", "used_as", "", |column| Cell::text(roles(column, file)))
         .table()
+}
+
+/// A name as a table shows it: every row is as wide as the longest.
+pub(super) fn short(text: Option<&str>) -> String {
+    let mut letters = text.unwrap_or_default().chars();
+    let mut short: String = letters.by_ref().take(MOST_LETTERS).collect();
+    if letters.next().is_some() {
+        short.push('…');
+    }
+    short
 }
 
 /// What a column is used as: one can be force and deflection of a cantilever.

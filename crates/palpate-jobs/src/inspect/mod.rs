@@ -23,7 +23,7 @@ use serde::{Deserialize, Serialize};
 use crate::input::{OpenedFile, averaged};
 use crate::{ErrorKind, JobError, Outcome};
 use cut::Cut;
-use facts::{columns_table, part_facts, signal_facts};
+use facts::{columns_table, part_facts, short, signal_facts};
 
 /// Say what is in a file, and which phases a test in it has.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
@@ -159,7 +159,7 @@ fn many_tests(
         .column("Holds", "holds", "")
         .note("palpate inspect FILE --part NAME shows one of them");
     for part in parts {
-        let name = opened.contents.parts[*part].title();
+        let name = short(Some(opened.contents.parts[*part].title()));
         table = table.row(match opened.read(*part, watch) {
             Ok(file) => {
                 notes.extend(averaged(&file));
