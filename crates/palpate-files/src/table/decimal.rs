@@ -1,5 +1,7 @@
 //! Deciding between the decimal point and the decimal comma.
 
+use std::collections::HashSet;
+
 use super::{block::Block, part::ColumnKind};
 use crate::{
     cell::{Cell, DecimalMark, Delimiter, cells},
@@ -57,7 +59,15 @@ pub(crate) fn falls_to_a_thousandth(values: &[f64]) -> Option<usize> {
 
 fn weigh(lines: &[&str], block: &Block) -> Result<DecimalMark, Doubt> {
     let texts = |wanted| -> Vec<(usize, &str)> {
-        places(block, wanted).into_iter().map(|place| (place.0, text_at(lines, block, place))).collect()
+        let mut split = (usize::MAX, Vec::new());
+        let text = |(line, column): (usize, usize)| {
+            // All cells of a line come one behind the other.
+            if split.0 != line {
+                split = (line, cells(lines[line], block.delimiter));
+            }
+            (line, split.1.get(column).copied().unwrap_or_default())
+        };
+        places(block, wanted).into_iter().map(text).collect()
     };
     let (points, commas) = (texts(Cell::Point), texts(Cell::Comma));
     match points.first() {
@@ -76,7 +86,7 @@ fn points_set_off_thousands(block: &Block, points: &[(usize, &str)]) -> bool {
     if !points.iter().all(|(_, text)| looks_like_thousands(text, '.')) {
         return false;
     }
-    let pointed: Vec<usize> = places(block, Cell::Point).into_iter().map(|(_, column)| column).collect();
+    let pointed: HashSet<usize> = places(block, Cell::Point).into_iter().map(|(_, column)| column).collect();
     let whole = places(block, Cell::Whole).into_iter().any(|(_, column)| pointed.contains(&column));
     whole || block.delimiter == Delimiter::Semicolon
 }
@@ -107,11 +117,6 @@ fn places(block: &Block, wanted: Cell) -> Vec<(usize, usize)> {
         .filter(|&(_, column, cell)| cell == wanted && block.kinds[column] == ColumnKind::Number)
         .map(|(line, column, _)| (line, column))
         .collect()
-}
-
-fn text_at<'a>(lines: &[&'a str], block: &Block, (line, column): (usize, usize)) -> &'a str {
-    let row = cells(lines[line], block.delimiter);
-    row.get(column).copied().unwrap_or_default()
 }
 
 /// One mark with one to three digits before, the first no zero, and three behind it.

@@ -20,8 +20,10 @@ use crate::{error::FileError, faults::admits, input::Input, table::SkippedPart};
 /// Most different sets of fields, and orders of them, that the messages of a topic may have.
 const MOST_SERIES: usize = 16;
 
-/// Most bytes of the names of all columns (64 MiB): a topic and a definition are written once, and their names stand in every column.
-const MOST_OF_NAMES: usize = 64 << 20;
+/// Most bytes of the names of all columns (16 MiB): a topic and a definition are written once, and their names stand in every column.
+const MOST_OF_NAMES: usize = 16 << 20;
+/// What a column takes beside its name, in these bytes.
+const A_COLUMN: usize = 32;
 
 /// A field of a series.
 #[derive(Debug, Clone)]
@@ -258,9 +260,9 @@ impl Channel {
         if of_topic.len() == MOST_SERIES {
             return Ok(None);
         }
-        known.names += names.iter().map(|name| self.topic.len() + name.len()).sum::<usize>();
+        known.names += names.iter().map(|name| A_COLUMN + self.topic.len() + name.len()).sum::<usize>();
         if !admits(known.names as u64, MOST_OF_NAMES as u64) {
-            return Err(Unfit::Topic("the names of all columns exceed the limit of 64 MiB".to_owned()));
+            return Err(Unfit::Topic("the names of all columns exceed the limit of 16 MiB".to_owned()));
         }
         of_topic.push(all.len());
         let unseen = |name: &String| FieldObserved {

@@ -156,9 +156,13 @@ fn part((sheet, name): (&str, &str), table: &Table, several: bool, beside: usize
         1 => ", 1 cell beside the table skipped".to_owned(),
         count => format!(", {count} cells beside the table skipped"),
     };
+    let unnamed = match table.left_out {
+        0 => String::new(),
+        count => format!(", {count} named values above it skipped"),
+    };
     Part {
         name: Some(if several { format!("{name}, {}", table.range()) } else { name.to_owned() }),
-        written: format!("sheet {sheet}, {}, {rows}{beside}", table.range()),
+        written: format!("sheet {sheet}, {}, {rows}{beside}{unnamed}", table.range()),
         columns: table.columns.clone(),
         metadata: table.metadata.clone(),
         ..Part::default()

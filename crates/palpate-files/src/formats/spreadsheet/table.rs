@@ -1,5 +1,7 @@
 //! Finding the tables in the beginning of a sheet, as a person would.
 
+use std::collections::HashMap;
+
 use super::{
     cell::{Value, letters},
     sample::{Row, Sample},
@@ -10,8 +12,13 @@ use crate::{
     table::{ColumnInfo, ColumnKind, Doubt, Metadata, ReadOptions, block, decimal, header, metadata, names_time},
 };
 
+/// Most named values of all tables of a sheet together.
+const MOST_NAMED: usize = 1 << 16;
+
 /// A table in a sheet.
 pub(super) struct Table {
+    /// How many named values above it go beyond the limit of all.
+    pub(super) left_out: usize,
     /// Columns of the sheet, from 0, in their order.
     pub(super) places: Vec<u32>,
     pub(super) columns: Vec<ColumnInfo>,
@@ -62,13 +69,15 @@ pub(super) struct FoundTables {
 /// The tables in a sample: one, or several side by side where each has a time of its own.
 pub(super) fn find(sample: &Sample, options: &ReadOptions) -> FoundTables {
     let columns = columns_of_data(sample);
-    let mut found: Vec<Table> = groups(&columns).filter_map(|group| table(sample, group, options)).collect();
+    let mut named = Named::default();
+    let mut found: Vec<Table> =
+        groups(&columns).filter_map(|group| table(sample, group, &mut named, options)).collect();
     let timed = found.iter().filter(|table| table.names_time()).count();
     if timed >= 2 {
         found.retain(Table::names_time);
     } else if let Some(joined) = joined(&found) {
         // Empty columns between those of one table.
-        found = match table(sample, &joined, options) {
+        found = match table(sample, &joined, &mut Named::default(), options) {
             Some(table) => vec![table],
             None => found.into_iter().take(1).collect(),
         };
@@ -110,7 +119,7 @@ fn joined(tables: &[Table]) -> Option<Vec<u32>> {
 }
 
 /// The table in some columns of a sample, if there are two rows of numbers or more.
-fn table(sample: &Sample, places: &[u32], options: &ReadOptions) -> Option<Table> {
+fn table(sample: &Sample, places: &[u32], named: &mut Named, options: &ReadOptions) -> Option<Table> {
     let held = |row: &Row| places.iter().any(|&place| row.value(place).is_some());
     let rows: Vec<&Row> = sample.rows.iter().filter(|row| held(row)).collect();
     let class = |row: &&Row| -> Vec<Cell> {
@@ -134,6 +143,10 @@ fn table(sample: &Sample, places: &[u32], options: &ReadOptions) -> Option<Table
     let columns = labelled.map(|(index, ((first, label), &kind))| column(index + 1, kind, label, *first)).collect();
     let above = rows.iter().take(block.first).enumerate();
     let above = above.filter(|(index, _)| header.names_line != Some(*index) && header.units_line != Some(*index));
+    let (mut metadata, mut left_out) = (Vec::new(), 0);
+    for (_, row) in above {
+        left_out += named.add(row, &mut metadata);
+    }
     Some(Table {
         columns,
         first_row,
@@ -143,7 +156,8 @@ fn table(sample: &Sample, places: &[u32], options: &ReadOptions) -> Option<Table
         moments: firsts.iter().map(|first| is_moment(*first)).collect(),
         dated: firsts.iter().map(|first| matches!(first, Some(Value::Moment(days)) if *days >= 1.0)).collect(),
         decimal: decimal(&data, places, &block.kinds, options.decimal),
-        metadata: above.flat_map(|(_, row)| named_values(row)).collect(),
+        metadata,
+        left_out,
         places: places.to_vec(),
     })
 }
@@ -170,10 +184,28 @@ fn column(
     }
 }
 
-fn named_values(row: &Row) -> Vec<Metadata> {
-    let texts: Vec<String> = row.cells.iter().map(|(_, value)| value.text()).collect();
-    let texts: Vec<&str> = texts.iter().map(String::as_str).collect();
-    metadata::in_cells(&texts)
+/// Named values above tables: all that a row names belongs to every table below it.
+#[derive(Default)]
+struct Named {
+    /// By the number of the row.
+    rows: HashMap<u32, Vec<Metadata>>,
+    /// How many all tables have been given.
+    given: usize,
+}
+
+impl Named {
+    /// Adds those of a row as far as there is room, and says how many are left out.
+    fn add(&mut self, row: &Row, to: &mut Vec<Metadata>) -> usize {
+        let named = self.rows.entry(row.number).or_insert_with(|| {
+            let texts: Vec<String> = row.cells.iter().map(|(_, value)| value.text()).collect();
+            let texts: Vec<&str> = texts.iter().map(String::as_str).collect();
+            metadata::in_cells(&texts)
+        });
+        let room = named.len().min(MOST_NAMED - self.given);
+        to.extend_from_slice(&named[..room]);
+        self.given += room;
+        named.len() - room
+    }
 }
 
 /// The decimal mark of the numbers that are kept as texts.
