@@ -49,7 +49,10 @@ fn zip_of_one_file() {
 fn zip_of_several_files_or_none() {
     let members = ["a.csv", "b.csv", "c.csv", "d.csv"].map(|name| (name, TABLE.as_bytes()));
     let error = refused("many.zip", zip(&members, CompressionMethod::Deflated));
-    assert_eq!(error.to_string(), "many.zip: expected a zip archive of one file, found 4: a.csv, b.csv, c.csv, and 1 more");
+    assert_eq!(
+        error.to_string(),
+        "many.zip: expected a zip archive of one file, found 4: a.csv, b.csv, c.csv, and 1 more"
+    );
     let hint = error.hint().expect("a way out");
     assert!(hint.contains("`palpate batch many --out holds.csv` reads all its files"), "{hint}");
     let error = refused("none.zip", zip(&[("folder/", b"")], CompressionMethod::Stored));

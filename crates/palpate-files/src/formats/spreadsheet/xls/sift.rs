@@ -269,6 +269,27 @@ mod tests {
     use super::*;
 
     #[test]
+    fn a_long_shared_text_in_many_cells_is_refused() {
+        let of = |cells: u16| {
+            let mut written = Sifted::default();
+            written.put(BEGIN, &[0, 6]);
+            written.put(SHEET, &[0, 0, 0, 0, 0, 0, 1, 0, b'a']);
+            let begins = written.stream.len() - 9;
+            written.put(TEXTS, &[&[0; 8][..], &60_000_u16.to_le_bytes(), &[0], &[b'x'; 60_000]].concat());
+            written.put(END, &[]);
+            let start = (written.stream.len() as u32).to_le_bytes();
+            written.stream[begins..begins + 4].copy_from_slice(&start);
+            written.put(BEGIN, &[0, 6, 0x10, 0]);
+            (0..cells).for_each(|row| written.put(0x00FD, &[&row.to_le_bytes()[..], &[0; 8]].concat()));
+            written.put(END, &[]);
+            sift(&written.stream).map(drop)
+        };
+        assert_eq!(of(500), Ok(()));
+        let expected = "at most 33554432 letters of shared texts in all cells";
+        assert_eq!(of(600), Err(("sheet a".to_owned(), expected)));
+    }
+
+    #[test]
     fn shared_texts_in_many_pieces_are_refused() {
         let of = |pieces: usize| {
             let mut written = Sifted::default();
