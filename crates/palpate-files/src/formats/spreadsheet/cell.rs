@@ -20,6 +20,9 @@ pub(super) enum Value {
 /// Most bytes of a text that are kept: more than Excel writes into a cell. One text can stand in any number of cells.
 const MOST_OF_TEXT: usize = 1 << 15;
 
+/// Bytes of a text that take as much as a cell.
+const TEXT: usize = 64;
+
 /// A text as it is kept, with … in place of what is too much.
 fn kept(text: &str) -> String {
     let mut end = MOST_OF_TEXT;
@@ -68,6 +71,14 @@ impl Value {
             Data::Bool(truth) => Self::Truth(truth),
             Data::Error(fault) => Self::Fault(fault.to_string()),
         })
+    }
+
+    /// What it takes of a number of cells that is limited: a long text counts as several.
+    pub(super) fn weight(&self) -> usize {
+        match self {
+            Self::Text(text) => 1 + text.len() / TEXT,
+            _ => 1,
+        }
     }
 
     /// What it is to somebody who looks for columns of numbers.

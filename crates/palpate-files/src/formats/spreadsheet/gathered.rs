@@ -8,25 +8,11 @@ use std::{
     ops::ControlFlow,
 };
 
-use super::{
-    book::Book,
-    cell::{Cell, Value},
-    table::Table,
-};
+use super::{book::Book, cell::Cell, table::Table};
 use crate::error::FileError;
 
 /// Most cells that stay in memory, a long text as several.
 const MOST_CELLS: usize = 2 << 20;
-/// Bytes of a text that take as much as a cell.
-const TEXT: usize = 64;
-
-/// What a cell takes of a number of cells that is limited.
-pub(super) fn weight(value: &Value) -> usize {
-    match value {
-        Value::Text(text) => 1 + text.len() / TEXT,
-        _ => 1,
-    }
-}
 
 /// The cells of successive tables of one sheet.
 #[derive(Default)]
@@ -79,13 +65,13 @@ fn gather<'t>(
         let behind = stretches.partition_point(|(first, _, _)| *first <= cell.row);
         let stretch = behind.checked_sub(1).map(|index| stretches[index]).filter(|(_, end, _)| cell.row < *end);
         if let Some(cells) = stretch.and_then(|(_, _, number)| gathered.get_mut(&number)) {
-            held += weight(&cell.value);
+            held += cell.value.weight();
             cells.push(cell);
         }
         while held > MOST_CELLS {
             // The first table is the one that is wanted now.
             let Some((_, dropped)) = gathered.pop_last() else { break };
-            held -= dropped.iter().map(|cell| weight(&cell.value)).sum::<usize>();
+            held -= dropped.iter().map(|cell| cell.value.weight()).sum::<usize>();
         }
         Ok(if gathered.is_empty() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) })
     })?;

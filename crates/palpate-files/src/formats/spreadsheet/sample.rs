@@ -5,7 +5,6 @@ use std::{collections::BTreeSet, ops::ControlFlow};
 use super::{
     book::Book,
     cell::{Cell, Value},
-    gathered::weight,
 };
 use crate::error::FileError;
 
@@ -60,7 +59,7 @@ impl Sample {
                     cells: Vec::new(),
                 });
             }
-            cells += weight(&cell.value);
+            cells += cell.value.weight();
             if let Some(row) = sample.rows.last_mut() {
                 row.cells.push((cell.column, cell.value));
             }
