@@ -2,9 +2,10 @@
 # The proofs of which ./test runs a part, whole: optimised, with as many random problems as the committed results rest on.
 #
 #   validation/long_proofs.sh            all of them, hours on two cores
-#   validation/long_proofs.sh NAME...    only these: features optimum properties statistics segmentation calibration coverage
+#   validation/long_proofs.sh NAME...    only these: features miri optimum properties statistics segmentation calibration coverage
 #
 # features      the command without Arrow, robot logs and PNG: what it refuses, and the paper's tests
+# miri          state bytes and vector lanes under Miri (needs a nightly Rust with miri)
 # optimum       every law against brute force, 10,000 problems each: results/global_optimum.md
 # properties    properties of contacts and laws, 20,000 random cases each
 # statistics    first touch, modulus, chosen terms and intervals of the observer with every repetition
@@ -14,13 +15,17 @@
 set -euo pipefail
 cd "$(dirname "$0")/.."
 names=("$@")
-((${#names[@]})) || names=(features optimum properties statistics segmentation calibration coverage)
+((${#names[@]})) || names=(features miri optimum properties statistics segmentation calibration coverage)
 for name in "${names[@]}"; do
     echo "=== $name"
     case "$name" in
     features)
         cargo test -p palpate-jobs -p palpate-report --no-default-features --lib
         cargo run -p palpate-cli --no-default-features -- reproduce --out "$(mktemp -d)"
+        ;;
+    miri)
+        # Functions of numbers are off by a random last digit under Miri otherwise.
+        MIRIFLAGS=-Zmiri-deterministic-floats cargo +nightly miri test -p palpate --lib -- vector:: observe::kept
         ;;
     optimum)
         PALPATE_PROBLEMS="${PALPATE_PROBLEMS:-10000}" cargo test --release -p palpate --test fits -- \

@@ -1,6 +1,9 @@
 //! Jobs as front ends use them: their options as JSON, and work that is cancelled.
 #![expect(clippy::unwrap_used, reason = "a test that cannot run has failed")]
 
+#[path = "any_path/mod.rs"]
+mod any_path;
+
 use std::fs;
 use std::num::NonZeroUsize;
 use std::path::{Path, PathBuf};
@@ -207,4 +210,38 @@ fn a_cancelled_batch_keeps_what_is_done_and_goes_on() {
     let outcome = job.run(records, &out, &mut Unwatched).unwrap();
     assert_eq!((outcome.result.tests, outcome.result.failures.len()), (40, 0));
     assert!(outcome.notes[0].contains(" done before"), "{:?}", outcome.notes);
+}
+
+/// No name of an output makes its writer panic, leave something half written, or write elsewhere.
+#[test]
+fn names_that_nobody_would_choose_are_written_or_refused() {
+    let long = "n".repeat(300);
+    let names = [
+        "there",
+        "folder",
+        "there/below",
+        "folder/new",
+        "new/deep/er",
+        "",
+        ".",
+        "./a",
+        "a/",
+        "a\0b",
+        " ",
+        "\u{202e}gpj.x",
+        "CON",
+        "-",
+        &long,
+        ".palpate-x",
+        ".palpate-files",
+        "folder/.palpate-x/lock",
+        "a/./b",
+        "\n",
+        "=1+1.csv",
+        "x.parquet/y",
+        "\u{fffd}",
+    ];
+    for name in names {
+        any_path::write_any(name.as_bytes());
+    }
 }

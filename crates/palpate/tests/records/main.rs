@@ -1,7 +1,10 @@
 //! Whole records: corrected, cut, calibrated, watched.
 
+#[path = "../any_state/mod.rs"]
+mod any_state;
 mod calibrate;
 mod corrections;
+mod damage;
 mod exponents;
 mod grip;
 mod observe;
