@@ -8,16 +8,17 @@ use arrow_array::types::{Float64Type, Int64Type};
 use arrow_array::{Array, ArrayRef, BooleanArray, Float64Array, Int64Array, RecordBatch, StringArray};
 use arrow_ipc::reader::StreamReader;
 use arrow_ipc::writer::StreamWriter;
-use arrow_schema::DataType;
+use arrow_schema::{ArrowError, DataType};
 use numpy::{PyArray1, PyArrayMethods};
 use palpate::number::significant;
+use palpate_jobs::output::sha256;
 use palpate_report::result::{PARAMETER_COLUMNS, ParameterColumn, ParameterRow};
 use pyo3::exceptions::{PyKeyError, PyRuntimeError, PyTypeError};
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict, PyList, PyString, PyType};
 use pyo3_arrow::PyTable;
 
-use crate::errors::refused_plainly;
+use crate::errors::{PalpateError, refused, refused_plainly};
 use crate::work::{Made, PICKLE, check_pickle};
 
 /// Columns of results, each named with its unit.
@@ -210,23 +211,32 @@ impl Table {
     }
 
     #[classmethod]
-    #[pyo3(signature = (bytes, format=0))]
-    fn _from_ipc(_class: &Bound<'_, PyType>, bytes: &[u8], format: u32) -> PyResult<Self> {
+    #[pyo3(signature = (bytes, digest="", format=0))]
+    fn _from_ipc(_class: &Bound<'_, PyType>, bytes: &[u8], digest: &str, format: u32) -> PyResult<Self> {
         check_pickle(format)?;
-        let mut reader = StreamReader::try_new(Cursor::new(bytes), None).map_err(refused_plainly::<PyRuntimeError>)?;
+        let damaged = |what: &str| refused::<PalpateError>(format!("the pickle is damaged: {what}"), None::<&str>);
+        // Lengths in the bytes are taken at their word by their reader.
+        if sha256(bytes) != digest {
+            return Err(damaged("expected bytes of its digest, found others"));
+        }
+        let unread = |error: ArrowError| damaged(&error.to_string());
+        let mut reader = StreamReader::try_new(Cursor::new(bytes), None).map_err(unread)?;
         let schema = reader.schema();
-        let batch = reader.next().transpose().map_err(refused_plainly::<PyRuntimeError>)?;
-        Ok(Self {
-            batch: batch.unwrap_or_else(|| RecordBatch::new_empty(schema)),
-        })
+        let batch = reader.next().transpose().map_err(unread)?;
+        let batch = batch.unwrap_or_else(|| RecordBatch::new_empty(schema));
+        match batch.columns().iter().find(|column| !is_column_of_ours(column.data_type())) {
+            Some(column) => Err(damaged(&format!("a column of {}", column.data_type()))),
+            None => Ok(Self { batch }),
+        }
     }
 
-    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Made<'py, (Bound<'py, PyBytes>, u32)>> {
+    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Made<'py, (Bound<'py, PyBytes>, String, u32)>> {
         let mut writer =
             StreamWriter::try_new(Vec::new(), &self.batch.schema()).map_err(refused_plainly::<PyRuntimeError>)?;
         writer.write(&self.batch).map_err(refused_plainly::<PyRuntimeError>)?;
         let bytes = writer.into_inner().map_err(refused_plainly::<PyRuntimeError>)?;
-        Ok((py.get_type::<Self>().getattr("_from_ipc")?, (PyBytes::new(py, &bytes), PICKLE)))
+        let make = py.get_type::<Self>().getattr("_from_ipc")?;
+        Ok((make, (PyBytes::new(py, &bytes), sha256(&bytes), PICKLE)))
     }
 
     /// The first and the last rows as a notebook shows them.
@@ -247,5 +257,14 @@ impl Table {
     fn __repr__(&self) -> String {
         let names = self.column_names().join(", ");
         format!("<palpate.Table of {} rows: {names}>", self.batch.num_rows())
+    }
+}
+
+/// Whether a column has one of the types that tables are made of.
+fn is_column_of_ours(kind: &DataType) -> bool {
+    match kind {
+        DataType::Float64 | DataType::Int64 | DataType::Boolean | DataType::Utf8 => true,
+        DataType::FixedSizeList(item, width) => *item.data_type() == DataType::Float64 && *width > 0,
+        _ => false,
     }
 }
