@@ -39,7 +39,7 @@ def main():
         tried = damaged.tried(requested.seed, requested.most, [name], requested.patience_s)
         count = Counter(failure.kind if failure.kind in ("panic", "death", "hang") else "exception" for failure in tried.failures)
         kinds = " | ".join(str(count[kind]) for kind in ("panic", "exception", "hang", "death"))
-        rows.append(f"| {name} | {tried.states[name]} | {kinds} |")
+        rows.append(f"| {name} | {tried.states[name]} | {tried.objects[name]} | {kinds} |")
         print(rows[-1], flush=True)
         failures += tried.failures
         states += tried.states[name]
@@ -62,8 +62,8 @@ pickle. Answers without an object have to be an error of palpate, ValueError, Ty
 python validation/damaged_states.py --most {requested.most} --seed {requested.seed} --write
 ```
 
-| example | damaged states | panics | other exceptions | no answer | ends of the process |
-|---|--:|--:|--:|--:|--:|
+| example | damaged states | objects made | panics | other exceptions | no answer | ends of the process |
+|---|--:|--:|--:|--:|--:|--:|
 {chr(10).join(rows)}
 {listed if found else ""}"""
     print(page)

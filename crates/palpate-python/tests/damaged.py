@@ -576,35 +576,35 @@ class Failure:
 
 @dataclass(frozen=True)
 class Tried:
-    """How many states were tried, and what went wrong."""
+    """How many states were tried by example, how many of them made an object, and what went wrong."""
 
     states: dict[str, int]
+    objects: dict[str, int]
     failures: list[Failure]
 
 
 def tried(seed: int, most: int, names: list[str] | None = None, patience_s: float = 2.0, deaths: int = 5) -> Tried:
     """Tries up to `most` damaged states of each example; after `deaths` ends of the process the rest of an example is left out."""
     names = list(EXAMPLES) if names is None else names
-    states: dict[str, int] = dict.fromkeys(names, 0)
+    result = Tried(dict.fromkeys(names, 0), dict.fromkeys(names, 0), [])
     died: dict[str, int] = dict.fromkeys(names, 0)
-    failures: list[Failure] = []
     first = 0
     while first < most * len(names):
-        at, end = _process(seed, most, first, names, patience_s, states, failures)
+        at, end = _process(seed, most, first, names, patience_s, result)
         if at is None and end:
             raise RuntimeError(f"the process that tries states ended before any: {end}")
         if at is None or not end:
             break
         first, name, damage = at
         kind, _, message = end.partition(": ")
-        failures.append(Failure(name, damage, "", kind, "", message))
+        result.failures.append(Failure(name, damage, "", kind, "", message))
         died[name] += 1
         first = first + 1 if died[name] < deaths else (first // most + 1) * most
-    return Tried(states, failures)
+    return result
 
 
 def _process(
-    seed: int, most: int, first: int, names: list[str], patience_s: float, states: dict[str, int], failures: list[Failure]
+    seed: int, most: int, first: int, names: list[str], patience_s: float, result: Tried
 ) -> tuple[tuple[int, str, str] | None, str]:
     """One process; the state that it was at, and how it ended if not well."""
     command = [sys.executable, __file__, "--seed", str(seed), "--most", str(most), "--first", str(first), *names]
@@ -635,11 +635,13 @@ def _process(
                     return at, ""
                 if isinstance(found, list):
                     at, use = (int(found[0]), str(found[1]), str(found[2])), "make"
-                    states[at[1]] += 1
-                elif isinstance(found, dict) and len(found) == 1:
+                    result.states[at[1]] += 1
+                elif at is not None and isinstance(found, dict) and len(found) == 1:
+                    # The first question is put to every object.
+                    result.objects[at[1]] += found["use"] == "repr"
                     use = found["use"]
                 elif at is not None and isinstance(found, dict):
-                    failures.append(Failure(at[1], at[2], **found))
+                    result.failures.append(Failure(at[1], at[2], **found))
 
 
 def fewest(failures: list[Failure]) -> list[tuple[Failure, int]]:
