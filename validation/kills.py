@@ -88,7 +88,7 @@ class Job:
     arguments: list
     prepare: object  # (folder, size, old): writes the inputs of the run, or those of the earlier one
     outputs: tuple
-    watched: str  # the folder that temporary files of the last step appear in
+    watched: tuple  # the folders that temporary files may appear in
     first: str  # the output that is in its place first
     size: int = 4
     # What another run leaves beside its outputs: it is not compared byte by byte, as pieces stand in the order of their ends.
@@ -124,17 +124,17 @@ def jobs():
         arguments = ["batch", "records", "--test", "test.toml", "--out", f"table.{ending}", "--threads", "3"]
         outputs = (f"table.{ending}", f"table_parameters.{ending}")
         journal = f"table.{ending}.journal"
-        return Job(f"batch, {ending}", arguments, batch_inputs, outputs, journal, outputs[1], kept=(journal,))
+        return Job(f"batch, {ending}", arguments, batch_inputs, outputs, (".", journal), outputs[1], kept=(journal,))
 
     sweep = ["sweep", "sweep.toml", "--out", "table.parquet", "--threads", "3"]
     analyze = ["analyze", "record.csv", "--test", "test.toml", "--out", "study", "--no-compare"]
     return [
         batch("csv"),
         batch("parquet"),
-        Job("sweep", sweep, sweep_inputs, ("table.parquet",), "table.parquet.parts", "table.parquet"),
-        Job("sweep, figure", [*sweep, "--figure", "map.svg"], sweep_inputs, ("table.parquet", "map.svg"), ".", "map.svg"),
-        Job("analyze", analyze, analyze_inputs, ("study",), "study", "study/figures/record.svg"),
-        Job("convert", ["convert", "record.csv", "--out", "plain.csv"], convert_inputs, ("plain.csv",), ".", "plain.csv"),
+        Job("sweep", sweep, sweep_inputs, ("table.parquet",), (".", "table.parquet.parts"), "table.parquet"),
+        Job("sweep, figure", [*sweep, "--figure", "map.svg"], sweep_inputs, ("table.parquet", "map.svg"), (".", "table.parquet.parts"), "map.svg"),
+        Job("analyze", analyze, analyze_inputs, ("study",), ("study", "study/figures"), "study/figures/record.svg"),
+        Job("convert", ["convert", "record.csv", "--out", "plain.csv"], convert_inputs, ("plain.csv",), (".",), "plain.csv"),
     ]
 
 
@@ -201,7 +201,7 @@ class Watched:
     """The outputs of a job that runs, and whether it has come to writing them."""
 
     def __init__(self, job, folder):
-        self.watched, self.first = folder / job.watched, folder / job.first
+        self.watched, self.first = [folder / name for name in job.watched], folder / job.first
         self.outputs = [folder / name for name in job.outputs]
         self.at_first = [place(path) for path in (self.first, *self.outputs)]
 
@@ -213,10 +213,13 @@ class Watched:
         """Whether a temporary file is there, or an output that is new."""
         if [place(path) for path in (self.first, *self.outputs)] != self.at_first:
             return True
-        try:
-            return any(entry.name.startswith(TEMPORARY) and entry.name != MANIFEST for entry in os.scandir(self.watched))
-        except OSError:
-            return False
+        for folder in self.watched:
+            try:
+                if any(entry.name.startswith(TEMPORARY) and entry.name != MANIFEST for entry in os.scandir(folder)):
+                    return True
+            except OSError:
+                continue
+        return False
 
 
 def undisturbed(palpate, start_folder, job, arguments, scratch, turns=3):

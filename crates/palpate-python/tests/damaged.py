@@ -313,7 +313,7 @@ def of_argument(value: Any, at: str, places: Callable[[int, int], Iterator[int]]
         for place, inside in enumerate(value):
             for what, make in of_argument(inside, f"{at}[{place}]", places):
                 yield what, partial(_inside, value, place, make)
-    others: list[Any] = [None, 1, "", b"", []]
+    others: list[Any] = [None, 0, 2, -1, 2**40, "", b"", []]
     for other in others:
         yield f"{at} = {other!r}", partial(_same, other)
 
@@ -368,8 +368,10 @@ def cases(name: str, of: Any, seed: int, most: int = 4000) -> list[Case]:
 
     arguments = of.__reduce__()[1]
     found: list[Case] = []
+    # One state and the number of its format, or several parts.
+    alone = sum(not isinstance(argument, int) for argument in arguments) == 1
     for index, argument in enumerate(arguments):
-        at = "$" if len(arguments) == 1 else f"${index + 1}"
+        at = "$format" if isinstance(argument, int) else "$" if alone else f"${index + 1}"
         for what, make in of_argument(argument, at, places):
             found.append(Case(name, what, partial(_inside, list(arguments), index, make)))
     dumped = pickle.dumps(of)

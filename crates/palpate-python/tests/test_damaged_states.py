@@ -25,6 +25,7 @@ KNOWN = [
     ("Trajectory", "$.force = []"),
     ("Trajectory", "$.strain without the last"),
     ("Trajectory", "$.in_contact without the last"),
+    ("ContactStates", "$1 = []"),
 ]
 
 
