@@ -1,4 +1,4 @@
-"""Damaged pickles: objects made from states that no object of palpate has written, and all that can be asked of them.
+"""Damaged pickles: objects made from states that no object of palpate has written, and all that can be requested of them.
 
 A state is what `__reduce__` says: a maker and its arguments. Damage alters one place of an argument, or bytes of the whole pickle. Whatever
 comes of it, palpate has to answer with an object or an error of its own: no panic, no other end of the process, within 2 s and 1 GB.
@@ -385,7 +385,7 @@ def cases(name: str, of: Any, seed: int, most: int = 4000) -> list[Case]:
     return found
 
 
-# Use: all that an object can be asked.
+# Use: all that can be requested of an object.
 
 
 def _calls(of: Any, folder: Path) -> Iterator[tuple[str, Callable[[], Any]]]:
@@ -422,7 +422,7 @@ def _calls(of: Any, folder: Path) -> Iterator[tuple[str, Callable[[], Any]]]:
 
 
 def uses(of: Any, folder: Path, depth: int = 0) -> Iterator[tuple[str, Callable[[], Any]]]:
-    """Names and calls of all that can be asked of an object, and of the objects that it gives."""
+    """Names and calls of all that can be requested of an object, and of the objects that it gives."""
     if not type(of).__module__.startswith("palpate"):
         return
     yield "repr", lambda: repr(of)
@@ -439,7 +439,7 @@ def uses(of: Any, folder: Path, depth: int = 0) -> Iterator[tuple[str, Callable[
         try:
             value = getattr(of, name)
         except BaseException:
-            # Asked again where it is told apart; a panic is no Exception.
+            # Asked again where it is distinguished; a panic is no Exception.
             yield name, partial(getattr, of, name)
             continue
         if not callable(value):
@@ -521,19 +521,19 @@ def work(seed: int, most: int, first: int, names: list[str]) -> None:
                 if index + number < first:
                     continue
                 lines.write(f"{json.dumps([index + number, name, case.damage])}\n")
-                for found in asked(case, Path(folder), number % EVERY == 0, heard=2):
+                for found in answers_of(case, Path(folder), number % EVERY == 0, heard=2):
                     lines.write(f"{json.dumps(found)}\n")
             index += most
         lines.write("null\n")
 
 
-def _panic(said: str) -> tuple[str, str]:
-    """Where a panic happened and what it said, from standard error."""
-    found = re.search(r"panicked at (?:.*/registry/src/[^/]*/)?([^\n]*?):\n(.*?)\n", said, re.DOTALL)
+def _panic(stated: str) -> tuple[str, str]:
+    """Where a panic happened and what it stated, from standard error."""
+    found = re.search(r"panicked at (?:.*/registry/src/[^/]*/)?([^\n]*?):\n(.*?)\n", stated, re.DOTALL)
     return (found.group(1), found.group(2)[:300]) if found else ("", "")
 
 
-def asked(case: Case, folder: Path, at_length: bool = True, heard: int | None = None) -> Iterator[dict[str, str]]:
+def answers_of(case: Case, folder: Path, at_length: bool = True, heard: int | None = None) -> Iterator[dict[str, str]]:
     """Makes an object of a damaged state and asks it everything: the names of the questions, and what is wrong with the answers.
 
     `heard` is a file that standard error goes to: there a panic says where it happened.
@@ -543,12 +543,12 @@ def asked(case: Case, folder: Path, at_length: bool = True, heard: int | None = 
         kind, _, text = message.partition(": ")
         where = ""
         if heard is not None:
-            where, said = _panic(os.pread(heard, 1 << 16, 0).decode("utf-8", "replace"))
+            where, stated = _panic(os.pread(heard, 1 << 16, 0).decode("utf-8", "replace"))
             os.ftruncate(heard, 0)
             os.lseek(heard, 0, os.SEEK_SET)
             if where:
                 # Heard even where the panic itself was caught.
-                kind, text = "panic", said
+                kind, text = "panic", stated
         if kind:
             yield {"use": use, "kind": kind, "where": where, "message": text}
 
@@ -628,8 +628,8 @@ def _process(
             read = os.read(process.stdout.fileno(), 1 << 16)
             last = time.monotonic()
             if not read:
-                code, said = process.wait(), os.pread(heard.fileno(), 1 << 16, 0).decode("utf-8", "replace").strip()
-                return at, f"death: the process ended with {code} at {use}: {said[-200:]}"
+                code, stated = process.wait(), os.pread(heard.fileno(), 1 << 16, 0).decode("utf-8", "replace").strip()
+                return at, f"death: the process ended with {code} at {use}: {stated[-200:]}"
             *lines, pending = (pending + read).split(b"\n")
             for found in map(json.loads, lines):
                 listing = isinstance(found, str)

@@ -44,5 +44,5 @@ def test_a_sample_of_damaged_states_is_answered() -> None:
 @pytest.mark.parametrize(("example", "damage"), KNOWN)
 def test_damage_that_has_caused_a_panic_is_answered(example: str, damage: str, tmp_path: Path) -> None:
     cases = {case.damage: case for case in damaged.cases(example, damaged.EXAMPLES[example](), seed=1, most=1)}
-    wrong = [found for found in damaged.asked(cases[damage], tmp_path) if "kind" in found]
+    wrong = [found for found in damaged.answers_of(cases[damage], tmp_path) if "kind" in found]
     assert not wrong, wrong

@@ -39,7 +39,7 @@ pub(super) struct Package {
     archive: RefCell<ZipArchive<BufReader<Box<dyn Seekable>>>>,
 }
 
-/// A reader, and how many bytes it may give before it is asked again.
+/// A reader, and how many bytes it may give before it is granted more.
 struct Piecewise<R> {
     inner: R,
     left: u64,
