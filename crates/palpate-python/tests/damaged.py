@@ -439,7 +439,7 @@ def uses(of: Any, folder: Path, depth: int = 0) -> Iterator[tuple[str, Callable[
         try:
             value = getattr(of, name)
         except BaseException:
-            # Asked again where it is distinguished; a panic is no Exception.
+            # Requested again where it is distinguished; a panic is no Exception.
             yield name, partial(getattr, of, name)
             continue
         if not callable(value):
