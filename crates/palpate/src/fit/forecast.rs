@@ -6,7 +6,7 @@ use super::{
     Condensed, FitError, Fitted, LawOptions, Samples, Scaled, SpectrumOptions, build, condense, finalists, fit_spectrum,
 };
 use crate::laws::{BasisFunction, Law, LawCurve, Term};
-use crate::optimise::{Ending, Work, polished, refine};
+use crate::optimise::{Effort, Ending, polished, refine};
 
 /// How well the first part of a hold predicts the rest.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
@@ -79,14 +79,14 @@ pub fn forecast(samples: &Samples<'_>, law: Law, options: &LawOptions, cut: f64)
 fn law_curve(samples: &Samples<'_>, law: Law, options: &LawOptions) -> Result<LawCurve, FitError> {
     let (model, scaled) = build(options.form(law)?, samples, options)?;
     let nodes = condense(&scaled);
-    let mut work = Work::default();
-    let theta = finalists(&model, &nodes, options.most_iterations, &mut work)
+    let mut effort = Effort::default();
+    let theta = finalists(&model, &nodes, options.most_iterations, &mut effort)?
         .into_iter()
         .next()
         .ok_or(FitError::NoDecay)?;
     let shapes = model.at(&nodes.times);
-    let refined = refine(&shapes, nodes.target(), &theta, Ending::tight(1), &mut work);
-    let solution = polished(&shapes, nodes.target(), refined, &mut work);
+    let refined = refine(&shapes, nodes.target(), &theta, Ending::tight(1), &mut effort)?;
+    let solution = polished(&shapes, nodes.target(), refined, &mut effort)?;
     let fitted = Fitted {
         model,
         scaled,

@@ -46,7 +46,7 @@ pub fn fit_hold(
     fit_hold_watched(times, values, choice, options, &mut Unwatched)
 }
 
-/// [`fit_hold`] with a watch, which intervals by profiles and by resampling are long enough for.
+/// [`fit_hold`] with a watch, which hears of every evaluation of the law over the samples.
 ///
 /// # Errors
 /// As [`fit_hold`], and [`FitError::Cancelled`].

@@ -5,7 +5,7 @@ use super::{
     ParameterRole, ParameterUnit, Scale, check_finite,
 };
 use crate::laws::{ExponentChoice, Law, LawCurve, Response, Term};
-use crate::optimise::{Ending, Refined, Shapes, Solution, Target, Termination, Work, polished, refine};
+use crate::optimise::{Effort, Ending, Refined, Shapes, Solution, Target, Termination, Work, polished, refine};
 
 /// Fits ε̇ = −v sgn(x) |x|ⁿ, x = ε − ε_e, to strain rates (1/s) over strains: equations (9) and (10).
 ///
@@ -44,19 +44,19 @@ pub fn fit_rates(
         choice,
         exponents: options.exponent_range,
     };
-    let mut work = Work::default();
+    let mut effort = Effort::default();
     let target = Target::new(&scaled.rates, None);
     let mut best: Option<Refined> = None;
-    for start in shapes.starts(&scaled.rates, &mut work) {
-        let refined = refine(&shapes, target, &start, Ending::tight(options.most_iterations), &mut work);
+    for start in shapes.starts(&scaled.rates, &mut effort.work) {
+        let refined = refine(&shapes, target, &start, Ending::tight(options.most_iterations), &mut effort)?;
         let better = best.as_ref().is_none_or(|best| refined.point.square < best.point.square);
         // A negative coefficient would run away from equilibrium.
         if refined.point.linear[0] > 0.0 && better {
             best = Some(refined);
         }
     }
-    let solution = polished(&shapes, target, best.ok_or(FitError::NoDecay)?, &mut work);
-    LatencyFit::new(scaled.fit(strains, &solution, choice, options, work)).ok_or(FitError::NoDecay)
+    let solution = polished(&shapes, target, best.ok_or(FitError::NoDecay)?, &mut effort)?;
+    LatencyFit::new(scaled.fit(strains, &solution, choice, options, effort.work)).ok_or(FitError::NoDecay)
 }
 
 /// Strains in units of their range about their middle, rates in units of the largest.

@@ -6,6 +6,7 @@
 //! | file | what |
 //! |---|---|
 //! | `cholesky.rs`, `elimination.rs` | factors of small symmetric matrices; small systems that are not symmetric |
+//! | `effort.rs` | what a search has done so far, and who may end it |
 //! | `bounded.rs` | linear least squares with bounds: a method of active sets |
 //! | `separable/` | nonlinear least squares with the linear numbers projected out and bounds on all: damped steps |
 //! | `orthogonal.rs` | the same model with orthogonal columns, where normal equations lose digits |
@@ -18,6 +19,7 @@
 
 mod bounded;
 mod cholesky;
+mod effort;
 mod elimination;
 mod minimum;
 mod orthogonal;
@@ -26,6 +28,7 @@ mod termination;
 
 pub(crate) use bounded::{BoundedProblem, BoundedSolver, Held};
 pub(crate) use cholesky::{Cholesky, Few, Square};
+pub(crate) use effort::Effort;
 pub(crate) use elimination::eliminate;
 pub(crate) use minimum::{Level, Minimum, minimise};
 pub(crate) use orthogonal::Orthogonal;

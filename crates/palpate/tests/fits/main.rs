@@ -12,3 +12,4 @@ mod ramps;
 mod recovery;
 #[path = "../common/repeats.rs"]
 mod repeats;
+mod watched;

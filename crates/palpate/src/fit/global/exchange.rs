@@ -5,7 +5,8 @@
 
 use super::{Grid, Lattice, Plane, Valley, distinct, local, rates};
 use crate::fit::problem::{Condensed, Model};
-use crate::optimise::{Orthogonal, Shapes, Work, distance};
+use crate::optimise::{Effort, Orthogonal, Shapes, Work, distance};
+use crate::watch::Cancelled;
 
 /// Terms that are replaced at once.
 const REPLACED: usize = 2;
@@ -20,7 +21,12 @@ const OPEN: usize = 2;
 const FOLLOWED: usize = 4;
 
 /// The valleys with those that replacing terms opens, deepest first.
-pub(crate) fn exchanged(model: &Model, nodes: &Condensed, valleys: Vec<Valley>, work: &mut Work) -> Vec<Valley> {
+pub(crate) fn exchanged(
+    model: &Model,
+    nodes: &Condensed,
+    valleys: Vec<Valley>,
+    effort: &mut Effort<'_>,
+) -> Result<Vec<Valley>, Cancelled> {
     let mut all = valleys;
     let mut observed: Vec<Vec<f64>> = Vec::new();
     for _ in 0..ROUNDS {
@@ -30,7 +36,7 @@ pub(crate) fn exchanged(model: &Model, nodes: &Condensed, valleys: Vec<Valley>, 
         let next = distinct(fresh, OPEN, |other, theta| distance(other, theta) <= SAME);
         let lowest = all.first().map_or(f64::INFINITY, |valley| valley.square);
         for theta in next {
-            all.extend(replaced(model, nodes, &theta, work));
+            all.extend(replaced(model, nodes, &theta, effort)?);
             observed.push(theta);
         }
         if !all.iter().any(|valley| valley.square < lowest * (1.0 - ENOUGH)) {
@@ -38,7 +44,7 @@ pub(crate) fn exchanged(model: &Model, nodes: &Condensed, valleys: Vec<Valley>, 
         }
     }
     all.sort_by(|a, b| a.square.total_cmp(&b.square));
-    all
+    Ok(all)
 }
 
 /// Largest difference of ln λ between valleys that are the same.
@@ -55,20 +61,25 @@ pub(crate) fn rising(theta: &[f64]) -> Vec<f64> {
 }
 
 /// Valleys near `theta` with every two terms replaced.
-fn replaced(model: &Model, nodes: &Condensed, theta: &[f64], work: &mut Work) -> Vec<Valley> {
+fn replaced(
+    model: &Model,
+    nodes: &Condensed,
+    theta: &[f64],
+    effort: &mut Effort<'_>,
+) -> Result<Vec<Valley>, Cancelled> {
     let shapes = model.at(&nodes.times);
-    let mut aside = Work::default();
+    let mut aside = effort.aside();
     let mut found = Vec::new();
     for first in 0..theta.len() {
         for second in first + 1..theta.len() {
             let kept: Vec<f64> = (0..theta.len()).filter(|i| *i != first && *i != second).map(|i| theta[i]).collect();
-            for start in paired(model, nodes, &kept, work) {
-                found.push(local(&shapes, nodes.target(), &start, ENOUGH, &mut aside));
+            for start in paired(model, nodes, &kept, &mut effort.work) {
+                found.push(local(&shapes, nodes.target(), &start, ENOUGH, &mut aside)?);
             }
         }
     }
-    work.condensed += aside.evaluations;
-    found
+    effort.work.condensed += aside.work.evaluations;
+    Ok(found)
 }
 
 /// The rates `kept` with two more, wherever a dense grid of these two shows a valley.

@@ -3,9 +3,10 @@
 use super::{ends, exact, grown, inflation, local, near_kinks, starts, thorough};
 use crate::fit::{Condensed, Model, RedundantTerm, Sampled, Scaled, condense, redundant_terms};
 use crate::optimise::{
-    Ending, Near, Refined, Solution, Square, Target, Termination, Work, curvature, descend, distance, polished, refine,
-    standing, stepped,
+    Effort, Ending, Near, Refined, Solution, Square, Target, Termination, curvature, descend, distance, polished,
+    refine, standing, stepped,
 };
+use crate::watch::Cancelled;
 
 /// Valleys that are refined on condensed samples.
 const VALLEYS: usize = 6;
@@ -14,20 +15,28 @@ const VALLEYS: usize = 6;
 const FINALISTS: usize = 3;
 
 /// Finds the best parameters of a model: a coarse grid and local searches on condensed samples, then the best of them on all.
-pub(crate) fn search(model: &Model, scaled: &Scaled, most_iterations: usize, work: &mut Work) -> Option<Solution> {
+pub(crate) fn search(
+    model: &Model,
+    scaled: &Scaled,
+    most_iterations: usize,
+    effort: &mut Effort<'_>,
+) -> Result<Option<Solution>, Cancelled> {
     let nodes = condense(scaled);
-    let valleys = valleys(model, &nodes, most_iterations, work);
+    let valleys = valleys(model, &nodes, most_iterations, effort)?;
     let (shapes, target) = (model.at(&scaled.times), scaled.target());
     let mut best: Option<Refined> = None;
     for valley in valleys {
-        let refined = settle(&shapes, target, &valley, most_iterations, work);
+        let refined = settle(&shapes, target, &valley, most_iterations, effort)?;
         if best.as_ref().is_none_or(|best| refined.point.square < best.point.square) {
             best = Some(refined);
         }
     }
-    let mut solution = polished(&shapes, target, best?, work);
+    let Some(best) = best else {
+        return Ok(None);
+    };
+    let mut solution = polished(&shapes, target, best, effort)?;
     mark_merged(model, &mut solution);
-    solution = settled_between_kinks(model, scaled, solution, work);
+    solution = settled_between_kinks(model, scaled, solution, effort)?;
     let inflation = inflation(&solution);
     let doubtful = solution.termination != Termination::Converged
         || !redundant_terms(model, &solution).is_empty()
@@ -35,12 +44,12 @@ pub(crate) fn search(model: &Model, scaled: &Scaled, most_iterations: usize, wor
         || model.is_series() && widest(&solution) > WIDE
         || is_hasty(model, scaled, &solution);
     if doubtful && model.free().len() > 0 {
-        solution = thorough(model, scaled, &nodes, solution, most_iterations, work);
+        solution = thorough(model, scaled, &nodes, solution, most_iterations, effort)?;
         mark_merged(model, &mut solution);
     } else {
-        solution = exact(&shapes, target, solution, inflation, work);
+        solution = exact(&shapes, target, solution, inflation, effort)?;
     }
-    Some(solution)
+    Ok(Some(solution))
 }
 
 /// The largest standard error of a nonlinear parameter.
@@ -80,19 +89,25 @@ const WIDE: f64 = 0.15;
 const BEYOND: f64 = 1e12;
 
 /// Where the law ends in finite time, the best of the valleys between samples that the errors of the end leave open.
-fn settled_between_kinks(model: &Model, scaled: &Scaled, solution: Solution, work: &mut Work) -> Solution {
+fn settled_between_kinks(
+    model: &Model,
+    scaled: &Scaled,
+    solution: Solution,
+    effort: &mut Effort<'_>,
+) -> Result<Solution, Cancelled> {
     if solution.termination != Termination::Converged || !ends(model, &solution.nonlinear) {
-        return solution;
+        return Ok(solution);
     }
     let shapes = model.at(&scaled.times);
     let beside = near_kinks(model, scaled, &solution);
-    let others = beside.iter().map(|theta| local(&shapes, scaled.target(), theta, f64::EPSILON, work));
-    match others.min_by(|a, b| a.square.total_cmp(&b.square)) {
+    let others = beside.iter().map(|theta| local(&shapes, scaled.target(), theta, f64::EPSILON, effort));
+    let others = others.collect::<Result<Vec<_>, Cancelled>>()?;
+    Ok(match others.into_iter().min_by(|a, b| a.square.total_cmp(&b.square)) {
         Some(best) if best.square < solution.residual_square * (1.0 - ALIKE_AT_ALL) => {
             standing(&shapes, scaled.target(), &best.theta, &best.linear, Termination::Converged)
         }
         _ => solution,
-    }
+    })
 }
 
 /// Relative difference of residual squares that is rounding.
@@ -119,38 +134,52 @@ fn settle(
     target: Target<'_>,
     valley: &Valley,
     most_iterations: usize,
-    work: &mut Work,
-) -> Refined {
-    let hessian = valley.curvature.as_ref();
-    hessian
-        .and_then(|hessian| descend(shapes, target, &valley.theta, hessian, Near::of(target), work))
-        .unwrap_or_else(|| refine(shapes, target, &valley.theta, Ending::tight(most_iterations), work))
+    effort: &mut Effort<'_>,
+) -> Result<Refined, Cancelled> {
+    if let Some(hessian) = &valley.curvature
+        && let Some(refined) = descend(shapes, target, &valley.theta, hessian, Near::of(target), effort)?
+    {
+        return Ok(refined);
+    }
+    refine(shapes, target, &valley.theta, Ending::tight(most_iterations), effort)
 }
 
 /// The nonlinear parameters at the deepest valleys of the condensed problem, deepest first.
-pub(crate) fn finalists(model: &Model, nodes: &Condensed, most_iterations: usize, work: &mut Work) -> Vec<Vec<f64>> {
-    valleys(model, nodes, most_iterations, work).into_iter().map(|valley| valley.theta).collect()
+pub(crate) fn finalists(
+    model: &Model,
+    nodes: &Condensed,
+    most_iterations: usize,
+    effort: &mut Effort<'_>,
+) -> Result<Vec<Vec<f64>>, Cancelled> {
+    Ok(valleys(model, nodes, most_iterations, effort)?.into_iter().map(|valley| valley.theta).collect())
 }
 
 /// The deepest valleys of the condensed problem, deepest first, with every other that is as deep to the accuracy of condensing.
-fn valleys(model: &Model, nodes: &Condensed, most_iterations: usize, work: &mut Work) -> Vec<Valley> {
+fn valleys(
+    model: &Model,
+    nodes: &Condensed,
+    most_iterations: usize,
+    effort: &mut Effort<'_>,
+) -> Result<Vec<Valley>, Cancelled> {
     let (shapes, target) = (model.at(&nodes.times), nodes.target());
-    let mut aside = Work::default();
+    let mut aside = effort.aside();
     let mut found: Vec<(f64, Vec<f64>)> = Vec::new();
     let rough = Ending::new(ROUGH, most_iterations);
-    let explore = |start: &[f64], aside: &mut Work| {
-        let refined = refine(&shapes, target, start, rough, aside);
-        (refined.point.square + nodes.inside, refined.into_theta(&shapes))
+    let explore = |start: &[f64], aside: &mut Effort<'_>| {
+        let refined = refine(&shapes, target, start, rough, aside)?;
+        Ok((refined.point.square + nodes.inside, refined.into_theta(&shapes)))
     };
     let (kinked, smooth): (Vec<Vec<f64>>, Vec<Vec<f64>>) =
-        starts(model, nodes, VALLEYS, work).into_iter().partition(|start| ends(model, start));
-    found.extend(smooth.iter().map(|start| explore(start, &mut aside)));
+        starts(model, nodes, VALLEYS, &mut effort.work).into_iter().partition(|start| ends(model, start));
+    for start in smooth {
+        found.push(explore(&start, &mut aside)?);
+    }
     let least = found.iter().map(|(square, _)| *square).fold(f64::INFINITY, f64::min);
     let mut open: Vec<(f64, Vec<f64>)> = Vec::new();
     for start in kinked {
-        let square = refine(&shapes, target, &start, AS_IT_IS, &mut aside).point.square + nodes.inside;
+        let square = refine(&shapes, target, &start, AS_IT_IS, &mut aside)?.point.square + nodes.inside;
         if square <= HOPELESS * least {
-            found.push(explore(&start, &mut aside));
+            found.push(explore(&start, &mut aside)?);
             open.push((square, start));
         }
     }
@@ -159,46 +188,51 @@ fn valleys(model: &Model, nodes: &Condensed, most_iterations: usize, work: &mut 
         && let Some((least, _)) = found.first()
     {
         let limit = least * (1.0 + nodes.noise(FELT));
-        for (square, theta) in longer(model, nodes, most_iterations, work) {
+        for (square, theta) in longer(model, nodes, most_iterations, effort)? {
             if square + nodes.inside <= limit {
-                let valley = local(&shapes, target, &theta, ROUGH, &mut aside);
+                let valley = local(&shapes, target, &theta, ROUGH, &mut aside)?;
                 found.push((valley.square + nodes.inside, valley.theta));
             }
         }
         found.sort_by(|a, b| a.0.total_cmp(&b.0));
     }
-    work.starts += aside.starts;
+    effort.work.starts += aside.work.starts;
     let Some(limit) = found
         .first()
         .map(|(least, _)| least * (1.0 + f64::max(ALIKE, nodes.noise(REPORTED))) + f64::MIN_POSITIVE)
     else {
-        return Vec::new();
+        return Ok(Vec::new());
     };
     let mut kept: Vec<Valley> = Vec::new();
     for (square, theta) in found {
         if kept.len() == FINALISTS || (!kept.is_empty() && square > limit) {
             break;
         }
-        let valley = bottom(&shapes, target, &theta, most_iterations, &mut aside);
+        let valley = bottom(&shapes, target, &theta, most_iterations, &mut aside)?;
         if !kept.iter().any(|other| distance(&other.theta, &valley.theta) < 1e-3) {
             kept.push(valley);
         }
     }
     // Where the law ends in finite time nodes only tell roughly: such a start goes to all samples as it is.
     let limit = limit * (1.0 + KINKED);
-    kept.extend(open.into_iter().filter(|(square, _)| *square <= limit).map(|(_, theta)| Valley {
-        curvature: curvature(&shapes, target, &theta, &mut aside).map(|(hessian, _)| hessian),
-        theta,
-    }));
-    work.condensed += aside.evaluations;
-    kept
+    for (_, theta) in open.into_iter().filter(|(square, _)| *square <= limit) {
+        let curvature = curvature(&shapes, target, &theta, &mut aside)?.map(|(hessian, _)| hessian);
+        kept.push(Valley { theta, curvature });
+    }
+    effort.work.condensed += aside.work.evaluations;
+    Ok(kept)
 }
 
 /// Starts of a series from the best one of a term less.
-fn longer(model: &Model, nodes: &Condensed, most_iterations: usize, work: &mut Work) -> Vec<(f64, Vec<f64>)> {
+fn longer(
+    model: &Model,
+    nodes: &Condensed,
+    most_iterations: usize,
+    effort: &mut Effort<'_>,
+) -> Result<Vec<(f64, Vec<f64>)>, Cancelled> {
     let fewer = model.first_shapes(model.form.shapes.len() - 1);
-    let best = finalists(&fewer, nodes, most_iterations, work).into_iter().next();
-    best.map(|theta| grown(&fewer, nodes, &theta)).unwrap_or_default()
+    let best = finalists(&fewer, nodes, most_iterations, effort)?.into_iter().next();
+    Ok(best.map(|theta| grown(&fewer, nodes, &theta)).unwrap_or_default())
 }
 
 /// Variances of the noise of a sample that a refinement may take off the residual square of a grown series.
@@ -224,22 +258,32 @@ const REPORTED: f64 = 0.2;
 const ROUGH: f64 = 1e-5;
 
 /// The very bottom of a valley of the condensed samples, as near as they tell.
-fn bottom(shapes: &Sampled<'_>, target: Target<'_>, theta: &[f64], most_iterations: usize, aside: &mut Work) -> Valley {
-    let slope = curvature(shapes, target, theta, aside);
+fn bottom(
+    shapes: &Sampled<'_>,
+    target: Target<'_>,
+    theta: &[f64],
+    most_iterations: usize,
+    aside: &mut Effort<'_>,
+) -> Result<Valley, Cancelled> {
+    let slope = curvature(shapes, target, theta, aside)?;
     let last = slope.as_ref().map(|(hessian, gradient)| stepped(theta, hessian, gradient, 0.0, shapes));
     if let Some(next) = last.filter(|next| Near::TELLING.holds(distance(theta, next), 0.0)) {
-        return Valley {
+        return Ok(Valley {
             theta: next.to_vec(),
             curvature: slope.map(|(hessian, _)| hessian),
-        };
+        });
     }
     let curvature = slope.map(|(hessian, _)| hessian);
-    let refined = curvature
-        .as_ref()
-        .and_then(|hessian| descend(shapes, target, theta, hessian, Near::TELLING, aside))
-        .unwrap_or_else(|| refine(shapes, target, theta, Ending::tight(most_iterations), aside));
-    Valley {
+    let refined = match &curvature {
+        Some(hessian) => descend(shapes, target, theta, hessian, Near::TELLING, aside)?,
+        None => None,
+    };
+    let refined = match refined {
+        Some(refined) => refined,
+        None => refine(shapes, target, theta, Ending::tight(most_iterations), aside)?,
+    };
+    Ok(Valley {
         theta: refined.into_theta(shapes),
         curvature,
-    }
+    })
 }

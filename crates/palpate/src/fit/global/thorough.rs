@@ -7,7 +7,8 @@
 use super::{Grid, Valley, distinct, exchanged, fine_starts, first_kinks, grown, local, paired, rising, rounding};
 use crate::fit::{Condensed, Model, Scaled, condense_to};
 use crate::laws::ShapeParameterKind;
-use crate::optimise::{Ending, Solution, Termination, Work, distance, polished, refine, standing};
+use crate::optimise::{Effort, Ending, Solution, Termination, distance, polished, refine, standing};
+use crate::watch::Cancelled;
 
 /// Valleys that are searched on condensed samples.
 const VALLEYS: usize = 16;
@@ -22,50 +23,56 @@ pub(crate) fn thorough(
     nodes: &Condensed,
     quick: Solution,
     most_iterations: usize,
-    work: &mut Work,
-) -> Solution {
+    effort: &mut Effort<'_>,
+) -> Result<Solution, Cancelled> {
     let all = model.at(&scaled.times);
     let mut ends = vec![quick.nonlinear.clone()];
     ends.extend(if model.is_series() {
-        series(model, scaled, &quick, work)
+        series(model, scaled, &quick, effort)?
     } else {
         // One parameter is cheap to search on all samples, and nodes miss what the noise of a single one does.
         let whole = if model.free().len() == 1 { condense_to(scaled, 0.0) } else { nodes.clone() };
-        deepest(valleys(model, &whole, work), FINALISTS)
+        deepest(valleys(model, &whole, effort)?, FINALISTS)
     });
     ends.extend(first_kinks(model, scaled));
     if !model.is_series() {
         ends.extend(ends.iter().flat_map(|theta| first_felt(model, &scaled.times, theta)).collect::<Vec<_>>());
     }
-    let lowest = ends.iter().map(|theta| local(&all, scaled.target(), theta, ENOUGH, work));
-    let Some(best) = lowest.min_by(|a, b| a.square.total_cmp(&b.square)) else {
-        return quick;
+    let mut best: Option<Valley> = None;
+    for theta in &ends {
+        let valley = local(&all, scaled.target(), theta, ENOUGH, effort)?;
+        if best.as_ref().is_none_or(|best| valley.square.total_cmp(&best.square).is_lt()) {
+            best = Some(valley);
+        }
+    }
+    let Some(best) = best else {
+        return Ok(quick);
     };
-    let refined = refine(&all, scaled.target(), &best.theta, Ending::tight(most_iterations), work);
-    let plain = polished(&all, scaled.target(), refined, work);
+    let refined = refine(&all, scaled.target(), &best.theta, Ending::tight(most_iterations), effort)?;
+    let plain = polished(&all, scaled.target(), refined, effort)?;
     // With rounding, which the best has in its square.
     let whole = |solution: &Solution| {
         solution.residual_square + rounding(scaled.target(), solution.residual_square, &solution.linear)
     };
     let lowest = whole(&quick).min(best.square).min(whole(&plain)) * (1.0 + ALIKE);
-    if whole(&plain) <= lowest {
+    Ok(if whole(&plain) <= lowest {
         plain
     } else if whole(&quick) <= lowest {
         quick
     } else {
         standing(&all, scaled.target(), &best.theta, &best.linear, Termination::Converged)
-    }
+    })
 }
 
 /// Valleys of the condensed samples, deepest first: those of a fine grid and, for a series, those that one more term opens beside
 /// the best fits of one term less, or two more beside the best of two less.
-fn valleys(model: &Model, nodes: &Condensed, work: &mut Work) -> Vec<Valley> {
+fn valleys(model: &Model, nodes: &Condensed, effort: &mut Effort<'_>) -> Result<Vec<Valley>, Cancelled> {
     let fewest = if model.is_series() { 1 } else { model.form.shapes.len() };
     let shorter: Vec<Model> = (fewest..model.form.shapes.len()).map(|count| model.first_shapes(count)).collect();
     let mut bases: Vec<(&Model, Vec<Valley>)> = Vec::new();
     for own in shorter.iter().chain([model]) {
         let grid = if own.free().len() == 1 { Grid::Finest } else { Grid::Fine };
-        let mut starts = fine_starts(own, nodes, grid, VALLEYS, work);
+        let mut starts = fine_starts(own, nodes, grid, VALLEYS, &mut effort.work);
         if let [.., (fewer, base)] = bases.as_slice() {
             let longer = distinct_of(base, BASES).into_iter().flat_map(|theta| grown(fewer, nodes, &theta));
             starts.extend(longer.map(|(_, theta)| theta));
@@ -74,38 +81,46 @@ fn valleys(model: &Model, nodes: &Condensed, work: &mut Work) -> Vec<Valley> {
             && let Some(best) = base.first()
         {
             // Of two terms that come together none may help alone.
-            starts.extend(paired(own, nodes, &best.theta, work));
+            starts.extend(paired(own, nodes, &best.theta, &mut effort.work));
         }
-        let (shapes, mut aside) = (own.at(&nodes.times), Work::default());
-        let mut found: Vec<Valley> =
-            starts.iter().map(|start| local(&shapes, nodes.target(), start, ENOUGH, &mut aside)).collect();
-        work.condensed += aside.evaluations;
+        let (shapes, mut aside) = (own.at(&nodes.times), effort.aside());
+        let mut found = starts
+            .iter()
+            .map(|start| local(&shapes, nodes.target(), start, ENOUGH, &mut aside))
+            .collect::<Result<Vec<Valley>, Cancelled>>()?;
+        effort.work.condensed += aside.work.evaluations;
         found.sort_by(|a, b| a.square.total_cmp(&b.square));
         bases.push((own, found));
     }
-    bases.pop().map(|(_, found)| found).unwrap_or_default()
+    Ok(bases.pop().map(|(_, found)| found).unwrap_or_default())
 }
 
 /// The deepest valleys of a series on nodes that tell them apart: with terms exchanged, brought together, and made as slow as can be felt.
-fn series(model: &Model, scaled: &Scaled, quick: &Solution, work: &mut Work) -> Vec<Vec<f64>> {
+fn series(
+    model: &Model,
+    scaled: &Scaled,
+    quick: &Solution,
+    effort: &mut Effort<'_>,
+) -> Result<Vec<Vec<f64>>, Cancelled> {
     let nodes = condense_to(scaled, FINER);
     let shapes = model.at(&nodes.times);
-    let mut aside = Work::default();
-    let mut found = valleys(model, &nodes, work);
-    found.push(local(&shapes, nodes.target(), &quick.nonlinear, ENOUGH, &mut aside));
-    let mut found = exchanged(model, &nodes, found, work);
+    let mut aside = effort.aside();
+    let mut found = valleys(model, &nodes, effort)?;
+    found.push(local(&shapes, nodes.target(), &quick.nonlinear, ENOUGH, &mut aside)?);
+    let mut found = exchanged(model, &nodes, found, effort)?;
+    let mut descend = |theta: Vec<f64>| local(&shapes, nodes.target(), &theta, ENOUGH, &mut aside);
     let bases = distinct_of(&found, FINALISTS);
     let beside = bases
         .iter()
         .flat_map(|theta| [first_felt(model, &scaled.times, theta), together(model, theta)].concat());
-    found.extend(beside.map(|theta| local(&shapes, nodes.target(), &theta, ENOUGH, &mut aside)).collect::<Vec<_>>());
+    found.extend(beside.map(&mut descend).collect::<Result<Vec<_>, Cancelled>>()?);
     found.sort_by(|a, b| a.square.total_cmp(&b.square));
     let hasty = distinct_of(&found, SOUGHT_ANEW)
         .into_iter()
         .flat_map(|theta| among_the_first(&scaled.times, &theta));
-    found.extend(hasty.map(|theta| local(&shapes, nodes.target(), &theta, ENOUGH, &mut aside)).collect::<Vec<_>>());
-    work.condensed += aside.evaluations;
-    deepest(found, FINALISTS)
+    found.extend(hasty.map(&mut descend).collect::<Result<Vec<_>, Cancelled>>()?);
+    effort.work.condensed += aside.work.evaluations;
+    Ok(deepest(found, FINALISTS))
 }
 
 /// The parameters of the deepest valleys that are not the same, deepest first.

@@ -5,7 +5,8 @@
 //! square with every hold's own parameters at their best. For a law that is linear in these it is variable projection.
 
 use super::hold::{Part, View, moved};
-use crate::optimise::{Ending, Termination, Work, stepped_within};
+use crate::optimise::{Effort, Ending, Termination, stepped_within};
+use crate::watch::Cancelled;
 
 /// All holds at one point.
 pub(crate) struct Point {
@@ -15,27 +16,39 @@ pub(crate) struct Point {
 }
 
 impl Point {
-    pub(crate) fn new(views: &[View<'_>], shared: &[f64], own: &[Vec<f64>], work: &mut Work) -> Self {
+    pub(crate) fn new(
+        views: &[View<'_>],
+        shared: &[f64],
+        own: &[Vec<f64>],
+        effort: &mut Effort<'_>,
+    ) -> Result<Self, Cancelled> {
         let mut point = Self {
             shared: shared.to_vec(),
             parts: views.iter().zip(own).map(|(view, own)| Part::new(*view, own, shared.len())).collect(),
             square: f64::INFINITY,
         };
-        point.settle(views, shared, own, work);
-        point
+        point.settle(views, shared, own, effort)?;
+        Ok(point)
     }
 
     /// Moves to these shared parameters and finds the holds' own ones, from those given.
-    pub(crate) fn settle(&mut self, views: &[View<'_>], shared: &[f64], own: &[Vec<f64>], work: &mut Work) {
+    pub(crate) fn settle(
+        &mut self,
+        views: &[View<'_>],
+        shared: &[f64],
+        own: &[Vec<f64>],
+        effort: &mut Effort<'_>,
+    ) -> Result<(), Cancelled> {
         self.shared.copy_from_slice(shared);
         self.square = 0.0;
         for ((part, view), own) in self.parts.iter_mut().zip(views).zip(own) {
-            part.settle(*view, shared, own, work);
+            part.settle(*view, shared, own, effort)?;
             self.square += view.hold.weight.powi(2) * part.square;
         }
         if !self.square.is_finite() {
             self.square = f64::INFINITY;
         }
+        Ok(())
     }
 
     pub(crate) fn own(&self) -> Vec<Vec<f64>> {
@@ -93,9 +106,9 @@ pub(crate) fn refine(
     bounds: &[(f64, f64)],
     mut here: Point,
     ending: Ending,
-    work: &mut Work,
-) -> (Point, Termination) {
-    work.starts += 1;
+    effort: &mut Effort<'_>,
+) -> Result<(Point, Termination), Cancelled> {
+    effort.work.starts += 1;
     let values = views
         .iter()
         .map(|view| view.hold.weight.powi(2) * view.target.values.iter().map(|y| y * y).sum::<f64>());
@@ -108,19 +121,19 @@ pub(crate) fn refine(
     let mut damping = 1e-4;
     for _ in 0..ending.most_iterations {
         let Some((hessian, gradient)) = here.reduced(views).filter(|_| here.square.is_finite()) else {
-            return (here, Termination::Singular);
+            return Ok((here, Termination::Singular));
         };
         let promised = |step: &[f64], gradient: &[f64]| step.iter().zip(gradient).map(|(a, b)| a * b).sum::<f64>();
         let full = stepped(&here.shared, &hessian, &gradient, 0.0, bounds);
         let promise = promised(&full, &gradient);
         if promise <= ending.gain * here.square + floor {
-            return (here, Termination::Converged);
+            return Ok((here, Termination::Converged));
         }
         let near = promise < NEAR * here.square;
         loop {
             let step = if near { full.clone() } else { stepped(&here.shared, &hessian, &gradient, damping, bounds) };
             let next: Vec<f64> = here.shared.iter().zip(&step).map(|(value, change)| value + change).collect();
-            trial.settle(views, &next, &here.following(views, &step), work);
+            trial.settle(views, &next, &here.following(views, &step), effort)?;
             let better = if near {
                 let left = trial.reduced(views).map_or(f64::INFINITY, |(hessian, gradient)| {
                     promised(&stepped(&trial.shared, &hessian, &gradient, 0.0, bounds), &gradient)
@@ -131,18 +144,18 @@ pub(crate) fn refine(
             };
             if better {
                 std::mem::swap(&mut here, &mut trial);
-                work.iterations += 1;
+                effort.work.iterations += 1;
                 damping = (damping * 0.1).max(1e-14);
                 break;
             }
             // A step that was to be the last one and brings nothing is rounding.
             if near || damping > 1e12 || step.iter().all(|change| change.abs() < 1e-14) {
-                return (here, Termination::Converged);
+                return Ok((here, Termination::Converged));
             }
             damping = (damping * 8.0).max(1e-6);
         }
     }
-    (here, Termination::IterationLimit)
+    Ok((here, Termination::IterationLimit))
 }
 
 /// A damped step that stays inside the bounds; a parameter pushed out of them stays where it is.

@@ -7,7 +7,7 @@ use super::result::law_options;
 use super::starts::{Start, finalists};
 use crate::fit::{FitError, Fitted, HoldWeights, JointFit, JointOptions, LawOptions, Samples};
 use crate::laws::{ExponentChoice, Law, ShapeParameterKind};
-use crate::optimise::{Ending, Shapes, Termination, Work};
+use crate::optimise::{Effort, Ending, Shapes, Termination, Work};
 use crate::statistics::mean;
 use crate::watch::{Cancelled, Progress, Unwatched, Watch};
 
@@ -60,14 +60,22 @@ pub fn fit_joint_watched(
     {
         return Err(FitError::StandardDeviationsOfSome { hold: without + 1 });
     }
-    let mut work = Work::default();
+    Effort::watched(watch, |effort| found(holds, law, options, effort))
+}
+
+fn found(
+    holds: &[Samples<'_>],
+    law: Law,
+    options: &JointOptions,
+    effort: &mut Effort<'_>,
+) -> Result<JointFit, FitError> {
     let law_options = law_options(law, options);
     let mut alone = Vec::new();
     for (index, samples) in holds.iter().enumerate() {
-        watch.report(Progress::counted("fitting holds together", index, holds.len() + 1))?;
-        let fitted = separate(samples, law, &law_options, &mut work);
+        effort.reach(Progress::counted("fitting holds together", index, holds.len() + 1))?;
+        let fitted = separate(samples, law, &law_options, effort);
         alone.push(fitted.map_err(|source| match source {
-            FitError::NothingShared { .. } | FitError::NoForm { .. } => source,
+            FitError::NothingShared { .. } | FitError::NoForm { .. } | FitError::Cancelled(_) => source,
             _ => FitError::Hold {
                 hold: index + 1,
                 source: Box::new(source),
@@ -76,13 +84,18 @@ pub fn fit_joint_watched(
     }
     let separate = alone.iter().map(|fitted| fitted.report(law, &law_options, Work::default())).collect();
     let joint = joined(holds, alone, law, options);
-    let (point, termination) = joint.solve(options.fit.most_iterations, &mut work, watch)?;
-    Ok(joint.report(&point, termination, separate, work))
+    let (point, termination) = joint.solve(options.fit.most_iterations, effort)?;
+    Ok(joint.report(&point, termination, separate, effort.work))
 }
 
 /// A hold fitted alone.
-fn separate(samples: &Samples<'_>, law: Law, options: &LawOptions, work: &mut Work) -> Result<Fitted, FitError> {
-    let fitted = Fitted::new(samples, law, options, work)?;
+fn separate(
+    samples: &Samples<'_>,
+    law: Law,
+    options: &LawOptions,
+    effort: &mut Effort<'_>,
+) -> Result<Fitted, FitError> {
+    let fitted = Fitted::new(samples, law, options, effort)?;
     if fitted.model.free().len() == 0 {
         return Err(FitError::NothingShared { law });
     }
@@ -169,12 +182,7 @@ fn bounds(holds: &[Hold]) -> Vec<(f64, f64)> {
 
 impl Joint {
     /// The best point, with every hold's own parameters.
-    fn solve(
-        &self,
-        most_iterations: usize,
-        work: &mut Work,
-        watch: &mut dyn Watch,
-    ) -> Result<(Point, Termination), Cancelled> {
+    fn solve(&self, most_iterations: usize, effort: &mut Effort<'_>) -> Result<(Point, Termination), Cancelled> {
         let start = |(hold, solution): (&Hold, &crate::optimise::Solution)| {
             Start::new(
                 hold.shared(&solution.nonlinear, &solution.linear),
@@ -185,16 +193,16 @@ impl Joint {
         let views: Vec<View<'_>> = self.holds.iter().map(View::all).collect();
         let ending = Ending::new(1e-22, most_iterations);
         let first = separate[0].clone();
-        let mut starts = finalists(&self.holds, &self.bounds, separate, most_iterations, work, watch)?.into_iter();
-        let mut settle = |start: Start| {
+        let mut starts = finalists(&self.holds, &self.bounds, separate, most_iterations, effort)?.into_iter();
+        let settle = |start: Start, effort: &mut Effort<'_>| {
             let start = self.arranged(start);
-            let point = Point::new(&views, &start.shared, &start.own, work);
-            refine(&views, &self.bounds, point, ending, work)
+            let point = Point::new(&views, &start.shared, &start.own, effort)?;
+            refine(&views, &self.bounds, point, ending, effort)
         };
-        let (mut point, mut termination) = settle(starts.next().unwrap_or(first));
+        let (mut point, mut termination) = settle(starts.next().unwrap_or(first), effort)?;
         for start in starts {
-            watch.report(Progress::counted("fitting holds together", self.holds.len(), self.holds.len() + 1))?;
-            let found = settle(start);
+            effort.reach(Progress::counted("fitting holds together", self.holds.len(), self.holds.len() + 1))?;
+            let found = settle(start, effort)?;
             if found.0.square < point.square {
                 (point, termination) = found;
             }

@@ -2,8 +2,9 @@
 
 use crate::fit::{Model, Scaled};
 use crate::laws::ShapeParameterKind;
-use crate::optimise::{Cholesky, Shapes, Target, Work};
+use crate::optimise::{Cholesky, Effort, Shapes, Target};
 use crate::vector::{dot, form_residuals, multiply, normal_equations};
+use crate::watch::Cancelled;
 
 /// A hold in its own units, with what ties it to the others.
 pub(crate) struct Hold {
@@ -120,7 +121,13 @@ impl Part {
     }
 
     /// Residuals and normal equations at these shared and own parameters.
-    fn evaluate(&mut self, view: View<'_>, shared: &[f64], own: &[f64], work: &mut Work) {
+    fn evaluate(
+        &mut self,
+        view: View<'_>,
+        shared: &[f64],
+        own: &[f64],
+        effort: &mut Effort<'_>,
+    ) -> Result<(), Cancelled> {
         let (hold, l) = (view.hold, own.len());
         self.own.copy_from_slice(own);
         let theta = hold.theta(shared, own);
@@ -148,10 +155,10 @@ impl Part {
             }
         }
         normal_equations(&self.jacobian, &self.residuals, &mut self.normal, &mut self.gradient);
-        work.evaluations += 1;
         if !self.square.is_finite() {
             self.square = f64::INFINITY;
         }
+        effort.evaluated()
     }
 
     /// The factored normal equations of the own parameters.
@@ -162,36 +169,43 @@ impl Part {
     }
 
     /// The best own parameters at given shared ones, from those at hand: one step where the law is linear in them.
-    pub(crate) fn settle(&mut self, view: View<'_>, shared: &[f64], own: &[f64], work: &mut Work) {
-        self.evaluate(view, shared, own, work);
+    pub(crate) fn settle(
+        &mut self,
+        view: View<'_>,
+        shared: &[f64],
+        own: &[f64],
+        effort: &mut Effort<'_>,
+    ) -> Result<(), Cancelled> {
+        self.evaluate(view, shared, own, effort)?;
         let floor = dot(view.target.values, view.target.values) * 1e-31;
         let mut trial = self.clone();
         for _ in 0..STEPS {
             let Some(factor) = self.own_block() else {
                 self.square = f64::INFINITY;
-                return;
+                return Ok(());
             };
             let mut step = self.gradient[..self.own.len()].to_vec();
             factor.solve(&mut step);
             let promise = dot(&step, &self.gradient[..step.len()]);
             if promise.is_nan() || promise <= 1e-24 * self.square + floor {
-                return;
+                return Ok(());
             }
             let mut share = 1.0;
             loop {
                 let next = moved(view.hold, &self.own, &step, share);
-                trial.evaluate(view, shared, &next, work);
+                trial.evaluate(view, shared, &next, effort)?;
                 if trial.square < self.square {
                     std::mem::swap(self, &mut trial);
                     break;
                 }
                 // A step that promises next to nothing and brings nothing is rounding.
                 if share < 0.05 || promise < 1e-12 * self.square {
-                    return;
+                    return Ok(());
                 }
                 share *= 0.3;
             }
         }
+        Ok(())
     }
 }
 

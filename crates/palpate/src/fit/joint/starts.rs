@@ -5,8 +5,8 @@ use super::hold::{Hold, View};
 use crate::fit::global::grid::{Grid, coarse, combinations, distinct, rates};
 use crate::fit::global::starts::starts as valleys;
 use crate::fit::{Condensed, Model, condense};
-use crate::optimise::{Ending, Work, refine as refine_one};
-use crate::watch::{Cancelled, Progress, Watch};
+use crate::optimise::{Effort, Ending, refine as refine_one};
+use crate::watch::{Cancelled, Progress};
 
 /// A point to start from.
 #[derive(Clone)]
@@ -36,34 +36,33 @@ pub(crate) fn finalists(
     bounds: &[(f64, f64)],
     separate: Vec<Start>,
     most_iterations: usize,
-    work: &mut Work,
-    watch: &mut dyn Watch,
+    effort: &mut Effort<'_>,
 ) -> Result<Vec<Start>, Cancelled> {
     let nodes: Vec<Condensed> = holds.iter().map(|hold| condense(&hold.scaled)).collect();
     let views: Vec<View<'_>> = holds.iter().zip(&nodes).map(|(hold, nodes)| view(hold, nodes)).collect();
     let inside: f64 = holds.iter().zip(&nodes).map(|(hold, nodes)| hold.weight.powi(2) * nodes.inside).sum();
-    let mut aside = Work::default();
+    let mut aside = effort.aside();
     let mut starts = with_mean(separate);
     starts.extend(if holds[0].coupling.is_some() {
-        by_exponent(holds, &nodes, work)
+        by_exponent(holds, &nodes, effort)?
     } else {
-        grid(holds, &nodes, bounds, work)
+        grid(holds, &nodes, bounds, effort)?
     });
     let ending = Ending::new(1e-10, most_iterations);
     let mut found: Vec<(f64, Start)> = Vec::new();
     for start in starts {
-        watch.report(Progress::counted("fitting holds together", holds.len(), holds.len() + 1))?;
+        aside.reach(Progress::counted("fitting holds together", holds.len(), holds.len() + 1))?;
         let inner: Vec<f64> =
             start.shared.iter().zip(bounds).map(|(value, (low, high))| value.clamp(*low, *high)).collect();
-        let point = Point::new(&views, &inner, &start.own, &mut aside);
-        let (point, _) = refine(&views, bounds, point, ending, &mut aside);
+        let point = Point::new(&views, &inner, &start.own, &mut aside)?;
+        let (point, _) = refine(&views, bounds, point, ending, &mut aside)?;
         if point.square.is_finite() {
             let start = Start::new(point.shared.clone(), point.own());
             found.push((point.square + inside, start));
         }
     }
-    work.starts += aside.starts;
-    work.condensed += aside.evaluations;
+    effort.work.starts += aside.work.starts;
+    effort.work.condensed += aside.work.evaluations;
     found.sort_by(|a, b| a.0.total_cmp(&b.0));
     let limit = found.first().map_or(0.0, |(least, _)| least * 1.001 + f64::MIN_POSITIVE);
     let alike = found.into_iter().take_while(|(square, _)| *square <= limit).map(|(_, start)| start);
@@ -94,47 +93,54 @@ fn with_mean(separate: Vec<Start>) -> Vec<Start> {
 }
 
 /// For each exponent of a coarse list: every hold fitted alone at it, and the mean of what they have in common.
-fn by_exponent(holds: &[Hold], nodes: &[Condensed], work: &mut Work) -> Vec<Start> {
+fn by_exponent(holds: &[Hold], nodes: &[Condensed], effort: &mut Effort<'_>) -> Result<Vec<Start>, Cancelled> {
     let parameter = holds[0].model.parameters.get(1);
     let exponents =
         parameter.map_or_else(Vec::new, |parameter| coarse(parameter.kind, parameter.bounds, parameter.fixed));
-    let alone = |exponent: f64, work: &mut Work| -> Option<Start> {
+    let alone = |exponent: f64, effort: &mut Effort<'_>| -> Result<Option<Start>, Cancelled> {
         let mut start = Start::new(vec![0.0, exponent], Vec::new());
         for (hold, nodes) in holds.iter().zip(nodes) {
             let mut parameters = hold.model.parameters.clone();
             parameters[1].fixed = Some(exponent);
             let model = Model::new(hold.model.form.clone(), hold.model.constant, parameters, Vec::new());
-            let valley = valleys(&model, nodes, 1, work).into_iter().next()?;
+            let Some(valley) = valleys(&model, nodes, 1, &mut effort.work).into_iter().next() else {
+                return Ok(None);
+            };
             let ending = Ending::new(1e-5, 50);
-            let mut aside = Work::default();
-            let fit = refine_one(&model.at(&nodes.times), nodes.target(), &valley, ending, &mut aside);
-            work.condensed += aside.evaluations;
+            let mut aside = effort.aside();
+            let fit = refine_one(&model.at(&nodes.times), nodes.target(), &valley, ending, &mut aside)?;
+            effort.work.condensed += aside.work.evaluations;
             let own = fit.point.linear.to_vec();
             start.shared[0] += hold.shared(&[fit.point.theta[0], exponent], &own)[0] / holds.len() as f64;
             start.own.push(own);
         }
-        start.shared[0].is_finite().then_some(start)
+        Ok(start.shared[0].is_finite().then_some(start))
     };
-    exponents.into_iter().filter_map(|exponent| alone(exponent, work)).collect()
+    exponents.into_iter().filter_map(|exponent| alone(exponent, effort).transpose()).collect()
 }
 
 /// The best points of a grid over the shared parameters, the residuals of all holds summed.
-fn grid(holds: &[Hold], nodes: &[Condensed], bounds: &[(f64, f64)], work: &mut Work) -> Vec<Start> {
+fn grid(
+    holds: &[Hold],
+    nodes: &[Condensed],
+    bounds: &[(f64, f64)],
+    effort: &mut Effort<'_>,
+) -> Result<Vec<Start>, Cancelled> {
     let nodes: Vec<Condensed> = nodes.iter().map(Condensed::coarser).collect();
     let views: Vec<View<'_>> = holds.iter().zip(&nodes).map(|(hold, nodes)| view(hold, nodes)).collect();
     let own: Vec<Vec<f64>> = holds.iter().map(|hold| vec![0.0; hold.model.linear()]).collect();
-    let mut aside = Work::default();
+    let mut aside = effort.aside();
     let mut found: Vec<(f64, Start)> = Vec::new();
     for shared in places(&holds[0].model, bounds) {
-        work.grid_points += 1;
-        let point = Point::new(&views, &shared, &own, &mut aside);
+        effort.work.grid_points += 1;
+        let point = Point::new(&views, &shared, &own, &mut aside)?;
         if point.square.is_finite() {
             found.push((point.square, Start::new(shared, own.clone())));
         }
     }
-    work.condensed += aside.evaluations;
+    effort.work.condensed += aside.work.evaluations;
     found.sort_by(|a, b| a.0.total_cmp(&b.0));
-    distinct(found.into_iter().map(|(_, start)| start), KEPT, near(1.6))
+    Ok(distinct(found.into_iter().map(|(_, start)| start), KEPT, near(1.6)))
 }
 
 /// The points of the grid: a rate and a dimensionless parameter, or rates in all combinations, fastest first.

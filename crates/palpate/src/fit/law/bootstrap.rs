@@ -18,9 +18,9 @@ use crate::fit::{
     BootstrapOptions, Estimate, Fit, FitError, Fitted, LawOptions, NoiseModel, Parameter, Scale, condense,
 };
 use crate::laws::Law;
-use crate::optimise::{Ending, Work, refine};
+use crate::optimise::{Effort, Ending, refine};
 use crate::random::Rng;
-use crate::watch::{Progress, Watch};
+use crate::watch::{Cancelled, Progress};
 
 impl Fitted {
     /// All parameters of this fit by draws: the standard error is their deviation, the interval runs between percentiles; neither
@@ -30,7 +30,7 @@ impl Fitted {
         fit: &Fit,
         options: &LawOptions,
         how: &BootstrapOptions,
-        watch: &mut dyn Watch,
+        effort: &mut Effort<'_>,
     ) -> Result<Vec<Estimate>, FitError> {
         let count = self.scaled.times.len();
         let block = how.block.unwrap_or_else(|| fit.noise.block(count)).clamp(1, count);
@@ -45,9 +45,9 @@ impl Fitted {
             };
             let mut random = Rng::new(how.seed);
             for done in 0..how.repetitions {
-                watch.report(Progress::counted("resampling residuals", done, how.repetitions))?;
+                effort.reach(Progress::counted("resampling residuals", done, how.repetitions))?;
                 let values = urn.draw(&mut random);
-                if let Some(parameters) = self.refitted(fit.law, options, values) {
+                if let Some(parameters) = self.refitted(fit.law, options, values, effort)? {
                     draws.iter_mut().zip(parameters).for_each(|(all, parameter)| all.push(parameter));
                 }
             }
@@ -110,12 +110,18 @@ impl Urn {
 
 impl Fitted {
     /// All reported parameters for other values, by a search downhill from the present ones; `None` if it leads nowhere.
-    fn refitted(&mut self, law: Law, options: &LawOptions, values: Vec<f64>) -> Option<Vec<f64>> {
+    fn refitted(
+        &mut self,
+        law: Law,
+        options: &LawOptions,
+        values: Vec<f64>,
+        effort: &mut Effort<'_>,
+    ) -> Result<Option<Vec<f64>>, Cancelled> {
         let best = (self.solution.linear.clone(), self.solution.nonlinear.clone());
         let measured = std::mem::replace(&mut self.scaled.values, values);
         let nodes = condense(&self.scaled);
         let ending = Ending::new(1e-8, options.most_iterations);
-        let refined = refine(&self.model.at(&nodes.times), nodes.target(), &best.1, ending, &mut Work::default());
+        let refined = refine(&self.model.at(&nodes.times), nodes.target(), &best.1, ending, effort)?;
         self.solution.linear = refined.point.linear.to_vec();
         self.solution.nonlinear = refined.point.theta.to_vec();
         let searched = self.values();
@@ -128,7 +134,7 @@ impl Fitted {
         let all: Vec<f64> = parameters.map(|parameter| parameter.estimate.value).collect();
         (self.solution.linear, self.solution.nonlinear) = best;
         self.scaled.values = measured;
-        all.iter().all(|parameter| parameter.is_finite()).then_some(all)
+        Ok(all.iter().all(|parameter| parameter.is_finite()).then_some(all))
     }
 }
 

@@ -2,7 +2,7 @@
 
 use crate::fit::{Fit, FitError, Fitted, IntervalMethod, LawOptions, Loss, SampleChoice, Samples, build, search};
 use crate::laws::Law;
-use crate::optimise::Work;
+use crate::optimise::Effort;
 use crate::watch::{Unwatched, Watch};
 
 /// Fits a law to a hold: no starting values.
@@ -34,7 +34,7 @@ pub fn fit_law(samples: &Samples<'_>, law: Law, options: &LawOptions) -> Result<
     fit_law_watched(samples, law, options, &mut Unwatched)
 }
 
-/// [`fit_law`] with a watch, which intervals by profiles and by resampling are long enough for.
+/// [`fit_law`] with a watch, which hears of every evaluation of the law over the samples.
 ///
 /// # Errors
 /// As [`fit_law`], and [`FitError::Cancelled`].
@@ -44,14 +44,17 @@ pub fn fit_law_watched(
     options: &LawOptions,
     watch: &mut dyn Watch,
 ) -> Result<Fit, FitError> {
-    let mut work = Work::default();
-    let mut fitted = Fitted::new(samples, law, options, &mut work)?;
-    let mut fit = fitted.report(law, options, work);
+    Effort::watched(watch, |effort| found(samples, law, options, effort))
+}
+
+fn found(samples: &Samples<'_>, law: Law, options: &LawOptions, effort: &mut Effort<'_>) -> Result<Fit, FitError> {
+    let mut fitted = Fitted::new(samples, law, options, effort)?;
+    let mut fit = fitted.report(law, options, effort.work);
     match options.intervals {
         IntervalMethod::Curvature => {}
-        IntervalMethod::Profile => fitted.profile(&mut fit, options, watch)?,
+        IntervalMethod::Profile => fitted.profile(&mut fit, options, effort)?,
         IntervalMethod::Bootstrap(how) => {
-            let drawn = fitted.resample(&fit, options, &how, watch)?;
+            let drawn = fitted.resample(&fit, options, &how, effort)?;
             fit.parameters.iter_mut().zip(drawn).for_each(|(parameter, drawn)| parameter.estimate = drawn);
         }
     }
@@ -64,20 +67,20 @@ impl Fitted {
         samples: &Samples<'_>,
         law: Law,
         options: &LawOptions,
-        work: &mut Work,
+        effort: &mut Effort<'_>,
     ) -> Result<Self, FitError> {
         let form = options.form(law)?;
         let chosen = chosen(samples, options.samples)?;
         let samples = &chosen.samples(samples);
         let (model, scaled) = build(form, samples, options)?;
-        let solution = search(&model, &scaled, options.most_iterations, work).ok_or(FitError::NoDecay)?;
+        let solution = search(&model, &scaled, options.most_iterations, effort)?.ok_or(FitError::NoDecay)?;
         let mut fitted = Self {
             model,
             scaled,
             solution,
         };
         if options.loss != Loss::Squares {
-            fitted.resist(options, work)?;
+            fitted.resist(options, effort)?;
         }
         fitted.arrange();
         Ok(fitted)

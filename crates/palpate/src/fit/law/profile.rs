@@ -13,9 +13,9 @@
 use crate::fit::noise::uncertainty::variance_of;
 use crate::fit::{Estimate, Fit, FitError, Fitted, Interval, LawOptions, Model, Samples, condense};
 use crate::laws::{Law, ShapeParameterKind};
-use crate::optimise::{Ending, Shapes, Target, Work, refine};
+use crate::optimise::{Effort, Ending, Shapes, Target, Work, refine};
 use crate::statistics::coverage_factor;
-use crate::watch::{Cancelled, Progress, Unwatched, Watch};
+use crate::watch::{Cancelled, Progress};
 
 /// Standard errors from the best value beyond which an end counts as open.
 const FARTHEST: f64 = 2000.0;
@@ -52,22 +52,22 @@ pub fn profile_interval(
     options: &LawOptions,
     name: &str,
 ) -> Result<Interval, FitError> {
-    let fitted = Fitted::new(samples, law, options, &mut Work::default())?;
+    let fitted = Fitted::new(samples, law, options, &mut Effort::default())?;
     let parameter = Searched::named(&fitted.model, name)?;
     let fit = fitted.report(law, options, Work::default());
-    fitted.profile_of(parameter, &fit, options, &mut Unwatched)
+    fitted.profile_of(parameter, &fit, options, &mut Effort::default())
 }
 
 impl Fitted {
     /// Intervals of all searched parameters of this fit by their profiles, whose ends may be open; where the whole profile is, there is
     /// no standard error.
-    pub(crate) fn profile(&self, fit: &mut Fit, options: &LawOptions, watch: &mut dyn Watch) -> Result<(), FitError> {
+    pub(crate) fn profile(&self, fit: &mut Fit, options: &LawOptions, effort: &mut Effort<'_>) -> Result<(), FitError> {
         let known = fit.clone();
         for parameter in &mut fit.parameters {
             let Ok(searched) = Searched::named(&self.model, &parameter.name.to_string()) else {
                 continue;
             };
-            let interval = self.profile_of(searched, &known, options, watch)?;
+            let interval = self.profile_of(searched, &known, options, effort)?;
             let lowest = if searched.is_above_zero() { 0.0 } else { f64::NEG_INFINITY };
             let ends = (interval.low.unwrap_or(lowest), interval.high.unwrap_or(f64::INFINITY));
             parameter.estimate = match known.termination.is_good() {
@@ -86,8 +86,9 @@ impl Fitted {
         parameter: Searched,
         fit: &Fit,
         options: &LawOptions,
-        watch: &mut dyn Watch,
+        effort: &mut Effort<'_>,
     ) -> Result<Interval, FitError> {
+        effort.reach(Progress::open("following a profile", 0))?;
         let (Some(uncertainty), Some(inverse)) = (&fit.uncertainty, &self.solution.inverse_normal) else {
             return Ok(Interval::OPEN);
         };
@@ -106,7 +107,7 @@ impl Fitted {
         if !(fit.termination.is_good() && profile.error > 0.0 && profile.target.is_finite()) {
             return Ok(Interval::OPEN);
         }
-        Ok(parameter.in_natural_units(self, profile.end(-1.0, watch)?, profile.end(1.0, watch)?))
+        Ok(parameter.in_natural_units(self, profile.end(-1.0, effort)?, profile.end(1.0, effort)?))
     }
 }
 
@@ -198,7 +199,7 @@ struct Field<'a> {
 
 impl Profile<'_> {
     /// Where the profile meets its bound on one side, in the units of the fit.
-    fn end(&self, side: f64, watch: &mut dyn Watch) -> Result<Option<f64>, Cancelled> {
+    fn end(&self, side: f64, effort: &mut Effort<'_>) -> Result<Option<f64>, Cancelled> {
         let nodes = condense(&self.fitted.scaled);
         let all = Field {
             times: &self.fitted.scaled.times,
@@ -212,9 +213,9 @@ impl Profile<'_> {
         };
         let start = self.start();
         let worth = 4 * nodes.times.len() < all.times.len();
-        let guess = if worth { self.meet(&few, side, &start, self.target, ROUGH, watch)? } else { None };
+        let guess = if worth { self.meet(&few, side, &start, self.target, ROUGH, effort)? } else { None };
         let (theta, first) = guess.map_or((start.theta.clone(), self.target), |guess| (guess.theta, guess.distance));
-        let met = self.meet(&all, side, &Reached { theta, ..start }, first, CLOSE, watch)?;
+        let met = self.meet(&all, side, &Reached { theta, ..start }, first, CLOSE, effort)?;
         Ok(met.filter(|met| !met.at_edge).map(|met| self.value(side, met.distance)))
     }
 
@@ -258,29 +259,27 @@ impl Profile<'_> {
         start: &Reached,
         first: f64,
         close: f64,
-        watch: &mut dyn Watch,
+        effort: &mut Effort<'_>,
     ) -> Result<Option<Reached>, Cancelled> {
         const ROUNDS: usize = 100;
         let farthest = self.farthest(side);
         let mut near = start.clone();
-        let mut far = self.at(field, side, first.min(farthest), &near.theta);
+        let mut far = self.at(field, side, first.min(farthest), &near.theta, effort)?;
         while far.z < self.target {
-            watch.report(Progress::open("following a profile", 0))?;
             if far.distance >= farthest {
                 return Ok(None);
             }
             let growth = (1.05 * self.target / far.z).clamp(1.1, 2.0);
             near = far;
-            far = self.at(field, side, (near.distance * growth).min(farthest), &near.theta);
+            far = self.at(field, side, (near.distance * growth).min(farthest), &near.theta, effort)?;
         }
         // What is missing at the near end, what is over at the far one.
         let (mut missing, mut over) = (self.target - near.z, far.z - self.target);
-        for round in 0..ROUNDS {
-            watch.report(Progress::open("following a profile", round))?;
+        for _ in 0..ROUNDS {
             let share = missing / (missing + over);
             let middle = near.distance + share * (far.distance - near.distance);
             let width = far.distance - near.distance;
-            let trial = self.at(field, side, middle, &far.theta);
+            let trial = self.at(field, side, middle, &far.theta, effort)?;
             let left = self.target - trial.z;
             if width < close * (1.0 + middle) || left.abs() < close {
                 return Ok(Some(trial));
@@ -295,23 +294,30 @@ impl Profile<'_> {
     }
 
     /// The profile at a distance in standard errors.
-    fn at(&self, field: &Field<'_>, side: f64, distance: f64, theta: &[f64]) -> Reached {
+    fn at(
+        &self,
+        field: &Field<'_>,
+        side: f64,
+        distance: f64,
+        theta: &[f64],
+        effort: &mut Effort<'_>,
+    ) -> Result<Reached, Cancelled> {
         let model = self.held(self.value(side, distance));
         let shapes = model.at(field.times);
         let ending = Ending::tight(self.most_iterations);
-        let refined = refine(&shapes, field.target, theta, ending, &mut Work::default());
+        let refined = refine(&shapes, field.target, theta, ending, effort)?;
         let excess = (refined.point.square + field.inside) / self.fitted.solution.residual_square - 1.0;
         let at_edge = refined.point.theta.iter().enumerate().any(|(i, value)| {
             let (low, high) = shapes.bounds(i);
             let near = 1e-6 * (high - low);
             *value <= low + near || *value >= high - near
         });
-        Reached {
+        Ok(Reached {
             distance,
             z: (excess.max(0.0) * self.freedom).sqrt(),
             theta: refined.point.theta.to_vec(),
             at_edge,
-        }
+        })
     }
 
     /// The model with the parameter held: a nonlinear one fixed, a linear one between equal bounds.

@@ -8,7 +8,7 @@
 //! ```
 
 use crate::fit::{FitError, Fitted, LawOptions, Loss, Scaled, search};
-use crate::optimise::{Ending, Solution, Termination, Work, polished, refine, standing};
+use crate::optimise::{Effort, Ending, Solution, Termination, polished, refine, standing};
 use crate::statistics::mean;
 
 /// Huber's bound, in noise standard deviations: 95 % efficiency on normal noise.
@@ -29,11 +29,11 @@ impl Fitted {
     /// The scale is found anew in every round. After the first rounds the whole range of the nonlinear parameters is searched again,
     /// since outliers may have led the first search into the wrong valley. In the end the solution stands among all samples at
     /// their own weights.
-    pub(crate) fn resist(&mut self, options: &LawOptions, work: &mut Work) -> Result<(), FitError> {
+    pub(crate) fn resist(&mut self, options: &LawOptions, effort: &mut Effort<'_>) -> Result<(), FitError> {
         let base = self.scaled.clone();
-        let mut scale = self.reweigh(&base, Loss::Huber, options, work)?;
+        let mut scale = self.reweigh(&base, Loss::Huber, options, effort)?;
         if options.loss == Loss::Tukey {
-            scale = self.reweigh(&base, Loss::Tukey, options, work)?;
+            scale = self.reweigh(&base, Loss::Tukey, options, effort)?;
         }
         self.scaled = base;
         let found = &self.solution;
@@ -45,7 +45,13 @@ impl Fitted {
     }
 
     /// Reweights until nothing moves; returns the scale.
-    fn reweigh(&mut self, base: &Scaled, loss: Loss, options: &LawOptions, work: &mut Work) -> Result<f64, FitError> {
+    fn reweigh(
+        &mut self,
+        base: &Scaled,
+        loss: Loss,
+        options: &LawOptions,
+        effort: &mut Effort<'_>,
+    ) -> Result<f64, FitError> {
         let mut before: Option<Vec<f64>> = None;
         for round in 0..ROUNDS {
             let residuals = self.residuals_of(base);
@@ -56,13 +62,13 @@ impl Fitted {
             self.scaled = reweighted(base, residuals.iter().map(|r| weight(loss, r / scale).sqrt()));
             if round == 2 {
                 self.solution =
-                    search(&self.model, &self.scaled, options.most_iterations, work).ok_or(FitError::NoDecay)?;
+                    search(&self.model, &self.scaled, options.most_iterations, effort)?.ok_or(FitError::NoDecay)?;
             } else {
                 let shapes = self.model.at(&self.scaled.times);
                 let target = self.scaled.target();
                 let refined =
-                    refine(&shapes, target, &self.solution.nonlinear, Ending::tight(options.most_iterations), work);
-                self.solution = polished(&shapes, target, refined, work);
+                    refine(&shapes, target, &self.solution.nonlinear, Ending::tight(options.most_iterations), effort)?;
+                self.solution = polished(&shapes, target, refined, effort)?;
             }
             let now: Vec<f64> = self.solution.linear.iter().chain(&self.solution.nonlinear).copied().collect();
             let settled =

@@ -3,11 +3,19 @@
 use super::finish::finish;
 use super::point::Point;
 use super::step::{Slope, projected, promise};
-use crate::optimise::{Cholesky, Few, Refined, Shapes, Solution, Square, Target, Termination, Work, distance, stepped};
+use crate::optimise::{
+    Cholesky, Effort, Few, Refined, Shapes, Solution, Square, Target, Termination, distance, stepped,
+};
+use crate::watch::Cancelled;
 
 /// The slope of half the residual square by the nonlinear numbers, the linear ones at their best, from differences of its gradient.
 /// `None` where its curvature is not positive definite, or a number lies at a bound.
-pub(crate) fn curvature(shapes: &impl Shapes, target: Target<'_>, theta: &[f64], work: &mut Work) -> Option<Slope> {
+pub(crate) fn curvature(
+    shapes: &impl Shapes,
+    target: Target<'_>,
+    theta: &[f64],
+    effort: &mut Effort<'_>,
+) -> Result<Option<Slope>, Cancelled> {
     /// Of the width of bounds; the error of the difference is some 10⁻⁸ of the curvature.
     const STEP: f64 = 1e-4;
     let count = theta.len();
@@ -16,15 +24,15 @@ pub(crate) fn curvature(shapes: &impl Shapes, target: Target<'_>, theta: &[f64],
     for j in 0..count {
         let (low, high) = shapes.bounds(j);
         if theta[j] - STEP < low || theta[j] + STEP > high {
-            return None;
+            return Ok(None);
         }
         for side in [-1.0, 1.0] {
             let mut beside = Few::from_slice(theta);
             beside[j] += side * STEP;
             point.evaluate(shapes, &beside, target);
-            work.evaluations += 1;
+            effort.evaluated()?;
             if point.singular || point.held.contains(&true) {
-                return None;
+                return Ok(None);
             }
             for (i, entry) in point.gradient(shapes).into_iter().enumerate() {
                 // The gradient points downhill.
@@ -41,7 +49,7 @@ pub(crate) fn curvature(shapes: &impl Shapes, target: Target<'_>, theta: &[f64],
             hessian[j * count + i] = mean;
         }
     }
-    Cholesky::new(&hessian, count).map(|_| (hessian, mean))
+    Ok(Cholesky::new(&hessian, count).map(|_| (hessian, mean)))
 }
 
 /// Most steps of [`descend`].
@@ -56,12 +64,12 @@ pub(crate) fn descend(
     theta: &[f64],
     hessian: &[f64],
     near: Near,
-    work: &mut Work,
-) -> Option<Refined> {
+    effort: &mut Effort<'_>,
+) -> Result<Option<Refined>, Cancelled> {
     let mut here = Point::new(shapes, theta.len(), target.values.len());
     here.evaluate(shapes, theta, target);
-    work.evaluations += 1;
-    work.starts += 1;
+    effort.evaluated()?;
+    effort.work.starts += 1;
     let outlook = |point: &Point| {
         let gradient = point.gradient(shapes);
         let next = stepped(&point.theta, hessian, &gradient, 0.0, shapes);
@@ -71,7 +79,7 @@ pub(crate) fn descend(
     let (mut next, mut gain) = outlook(&here);
     for _ in 0..STEPS {
         if here.singular || here.held.contains(&true) {
-            return None;
+            return Ok(None);
         }
         let short = near.holds(distance(&here.theta, &next), gain.abs() / here.square);
         let arrived = gain.abs() <= NOTHING * here.square + target.floor();
@@ -80,33 +88,33 @@ pub(crate) fn descend(
             if !leans {
                 here.slide(shapes, &next, target);
             }
-            work.iterations += 1;
+            effort.work.iterations += 1;
         }
         if short || arrived {
             // A step that promises nothing is rounding.
             let rest = |(next, here): (&f64, &f64)| if arrived { 0.0 } else { next - here };
             let step = next.iter().zip(&here.theta).map(rest);
-            return Some(Refined {
+            return Ok(Some(Refined {
                 last: short.then(|| step.collect()),
                 point: here,
                 termination: Termination::Converged,
-            });
+            }));
         }
         let (square, promised) = (here.square, gain);
         here.evaluate(shapes, &next, target);
-        work.evaluations += 1;
-        work.iterations += 1;
+        effort.evaluated()?;
+        effort.work.iterations += 1;
         (next, gain) = outlook(&here);
         if gain.abs() > 0.5 * promised.abs() || here.square > square * (1.0 + 1e-10) + target.floor() {
             // What is left of the gain is rounding once it stops falling far below the residual.
-            return (promised.abs() < 1e-16 * square).then_some(Refined {
+            return Ok((promised.abs() < 1e-16 * square).then_some(Refined {
                 last: None,
                 point: here,
                 termination: Termination::Converged,
-            });
+            }));
         }
     }
-    None
+    Ok(None)
 }
 
 /// Share of the residual square that a step may promise at the optimum: of a thousand samples, some 10⁻⁸ of the errors.
@@ -158,10 +166,15 @@ const POLISHING: usize = 30;
 /// The solution of a refinement, with undamped steps taken from it for as long as they make the gradient smaller.
 ///
 /// The residual is flat to rounding within some 1e-8 of the optimum; the gradient is not, and shows the way further in.
-pub(crate) fn polished(shapes: &impl Shapes, target: Target<'_>, refined: Refined, work: &mut Work) -> Solution {
+pub(crate) fn polished(
+    shapes: &impl Shapes,
+    target: Target<'_>,
+    refined: Refined,
+    effort: &mut Effort<'_>,
+) -> Result<Solution, Cancelled> {
     let mut here = refined.point;
     if refined.last.is_some() || refined.termination != Termination::Converged {
-        return finish(here, refined.last.as_deref(), shapes, refined.termination);
+        return Ok(finish(here, refined.last.as_deref(), shapes, refined.termination));
     }
     // The gain that a full step promises, gᵀ H⁻¹ g, measures the gradient.
     let outlook = |point: &Point| {
@@ -171,7 +184,7 @@ pub(crate) fn polished(shapes: &impl Shapes, target: Target<'_>, refined: Refine
         Some((next, gain))
     };
     let Some((mut next, mut gain)) = outlook(&here) else {
-        return finish(here, None, shapes, Termination::Converged);
+        return Ok(finish(here, None, shapes, Termination::Converged));
     };
     // Few samples make wide errors and cost nothing to polish.
     let samples = target.values.len();
@@ -183,7 +196,7 @@ pub(crate) fn polished(shapes: &impl Shapes, target: Target<'_>, refined: Refine
             break;
         }
         trial.evaluate(shapes, &next, target);
-        work.evaluations += 1;
+        effort.evaluated()?;
         match outlook(&trial) {
             Some((after, less)) if less < 0.5 * gain && trial.square <= here.square * (1.0 + 1e-10) => {
                 std::mem::swap(&mut here, &mut trial);
@@ -193,5 +206,5 @@ pub(crate) fn polished(shapes: &impl Shapes, target: Target<'_>, refined: Refine
         }
     }
     trial.release(shapes);
-    finish(here, None, shapes, Termination::Converged)
+    Ok(finish(here, None, shapes, Termination::Converged))
 }

@@ -2,7 +2,8 @@
 
 use super::point::Point;
 use super::step::{projected, promise};
-use crate::optimise::{Ending, Few, Shapes, Target, Termination, Work, distance, stepped};
+use crate::optimise::{Effort, Ending, Few, Shapes, Target, Termination, distance, stepped};
+use crate::watch::Cancelled;
 
 /// Where a refinement ended.
 pub(crate) struct Refined {
@@ -29,15 +30,15 @@ pub(crate) fn refine(
     target: Target<'_>,
     start: &[f64],
     ending: Ending,
-    work: &mut Work,
-) -> Refined {
+    effort: &mut Effort<'_>,
+) -> Result<Refined, Cancelled> {
     let numbers = start.len();
     let samples = target.values.len();
     let mut here = Point::new(shapes, numbers, samples);
     let mut trial = Point::new(shapes, numbers, samples);
     here.evaluate(shapes, start, target);
-    work.evaluations += 1;
-    work.starts += 1;
+    effort.evaluated()?;
+    effort.work.starts += 1;
     let mut damping = 1e-4;
     let mut termination = Termination::IterationLimit;
     let floor = target.floor();
@@ -62,11 +63,11 @@ pub(crate) fn refine(
                 break 'search;
             }
             trial.evaluate(shapes, &theta, target);
-            work.evaluations += 1;
+            effort.evaluated()?;
             if trial.square < here.square {
                 let gain = here.square - trial.square;
                 std::mem::swap(&mut here, &mut trial);
-                work.iterations += 1;
+                effort.work.iterations += 1;
                 damping = (damping * 0.1).max(1e-14);
                 if gain <= ending.gain * here.square + floor {
                     termination = Termination::Converged;
@@ -83,9 +84,9 @@ pub(crate) fn refine(
         }
     }
     trial.release(shapes);
-    Refined {
+    Ok(Refined {
         point: here,
         last: None,
         termination,
-    }
+    })
 }

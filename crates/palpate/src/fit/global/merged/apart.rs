@@ -1,8 +1,9 @@
 //! Merged rates taken apart: amplitudes in doubles cannot follow rates that meet, since they grow without bounds against each other.
 
 use crate::fit::problem::model::Sampled;
-use crate::optimise::{Orthogonal, Shapes, Target, Work};
+use crate::optimise::{Effort, Orthogonal, Shapes, Target};
 use crate::vector::dot;
+use crate::watch::Cancelled;
 
 /// Where a local search ended.
 pub(crate) struct Valley {
@@ -21,7 +22,12 @@ pub(crate) fn valley(here: Orthogonal) -> Valley {
 }
 
 /// The series with rates as far apart as its amplitudes need to be parameters: of some distances the one that leaves the least.
-pub(crate) fn apart(shapes: &Sampled<'_>, target: Target<'_>, theta: &[f64], work: &mut Work) -> Valley {
+pub(crate) fn apart(
+    shapes: &Sampled<'_>,
+    target: Target<'_>,
+    theta: &[f64],
+    effort: &mut Effort<'_>,
+) -> Result<Valley, Cancelled> {
     /// Distances of ln λ.
     const DISTANCES: [f64; 11] = [0.0, 1e-4, 1e-3, 3e-3, 1e-2, 3e-2, 0.1, 0.3, 0.7, 1.3, 2.0];
     let mut sorted = theta.to_vec();
@@ -29,12 +35,12 @@ pub(crate) fn apart(shapes: &Sampled<'_>, target: Target<'_>, theta: &[f64], wor
     let nearest = sorted.windows(2).map(|pair| pair[1] - pair[0]).fold(f64::INFINITY, f64::min);
     if nearest > PLAINLY && sorted.first().is_some_and(|slowest| *slowest > -PLAINLY) {
         // Amplitudes are small, and what orthogonal columns leave is right to the last digit.
-        return valley(Orthogonal::new(shapes, theta, target));
+        return Ok(valley(Orthogonal::new(shapes, theta, target)));
     }
     let mut best: Option<Valley> = None;
     for least in DISTANCES.into_iter().filter(|least| *least == 0.0 || *least > nearest) {
         let here = Orthogonal::new(shapes, &spread(&sorted, least, shapes.bounds(0)), target);
-        work.evaluations += 1;
+        effort.evaluated()?;
         let mut valley = valley(here);
         // As the curve of these parameters leaves it once they are rounded: where amplitudes are large orthogonal columns leave less.
         let square = standing_square(shapes, target, &valley);
@@ -43,7 +49,7 @@ pub(crate) fn apart(shapes: &Sampled<'_>, target: Target<'_>, theta: &[f64], wor
             best = Some(valley);
         }
     }
-    best.unwrap_or_else(|| valley(Orthogonal::new(shapes, theta, target)))
+    Ok(best.unwrap_or_else(|| valley(Orthogonal::new(shapes, theta, target))))
 }
 
 /// What rounding of large amplitudes and of their rates adds to a residual square: residuals are off by up to d = ε Σ|a| each, and

@@ -4,9 +4,10 @@ use super::apart::{Valley, apart, rounding, valley};
 use super::confluent::confluent;
 use crate::fit::problem::model::Sampled;
 use crate::optimise::{
-    Cholesky, Ending, Orthogonal, Shapes, Solution, Target, Termination, Work, distance, refine, standing, stepped,
+    Cholesky, Effort, Ending, Orthogonal, Shapes, Solution, Target, Termination, distance, refine, standing, stepped,
 };
 use crate::vector::dot;
+use crate::watch::Cancelled;
 
 /// The solution carried on to what doubles allow, where normal equations do not reach it: where parameters nearly imitate each other, and
 /// where the residual is next to nothing. `inflation` as of the function of that name.
@@ -15,27 +16,32 @@ pub(crate) fn exact(
     target: Target<'_>,
     solution: Solution,
     inflation: f64,
-    work: &mut Work,
-) -> Solution {
+    effort: &mut Effort<'_>,
+) -> Result<Solution, Cancelled> {
     let signal = target.square;
     let clean = solution.residual_square < CLEAN * signal && solution.residual_square > ROUNDING * signal;
     if solution.nonlinear.is_empty() || !shapes.linear_bounds().is_empty() || !(clean || inflation > IMITATED) {
-        return solution;
+        return Ok(solution);
     }
     // Straight to the last digit, with no regard for valleys elsewhere.
     let at = |theta: &[f64]| Place::plain(shapes, theta, target);
-    let theta = descended(&solution.nonlinear, at, shapes, f64::EPSILON, work);
-    let valley = valley(flat(Orthogonal::new(shapes, &theta, target), shapes, target, work));
+    let theta = descended(&solution.nonlinear, at, shapes, f64::EPSILON, effort)?;
+    let valley = valley(flat(Orthogonal::new(shapes, &theta, target), shapes, target, effort)?);
     // To within rounding of the values the gradient decides.
-    if valley.square.sqrt() <= solution.residual_square.sqrt() + f64::EPSILON * signal.sqrt() {
+    Ok(if valley.square.sqrt() <= solution.residual_square.sqrt() + f64::EPSILON * signal.sqrt() {
         standing(shapes, target, &valley.theta, &valley.linear, Termination::Converged)
     } else {
         solution
-    }
+    })
 }
 
 /// Undamped steps for as long as what the next one promises falls: the residual square is flat to rounding before its gradient is.
-fn flat(mut here: Orthogonal, shapes: &Sampled<'_>, target: Target<'_>, work: &mut Work) -> Orthogonal {
+fn flat(
+    mut here: Orthogonal,
+    shapes: &Sampled<'_>,
+    target: Target<'_>,
+    effort: &mut Effort<'_>,
+) -> Result<Orthogonal, Cancelled> {
     let outlook = |here: &Orthogonal| {
         let (hessian, gradient) = here.projected(&here.factors(shapes));
         let next = stepped(&here.theta, &hessian, &gradient, 0.0, shapes);
@@ -46,14 +52,14 @@ fn flat(mut here: Orthogonal, shapes: &Sampled<'_>, target: Target<'_>, work: &m
     let (mut next, mut gain) = outlook(&here);
     for _ in 0..STEPS {
         let trial = Orthogonal::new(shapes, &next, target);
-        work.evaluations += 1;
+        effort.evaluated()?;
         let (after, less) = outlook(&trial);
         if !(less < gain && trial.square.sqrt() <= here.square.sqrt() + slack) {
             break;
         }
         (here, next, gain) = (trial, after, less);
     }
-    here
+    Ok(here)
 }
 
 /// Of the square of the signal: residuals whose square is below have lost digits in normal equations, and those of rounding.
@@ -79,16 +85,22 @@ const STEPS: usize = 60;
 
 /// Levenberg's method, until the residual square falls by no more than `enough` of itself, with the linear parameters projected out by
 /// orthogonal columns; by normal equations where these are bounded.
-pub(crate) fn local(shapes: &Sampled<'_>, target: Target<'_>, start: &[f64], enough: f64, work: &mut Work) -> Valley {
+pub(crate) fn local(
+    shapes: &Sampled<'_>,
+    target: Target<'_>,
+    start: &[f64],
+    enough: f64,
+    effort: &mut Effort<'_>,
+) -> Result<Valley, Cancelled> {
     if !shapes.linear_bounds().is_empty() {
-        let refined = refine(shapes, target, start, Ending::tight(STEPS), work);
-        return Valley {
+        let refined = refine(shapes, target, start, Ending::tight(STEPS), effort)?;
+        return Ok(Valley {
             theta: refined.point.theta.to_vec(),
             linear: refined.point.linear.to_vec(),
             square: refined.point.square,
-        };
+        });
     }
-    work.starts += 1;
+    effort.work.starts += 1;
     if let Some((times, constant)) = shapes.exponentials() {
         let at = |theta: &[f64]| {
             let (point, factors) = confluent(times, constant, theta, target);
@@ -98,11 +110,11 @@ pub(crate) fn local(shapes: &Sampled<'_>, target: Target<'_>, start: &[f64], eno
                 factors,
             }
         };
-        let theta = descended(start, at, shapes, enough, work);
+        let theta = descended(start, at, shapes, enough, effort)?;
         let least = at(&theta).square;
-        let there = apart(shapes, target, &theta, work);
+        let there = apart(shapes, target, &theta, effort)?;
         if there.square <= least * (1.0 + APART) {
-            return there;
+            return Ok(there);
         }
         // No amplitudes in doubles reach what merged terms do: the best of those that are apart, not above the start.
         let at = |theta: &[f64]| {
@@ -111,13 +123,13 @@ pub(crate) fn local(shapes: &Sampled<'_>, target: Target<'_>, start: &[f64], eno
             place
         };
         let from = if at(start).square < there.square { start } else { &there.theta };
-        let theta = descended(from, at, shapes, enough, work);
-        let after = apart(shapes, target, &theta, work);
-        return if after.square < there.square { after } else { there };
+        let theta = descended(from, at, shapes, enough, effort)?;
+        let after = apart(shapes, target, &theta, effort)?;
+        return Ok(if after.square < there.square { after } else { there });
     }
     let at = |theta: &[f64]| Place::plain(shapes, theta, target);
-    let theta = descended(start, at, shapes, enough, work);
-    valley(Orthogonal::new(shapes, &theta, target))
+    let theta = descended(start, at, shapes, enough, effort)?;
+    Ok(valley(Orthogonal::new(shapes, &theta, target)))
 }
 
 /// Relative rise of the residual square that taking merged terms apart may cost.
@@ -150,17 +162,17 @@ fn descended(
     at: impl Fn(&[f64]) -> Place,
     shapes: &Sampled<'_>,
     enough: f64,
-    work: &mut Work,
-) -> Vec<f64> {
-    work.evaluations += 1;
-    let mut here = lowered(at(start), &at, None, shapes, enough, work);
+    effort: &mut Effort<'_>,
+) -> Result<Vec<f64>, Cancelled> {
+    effort.evaluated()?;
+    let mut here = lowered(at(start), &at, None, shapes, enough, effort)?;
     // Steps that would cross a cliff are refused, however much the other parameters would gain: one after the other is held.
     for parameter in 0..start.len() {
         if here.point.beside_cliff {
-            here = lowered(here, &at, Some(parameter), shapes, enough, work);
+            here = lowered(here, &at, Some(parameter), shapes, enough, effort)?;
         }
     }
-    here.point.theta
+    Ok(here.point.theta)
 }
 
 /// The place where Levenberg's method ends, with one parameter held where it is if requested.
@@ -170,8 +182,8 @@ fn lowered(
     held: Option<usize>,
     shapes: &Sampled<'_>,
     enough: f64,
-    work: &mut Work,
-) -> Place {
+    effort: &mut Effort<'_>,
+) -> Result<Place, Cancelled> {
     let mut damping = FIRST;
     let mut idle = 0;
     for _ in 0..STEPS {
@@ -182,11 +194,11 @@ fn lowered(
         for _ in 0..TRIALS {
             let theta = inside(&here.point.theta, (&hessian, &gradient), held, UNFELT * before, damping, shapes);
             let trial = at(&theta);
-            work.evaluations += 1;
+            effort.evaluated()?;
             if trial.square < before {
                 here = trial;
                 damping = (damping * 0.1).max(LEAST);
-                work.iterations += 1;
+                effort.work.iterations += 1;
                 break;
             }
             if distance(&here.point.theta, &theta) < NOWHERE {
@@ -203,7 +215,7 @@ fn lowered(
             damping = (damping * 1e-2).max(LEAST);
         }
     }
-    here
+    Ok(here)
 }
 
 /// θ after a damped step inside the bounds: parameters that would leave them stay at the bound, and the others take the best step beside
