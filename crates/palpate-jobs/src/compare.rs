@@ -1,6 +1,6 @@
 //! Comparison of laws on records: the law to use and its certainty.
 
-use palpate::analysis::{AnalysisOptions, CreepError, analyze_watched, corrected, creep_holds};
+use palpate::analysis::{AnalysisOptions, CreepError, analyze_watched, corrected_watched, creep_holds};
 use palpate::fit::{IntervalMethod, Loss, SampleChoice};
 use palpate::forecast::{CompareOptions, RampChoice};
 use palpate::laws::{Law, Response};
@@ -172,7 +172,9 @@ impl Compare {
         watch.report(Progress::open(&format!("comparing laws on {}", input.path), 0))?;
         let (requested, path) = (&options.analysis, &input.path);
         if self.creep {
-            let record = corrected(&record, requested).map_err(|error| JobError::analysis(&error, path))?.record;
+            let record = corrected_watched(&record, requested, watch)
+                .map_err(|error| JobError::analysis(&error, path))?
+                .record;
             let holds = creep_holds(
                 &record,
                 (&requested.segment, &requested.given_holds),

@@ -3,7 +3,7 @@
 use std::io::{self, Write};
 use std::path::Path;
 
-use palpate::analysis::{corrected, suspicious_signs};
+use palpate::analysis::{corrected_watched, suspicious_signs};
 use palpate::record::CorrectionOptions;
 use palpate::watch::Watch;
 use palpate_files::parquet_table::{Field, Kind, Rows, TableError, TableWriter, Values};
@@ -57,7 +57,9 @@ impl Convert {
         if options.corrections != CorrectionOptions::default() {
             let before = file.record.corrections().len();
             let place = file.path.display().to_string();
-            file.record = corrected(&file.record, &options).map_err(|error| JobError::analysis(&error, &place))?.record;
+            file.record = corrected_watched(&file.record, &options, watch)
+                .map_err(|error| JobError::analysis(&error, &place))?
+                .record;
             notes.extend(done(&file, before));
         }
         let origin = origin(&file, opened)?;

@@ -2,9 +2,10 @@
 
 use std::fmt::Write as _;
 
-use palpate::analysis::{AnalysisError, AnalysisOptions, Finding, corrected, suspicious_signs};
+use palpate::analysis::{AnalysisError, AnalysisOptions, Finding, corrected_watched, suspicious_signs};
 use palpate::record::{Record, SignalReport};
 use palpate::segment::{Phase, SegmentError, Segmentation, TouchEstimate, find_contact_of};
+use palpate::watch::Watch;
 use palpate_files::description::TestDescription;
 use palpate_report::figure::Figure;
 use palpate_report::number::significant;
@@ -31,10 +32,14 @@ pub(super) struct Cut {
 
 impl Cut {
     /// Corrects a record as the description asks and cuts it.
-    pub(super) fn of(record: &Record, test: Option<&TestDescription>) -> Result<Self, AnalysisError> {
+    pub(super) fn of(
+        record: &Record,
+        test: Option<&TestDescription>,
+        watch: &mut dyn Watch,
+    ) -> Result<Self, AnalysisError> {
         let options = test.map_or_else(AnalysisOptions::default, |test| test.analysis.clone());
         let before = record.corrections().len();
-        let corrected = corrected(record, &options)?;
+        let corrected = corrected_watched(record, &options, watch)?;
         Ok(Self {
             skewed: corrected.skew_finding(),
             signals: corrected.aligned(record).map(|(_, signals)| signals),

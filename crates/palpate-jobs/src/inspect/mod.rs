@@ -10,6 +10,7 @@ mod facts;
 
 use std::fmt::Write as _;
 
+use palpate::analysis::AnalysisError;
 use palpate::watch::Watch;
 use palpate_files::description::machines;
 use palpate_files::input::Packing;
@@ -109,7 +110,7 @@ impl Inspected {
         notes.extend(averaged(&file));
         out.push_str(&columns_table(about, Some(&file)).to_plain_text());
         out.push('\n');
-        let cut = Cut::of(&file.record, test);
+        let cut = Cut::of(&file.record, test, watch);
         out.push_str(&signal_facts(&file, cut.as_ref().ok().and_then(|cut| cut.signals.as_ref())));
         let place = file.path.display().to_string();
         let cut = cut.map_err(|error| JobError::analysis(&error, &place))?;
@@ -165,7 +166,10 @@ fn many_tests(
                 notes.extend(averaged(&file));
                 let record = &file.record;
                 let time = record.time();
-                let cut = Cut::of(record, opened.described.test.as_ref()).ok();
+                let cut = match Cut::of(record, opened.described.test.as_ref(), watch) {
+                    Err(AnalysisError::Cancelled(cancelled)) => return Err(cancelled.into()),
+                    cut => cut.ok(),
+                };
                 let holds = cut.as_ref().and_then(Cut::found).map(|found| found.holds().count());
                 vec![
                     Cell::text(name),

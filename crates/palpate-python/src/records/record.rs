@@ -8,7 +8,7 @@ use arrow_array::types::Float64Type;
 use arrow_cast::cast;
 use arrow_schema::DataType;
 use numpy::PyArray1;
-use palpate::analysis::corrected;
+use palpate::analysis::corrected_watched;
 use palpate::calibrate::CalibrateError;
 use palpate::record::Record as Measured;
 use palpate::simulate::SimulateError;
@@ -351,7 +351,7 @@ shown! {
     ///     Nothing moves, or nothing stands still.
     fn segments(&self, py: Python<'_>) -> PyResult<Table> {
         let (record, options) = (self.record.clone(), self.described.options());
-        let cut = at_length(py, move |_| corrected(&record, &options))?;
+        let cut = at_length(py, move |mut heard| corrected_watched(&record, &options, &mut heard))?;
         let cut = cut.map_err(|error| refused::<RecordError>(&error, Some(error.hint())))?;
         let found = cut.segmentation.map_err(|error| refused::<RecordError>(&error, Some(error.hint())))?;
         let (time, displacement, force) = (cut.record.time(), cut.record.displacement(), cut.record.force());

@@ -26,5 +26,7 @@ pub use finding::{Finding, Severity};
 pub use holds::{CreepError, CreepHold, HoldAnalysis, HoldoutError, RateBias, Signal, creep_holds};
 pub use options::{AnalysisOptions, Geometry, LayersChoice};
 pub use pipeline::{Analysis, analyze, analyze_watched, examine};
-pub use prepare::{ClockSkew, Corrected, Prepared, clock_skew, corrected, prepared, suspicious_signs};
+pub use prepare::{
+    ClockSkew, Corrected, Prepared, clock_skew, corrected, corrected_watched, prepared, suspicious_signs,
+};
 pub use together::{Across, JointAnalysis, JointHolds, LevelAgreement, ModulusSource, Overlay, Trend};

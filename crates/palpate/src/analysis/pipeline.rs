@@ -1,14 +1,14 @@
 //! The order of the steps.
 
 use super::holds::{HoldAnalysis, complete_hold, fit_exponents, prepare_hold};
-use super::prepare::{ClockSkew, Prepared, corrected, signal_findings};
+use super::prepare::{ClockSkew, Prepared, corrected_watched, signal_findings};
 use super::together::{Across, ModulusSource, Overlay, across, changing_rate, implied_modulus, overlay};
 use super::{AnalysisError, AnalysisOptions, Finding};
 use crate::contact::{Specimen, SpecimenError};
 use crate::number::significant;
 use crate::record::{Record, SignalReport};
 use crate::segment::{ContactPoint, Phase, Segmentation, ramps_before};
-use crate::watch::{Unwatched, Watch};
+use crate::watch::{Cancelled, Progress, Unwatched, Watch};
 
 /// The study of one record.
 #[derive(Debug, Clone, PartialEq)]
@@ -73,8 +73,11 @@ pub fn analyze_watched(
 /// Those of [`analyze_watched`] but [`AnalysisError::NothingToFit`].
 pub fn examine(record: &Record, options: &AnalysisOptions, watch: &mut dyn Watch) -> Result<Analysis, AnalysisError> {
     let signals = record.signals();
-    let corrected = corrected(record, options)?;
+    let corrected = corrected_watched(record, options, watch)?;
+    let mut hear = |task: &str| watch.report(Progress::open(task, 0));
+    hear("finding first touch")?;
     let prepared = corrected.prepared(options)?;
+    hear("examining the columns")?;
     let mut findings = signal_findings((record, &signals), &corrected, &prepared, options.touch);
     let skew = corrected.skew;
     let Prepared {
@@ -82,15 +85,19 @@ pub fn examine(record: &Record, options: &AnalysisOptions, watch: &mut dyn Watch
         segmentation,
         contact,
     } = prepared;
+    hear("estimating the modulus")?;
     let (specimen, modulus_source) = specimen(&record, &segmentation, options, &mut findings)?;
     let segments = &segmentation.segments;
     let held = (0..segments.len()).filter(|index| segments[*index].phase == Phase::Hold);
     let (mut holds, ramps): (Vec<HoldAnalysis>, Vec<Option<usize>>) = held
         .zip(1..)
         .map(|(index, number)| {
+            hear("preparing the holds")?;
             let ramp = ramps_before(segments, index).last().map(|ramp| ramp.start);
-            (prepare_hold(&record, &segments[index], number, specimen.as_ref(), options), ramp)
+            Ok((prepare_hold(&record, &segments[index], number, specimen.as_ref(), options), ramp))
         })
+        .collect::<Result<Vec<_>, Cancelled>>()?
+        .into_iter()
         .unzip();
     let (exponents, extension) = fit_exponents(&mut holds, options, watch)?;
     findings.extend(extension);

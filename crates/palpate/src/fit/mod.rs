@@ -44,7 +44,7 @@ pub(crate) use global::{combinations, distinct};
 use global::{finalists, search};
 pub use joint::{
     HoldWeights, JointComparison, JointFit, JointOptions, SharedTrend, TrendPoint, TrendVerdict, compare_joint,
-    fit_joint, fit_joint_watched,
+    compare_joint_watched, fit_joint, fit_joint_watched,
 };
 pub use latency::{Candidate, LatencyFit, OrderSelection, fit_hold, fit_hold_watched, select_order};
 use law::Fitted;
@@ -59,7 +59,7 @@ pub use problem::RedundantTerm;
 use problem::{
     Condensed, Model, ModelParameter, Sampled, build, condense, condense_to, redundant_terms, searched_name,
 };
-pub use rate_domain::fit_rates;
+pub use rate_domain::{fit_rates, fit_rates_watched};
 pub use result::{Domain, Fit, Parameter, ParameterRole, ParameterUnit};
 pub use samples::Samples;
 use samples::{Scaled, check_finite};

@@ -6,6 +6,7 @@ use super::{
 };
 use crate::laws::{ExponentChoice, Law, LawCurve, Response, Term};
 use crate::optimise::{Effort, Ending, Refined, Shapes, Solution, Target, Termination, Work, polished, refine};
+use crate::watch::{Cancelled, Unwatched, Watch};
 
 /// Fits ε̇ = −v sgn(x) |x|ⁿ, x = ε − ε_e, to strain rates (1/s) over strains: equations (9) and (10).
 ///
@@ -34,6 +35,30 @@ pub fn fit_rates(
     choice: ExponentChoice,
     options: &FitOptions,
 ) -> Result<LatencyFit, FitError> {
+    fit_rates_watched(strains, rates, choice, options, &mut Unwatched)
+}
+
+/// [`fit_rates`] with a watch, which hears of every point of the grid and of every evaluation of the law over the samples.
+///
+/// # Errors
+/// As [`fit_rates`], and [`FitError::Cancelled`].
+pub fn fit_rates_watched(
+    strains: &[f64],
+    rates: &[f64],
+    choice: ExponentChoice,
+    options: &FitOptions,
+    watch: &mut dyn Watch,
+) -> Result<LatencyFit, FitError> {
+    Effort::watched(watch, |effort| found(strains, rates, choice, options, effort))
+}
+
+fn found(
+    strains: &[f64],
+    rates: &[f64],
+    choice: ExponentChoice,
+    options: &FitOptions,
+    effort: &mut Effort<'_>,
+) -> Result<LatencyFit, FitError> {
     options.check(choice)?;
     FitError::check_lengths(strains.len(), rates.len())?;
     FitError::check_samples(if choice == ExponentChoice::Free { 3 } else { 2 }, strains.len())?;
@@ -44,18 +69,17 @@ pub fn fit_rates(
         choice,
         exponents: options.exponent_range,
     };
-    let mut effort = Effort::default();
     let target = Target::new(&scaled.rates, None);
     let mut best: Option<Refined> = None;
-    for start in shapes.starts(&scaled.rates, &mut effort.work) {
-        let refined = refine(&shapes, target, &start, Ending::tight(options.most_iterations), &mut effort)?;
+    for start in shapes.starts(&scaled.rates, effort)? {
+        let refined = refine(&shapes, target, &start, Ending::tight(options.most_iterations), effort)?;
         let better = best.as_ref().is_none_or(|best| refined.point.square < best.point.square);
         // A negative coefficient would run away from equilibrium.
         if refined.point.linear[0] > 0.0 && better {
             best = Some(refined);
         }
     }
-    let solution = polished(&shapes, target, best.ok_or(FitError::NoDecay)?, &mut effort)?;
+    let solution = polished(&shapes, target, best.ok_or(FitError::NoDecay)?, effort)?;
     LatencyFit::new(scaled.fit(strains, &solution, choice, options, effort.work)).ok_or(FitError::NoDecay)
 }
 
@@ -194,7 +218,7 @@ struct RateShapes<'a> {
 
 impl RateShapes<'_> {
     /// The best points of a grid of ε_e on both sides of the data, for every exponent looked at.
-    fn starts(&self, rates: &[f64], work: &mut Work) -> Vec<Vec<f64>> {
+    fn starts(&self, rates: &[f64], effort: &mut Effort<'_>) -> Result<Vec<Vec<f64>>, Cancelled> {
         const EXPONENTS: [f64; 8] = [0.6, 1.0, 2.0, 3.0, 5.0, 7.0, 10.0, 16.0];
         let (low, high) = self.exponents;
         let exponents: Vec<f64> = match self.choice {
@@ -213,7 +237,8 @@ impl RateShapes<'_> {
                     square += column * column;
                     shared += column * rate;
                 }
-                work.grid_points += 1;
+                effort.work.grid_points += 1;
+                effort.hear()?;
                 // Only a positive coefficient counts.
                 let gain = shared.max(0.0) * shared / square;
                 let start = [level].into_iter().chain(self.choice.given().is_none().then_some(n)).collect();
@@ -221,7 +246,7 @@ impl RateShapes<'_> {
             }
         }
         found.sort_by(|a, b| b.0.total_cmp(&a.0));
-        found.into_iter().filter(|(gain, _)| *gain > 0.0).take(4).map(|(_, start)| start).collect()
+        Ok(found.into_iter().filter(|(gain, _)| *gain > 0.0).take(4).map(|(_, start)| start).collect())
     }
 }
 

@@ -28,4 +28,5 @@ pub use correction::{Baseline, Clock, Column, Correction, Tare};
 pub use measured::Record;
 pub use options::{CorrectionOptions, SkewChoice};
 pub use raw::RawColumns;
+pub(crate) use signals::stray_rows;
 pub use signals::{Gaps, Reversals, SampleInterval, Saturation, SignalReport, Stamps, Strays, Values, rounding_step};

@@ -2,11 +2,15 @@
 
 use super::segmentation::Rupture;
 use crate::number::significant;
+use crate::watch::Cancelled;
 
 /// Why no phases were found.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum SegmentError {
+    /// The watch ended the work.
+    #[error(transparent)]
+    Cancelled(#[from] Cancelled),
     /// Too few samples to see phases.
     #[error("phases need {needed} samples or more, found {found}")]
     TooShort {
@@ -94,10 +98,19 @@ pub enum SegmentError {
 }
 
 impl SegmentError {
+    /// What a search that nobody ended found, or why it found nothing.
+    pub(crate) fn unless_cancelled<T>(found: Result<T, Self>) -> Result<Result<T, Self>, Cancelled> {
+        match found {
+            Err(Self::Cancelled(cancelled)) => Err(cancelled),
+            found => Ok(found),
+        }
+    }
+
     /// A remedy; options stand between `⟨` and `⟩`, for each interface to spell.
     #[must_use]
     pub fn hint(&self) -> &'static str {
         match self {
+            Self::Cancelled(_) => "",
             Self::GivenOutside { .. } => {
                 "give times on the clock of the record, which need not begin at 0; `palpate inspect` shows them"
             }

@@ -12,6 +12,8 @@
 //! | `relaxation.rs` | Type I or Type II, with its probability |
 //! | `touch/` | first touch and the zero of the force |
 
+use crate::watch::{Cancelled, Progress, Watch};
+
 mod error;
 mod mode;
 mod phases;
@@ -23,7 +25,7 @@ mod touch;
 pub use error::SegmentError;
 pub(crate) use mode::{OBSERVED, PARTS, change, error_of_mean, mode as held_in};
 use mode::{mode, mode_at_large};
-pub use phases::{GivenHold, find_phases, phases_with};
+pub use phases::{GivenHold, find_phases, phases_watched, phases_with};
 pub use relaxation::{Relaxation, RelaxationType, classify_relaxation};
 pub(crate) use segmentation::ramps_before;
 pub use segmentation::{
@@ -31,3 +33,8 @@ pub use segmentation::{
 };
 use standstill::{Held, Level, Levels, levels};
 pub use touch::{ContactChoice, ContactPoint, TouchEstimate, TouchMethod, find_contact_of, free_samples};
+
+/// Reports that the search goes on.
+fn hear(watch: &mut dyn Watch) -> Result<(), Cancelled> {
+    watch.report(Progress::open("finding the phases", 0))
+}

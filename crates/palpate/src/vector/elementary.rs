@@ -137,9 +137,12 @@ mod tests {
 
     const COUNT: i32 = 200_000;
 
+    /// Of these one in so many: an interpreter that looks for undefined behaviour needs no more.
+    const STEP: usize = if cfg!(miri) { 1999 } else { 1 };
+
     #[test]
     fn exponential_matches_the_standard_library() {
-        for i in 0..COUNT {
+        for i in (0..COUNT).step_by(STEP) {
             let x = 709.0 - f64::from(i) * 0.007_047;
             let expected = if x < -708.0 { 0.0 } else { x.exp() };
             assert_close(exp(x), expected, 4e-16, "exp");
@@ -152,7 +155,7 @@ mod tests {
 
     #[test]
     fn exponential_less_one_matches_the_standard_library() {
-        for i in 0..COUNT {
+        for i in (0..COUNT).step_by(STEP) {
             let x = 10f64.powf(f64::from(i) * 9e-5 - 15.2);
             for x in [x, -x] {
                 let expected = if x < -708.0 { -1.0 } else { x.exp_m1() };
@@ -165,7 +168,7 @@ mod tests {
 
     #[test]
     fn logarithm_matches_the_standard_library() {
-        for i in 0..COUNT {
+        for i in (0..COUNT).step_by(STEP) {
             let w = 10f64.powf(f64::from(i) * 3.07e-3 - 307.0);
             assert_close(ln(w), w.ln(), 4e-16, "ln");
             let near = 0.5 + 1.5 * f64::from(i) / f64::from(COUNT);
@@ -178,7 +181,7 @@ mod tests {
 
     #[test]
     fn logarithm_of_one_plus_matches_the_standard_library() {
-        for i in 0..COUNT {
+        for i in (0..COUNT).step_by(STEP) {
             let z = 10f64.powf(f64::from(i) * 1.6e-3 - 15.0);
             assert_close(ln_1p(z), z.ln_1p(), 4e-16, "ln_1p");
             let negative = -10f64.powf(f64::from(i) * -8e-5);
@@ -196,7 +199,7 @@ mod tests {
     #[test]
     fn quotients_stay_in_the_range_of_the_series() {
         let widest = (SQRT_2 - 1.0) / (SQRT_2 + 1.0) * (1.0 + 1e-15);
-        for i in 0..COUNT {
+        for i in (0..COUNT).step_by(STEP) {
             let pieces = Logarithm::of_one_plus(f64::from(i) * 0.01);
             assert!(pieces.quotient.abs() <= widest && pieces.power.fract() == 0.0);
         }

@@ -7,7 +7,7 @@ use crate::forecast::{CompareOptions, Comparison, compare_laws_watched};
 use crate::laws::Response;
 use crate::record::{Record, RecordError};
 use crate::segment::{
-    After, GivenHold, HoldMode, Segment, SegmentError, SegmentOptions, Segmentation, find_phases, held_in, phases_with,
+    After, GivenHold, HoldMode, Segment, SegmentError, SegmentOptions, Segmentation, held_in, phases_watched,
 };
 use crate::statistics::{median, noise, range};
 use crate::watch::{Cancelled, Watch};
@@ -100,13 +100,17 @@ fn force_held(
     exchanged: &Record,
     segment: &SegmentOptions,
     given: &[GivenHold],
+    watch: &mut dyn Watch,
 ) -> Result<Vec<Segment>, CreepError> {
+    let mut phases = |record: &Record, segment: &SegmentOptions, given: &[GivenHold]| {
+        SegmentError::unless_cancelled(phases_watched(record, segment, given, watch))
+    };
     if !given.is_empty() {
-        let found = phases_with(record, segment, given).map_err(CreepError::Given)?;
+        let found = phases(record, segment, given)?.map_err(CreepError::Given)?;
         return creeping(&found, |hold| hold.mode != Some(HoldMode::DisplacementHeld));
     }
     let held = |segment: &&Segment| segment.mode == Some(HoldMode::ForceHeld);
-    let observed = find_phases(record, segment);
+    let observed = phases(record, segment, &[])?;
     let observed: Vec<Segment> = observed.iter().flat_map(|found| found.holds().filter(held)).copied().collect();
     if !observed.is_empty() {
         return Ok(observed);
@@ -116,12 +120,12 @@ fn force_held(
         tolerance: Some(RINGING * range(record.force())),
         ..*segment
     };
-    let found = match find_phases(exchanged, &segment) {
+    let found = match phases(exchanged, &segment, &[])? {
         // Who asks for creep, and has a force that stays throughout, means the whole record.
         Err(SegmentError::NoMotion { .. }) if is_pressed_throughout(record) => {
             let (from, to) = (record.time()[0], record.time()[record.len() - 1]);
             let mode = Some(HoldMode::ForceHeld);
-            phases_with(record, &segment, &[GivenHold { from, to, mode }])
+            phases(record, &segment, &[GivenHold { from, to, mode }])?
         }
         found => found,
     };
@@ -179,7 +183,7 @@ pub fn creep_holds(
 ) -> Result<Vec<CreepHold>, CreepError> {
     let record = record.repaired();
     let exchanged = record.exchanged().ok_or(CreepError::NoDisplacement)?.map_err(CreepError::Still)?;
-    let held = force_held(&record, &exchanged, segment, given)?;
+    let held = force_held(&record, &exchanged, segment, given, watch)?;
     let mut compare = compare.clone();
     compare.fit.response = Response::Creep;
     let time = exchanged.time();

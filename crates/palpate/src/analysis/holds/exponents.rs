@@ -1,8 +1,9 @@
 //! The exponents fitted to the holds of a record: the list, its extension, the free one.
 
+use super::compared::fitted;
 use super::hold::{HoldAnalysis, HoldoutError};
 use crate::analysis::{AnalysisOptions, Finding};
-use crate::fit::{ExponentChoice, FitError, LatencyFit, fit_hold_watched, fit_rates, select_order};
+use crate::fit::{ExponentChoice, FitError, LatencyFit, fit_hold_watched, fit_rates_watched, select_order};
 use crate::statistics::mean;
 use crate::watch::{Cancelled, Progress, Watch};
 
@@ -102,8 +103,8 @@ fn fit_exponent(
             let at = hold.fits.partition_point(before);
             hold.predictions.insert(at, forecast(&fit, &hold.times, &hold.values, hold.fitted));
             hold.fits.insert(at, fit);
-            let rates = fit_rates(&hold.rates.strain, &hold.rates.rate, choice, &options.fit);
-            hold.rate_fits.insert(at, rates.ok());
+            let rates = fit_rates_watched(&hold.rates.strain, &hold.rates.rate, choice, &options.fit, watch);
+            hold.rate_fits.insert(at, fitted(rates)?);
         }
         Err(FitError::TooFewSamples { needed, found, .. }) => {
             if hold.fits.is_empty() && hold.findings.iter().all(|finding| finding.code() != "too_few_samples") {

@@ -1,12 +1,14 @@
 //! The requested corrections, in order.
 
-use crate::analysis::{AnalysisError, AnalysisOptions, ClockSkew, Finding, clock_skew};
+use super::skew::skew_watched;
+use crate::analysis::{AnalysisError, AnalysisOptions, ClockSkew, Finding};
 use crate::contact::{Shape, Specimen, SpecimenError};
 use crate::record::{Correction, Record, SignalReport, SkewChoice};
 use crate::segment::{
-    ContactChoice, ContactPoint, SegmentError, Segmentation, find_contact_of, free_samples, phases_with,
+    ContactChoice, ContactPoint, SegmentError, Segmentation, find_contact_of, free_samples, phases_watched,
 };
 use crate::simulate::Separation;
+use crate::watch::{Progress, Unwatched, Watch};
 
 /// A corrected record with its phases, ready for first touch.
 #[derive(Debug, Clone, PartialEq)]
@@ -73,11 +75,30 @@ impl Corrected {
 /// # Errors
 /// [`AnalysisError`] for a correction that cannot be made, and where a baseline is to be found but the phases are not.
 pub fn corrected(record: &Record, options: &AnalysisOptions) -> Result<Corrected, AnalysisError> {
+    corrected_watched(record, options, &mut Unwatched)
+}
+
+/// [`corrected`] with a watch.
+///
+/// # Errors
+/// As [`corrected`], and [`AnalysisError::Cancelled`].
+pub fn corrected_watched(
+    record: &Record,
+    options: &AnalysisOptions,
+    watch: &mut dyn Watch,
+) -> Result<Corrected, AnalysisError> {
+    watch.report(Progress::open("correcting the record", 0))?;
     let record = record.repaired();
     let requested = &options.corrections;
-    let phases = |record: &Record| phases_with(record, &options.segment, &options.given_holds);
-    let segmentation = phases(&record);
-    let skew = segmentation.as_ref().ok().and_then(|segmentation| clock_skew(&record, segmentation));
+    let phases = |record: &Record, watch: &mut dyn Watch| {
+        watch.report(Progress::open("correcting the record", 0))?;
+        SegmentError::unless_cancelled(phases_watched(record, &options.segment, &options.given_holds, watch))
+    };
+    let segmentation = phases(&record, watch)?;
+    let skew = match &segmentation {
+        Ok(segmentation) => skew_watched(&record, segmentation, watch)?,
+        Err(_) => None,
+    };
     let mut next = record;
     let before = next.corrections().len();
     match (requested.skew, skew.filter(ClockSkew::is_observed)) {
@@ -95,7 +116,7 @@ pub fn corrected(record: &Record, options: &AnalysisOptions) -> Result<Corrected
                 let index = |at: f64| next.time().partition_point(|time| *time < at);
                 std::iter::once(index(from)..index(until)).collect()
             }
-            None => free_samples(&next, &phases(&next)?),
+            None => free_samples(&next, &phases(&next, watch)??),
         };
         next = next.without_baseline(baseline, &free)?;
     }
@@ -103,7 +124,7 @@ pub fn corrected(record: &Record, options: &AnalysisOptions) -> Result<Corrected
         next = next.without_compliance(compliance)?;
     }
     touch_within(&next, options.touch)?;
-    let segmentation = if next.corrections().len() == before { segmentation } else { phases(&next) };
+    let segmentation = if next.corrections().len() == before { segmentation } else { phases(&next, watch)? };
     Ok(Corrected {
         record: next,
         segmentation,

@@ -13,7 +13,7 @@ mod kink;
 mod signals;
 mod skew;
 
-pub use corrected::{Corrected, Prepared, corrected, prepared};
+pub use corrected::{Corrected, Prepared, corrected, corrected_watched, prepared};
 pub(super) use signals::signal_findings;
 pub use signals::suspicious_signs;
 pub use skew::{ClockSkew, clock_skew};

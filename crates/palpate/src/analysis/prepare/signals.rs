@@ -1,7 +1,7 @@
 //! What the columns of a record, and what was done to them, give cause to say.
 
 use crate::analysis::{Corrected, Finding, Prepared};
-use crate::record::{Column, Correction, Record, SignalReport, Values};
+use crate::record::{Column, Correction, Record, SignalReport, Values, stray_rows};
 use crate::segment::{ContactChoice, ContactPoint, SegmentOptions, Segmentation, find_phases};
 use crate::statistics::{median, noise};
 
@@ -27,7 +27,7 @@ pub(in crate::analysis) fn signal_findings(
     let aligned = corrected.aligned(measured.0);
     let aligned = aligned.as_ref().map_or(measured, |(record, signals)| (record, signals));
     findings.extend(column_findings(aligned, &held(record, segmentation)));
-    findings.extend(stray_rows(&corrected.record));
+    findings.extend(rows_astray(&corrected.record));
     findings.extend(corrected.skew_finding());
     if !segmentation.settings.from_displacement {
         findings.push(Finding::PhasesFromForce);
@@ -126,11 +126,11 @@ pub fn suspicious_signs(record: &Record) -> Vec<Finding> {
 }
 
 /// [`Finding::RowsStray`] for rows of the force that stray alone and were not repaired.
-fn stray_rows(record: &Record) -> Option<Finding> {
-    let strays = record.signals().force.strays;
-    let first = *strays.rows.first()?;
+fn rows_astray(record: &Record) -> Option<Finding> {
+    let rows = stray_rows(record.force());
+    let first = *rows.first()?;
     Some(Finding::RowsStray {
-        count: strays.count,
+        count: rows.len(),
         time: record.time()[first],
         force: record.force()[first],
     })

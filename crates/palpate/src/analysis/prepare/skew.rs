@@ -6,6 +6,7 @@ use super::kink::{Kink, kink};
 use crate::record::Record;
 use crate::segment::{Segment, Segmentation};
 use crate::statistics::median;
+use crate::watch::{Cancelled, Progress, Unwatched, Watch};
 
 /// By how much the stamps of the force lag behind those of the displacement.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
@@ -54,32 +55,47 @@ const SAMPLES: (usize, usize) = (5, 50);
 /// stretch tells how far, and is part of the error.
 #[must_use]
 pub fn clock_skew(record: &Record, segmentation: &Segmentation) -> Option<ClockSkew> {
-    let displacement = record.displacement()?;
+    skew_watched(record, segmentation, &mut Unwatched).ok().flatten()
+}
+
+/// [`clock_skew`] with a watch.
+pub(super) fn skew_watched(
+    record: &Record,
+    segmentation: &Segmentation,
+    watch: &mut dyn Watch,
+) -> Result<Option<ClockSkew>, Cancelled> {
+    let Some(displacement) = record.displacement() else {
+        return Ok(None);
+    };
     let pairs = segmentation.segments.windows(2).map(|pair| (&pair[0], &pair[1]));
     let pairs: Vec<(&Segment, &Segment)> =
         pairs.filter(|(before, after)| before.is_ramp() != after.is_ramp()).collect();
     let edges = |share: usize, lag: f64| -> Vec<Edge> {
         pairs.iter().filter_map(|pair| edge(record, displacement, *pair, (share, lag))).collect()
     };
-    let found = |lag: f64| -> Option<ClockSkew> {
-        let (whole, half) = (combined(&edges(2, lag))?, combined(&edges(4, lag)));
-        let systematic = half.map_or(0.0, |half| (half.skew - whole.skew).abs());
-        Some(ClockSkew {
+    let mut found = |lag: f64| -> Result<Option<ClockSkew>, Cancelled> {
+        watch.report(Progress::open("comparing the clocks", 0))?;
+        let Some(whole) = combined(&edges(2, lag)) else {
+            return Ok(None);
+        };
+        let systematic = combined(&edges(4, lag)).map_or(0.0, |half| (half.skew - whole.skew).abs());
+        Ok(Some(ClockSkew {
             standard_error: whole.standard_error.hypot(systematic),
             ..whole
-        })
+        }))
     };
-    let near = found(0.0);
+    let near = found(0.0)?;
     let stretch = median(&mut pairs.iter().map(|pair| stretch(record, *pair)).collect::<Vec<f64>>());
     let is_sure = |skew: &ClockSkew| SURE * skew.edges > pairs.len() && skew.standard_error < 0.2 * stretch;
     if near.as_ref().is_some_and(is_sure) || pairs.len() < FEWEST || pairs.len() > MOST_EDGES {
-        return near;
+        return Ok(near);
     }
     // Farther off than the stretches around the edges are long, a skew shows where most edges agree again.
     let lags = (1..=FARTHEST).flat_map(|step| [1.0, -1.0].map(|sign| 0.5 * sign * f64::from(step) * stretch));
-    let far = lags.filter_map(found).filter(|skew| is_sure(skew) && skew.is_observed());
-    far.max_by(|a, b| a.edges.cmp(&b.edges).then(b.standard_error.total_cmp(&a.standard_error)))
-        .or(near)
+    let far = lags.filter_map(|lag| found(lag).transpose()).collect::<Result<Vec<ClockSkew>, Cancelled>>()?;
+    let far = far.into_iter().filter(|skew| is_sure(skew) && skew.is_observed());
+    let surest = far.max_by(|a, b| a.edges.cmp(&b.edges).then(b.standard_error.total_cmp(&a.standard_error)));
+    Ok(surest.or(near))
 }
 
 /// A skew is sure if this many times its edges are more than there are.

@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 use crate::analysis::holds::{HoldAnalysis, Signal, fitted};
 use crate::analysis::{AnalysisOptions, Finding};
 use crate::fit::{
-    ExponentChoice, HoldWeights, JointComparison, JointFit, JointOptions, Samples, TrendVerdict, compare_joint,
+    ExponentChoice, HoldWeights, JointComparison, JointFit, JointOptions, Samples, TrendVerdict, compare_joint_watched,
     fit_joint_watched,
 };
 use crate::laws::Law;
@@ -81,7 +81,8 @@ fn together(
     // Each of these holds was fitted by itself before, so that only the search itself can fail.
     let fit = fitted(fit_joint_watched(&samples, Law::Latency { exponent: choice }, &options, watch))?;
     let Some(fit) = fit else { return Ok(None) };
-    Ok(compare_joint(&samples, &fit, None).ok().map(|comparison| JointAnalysis {
+    let comparison = fitted(compare_joint_watched(&samples, &fit, None, watch))?;
+    Ok(comparison.map(|comparison| JointAnalysis {
         which,
         choice,
         holds: holds.iter().map(|hold| hold.number).collect(),

@@ -4,7 +4,8 @@ use serde::{Deserialize, Serialize};
 use statrs::distribution::{ContinuousCDF, FisherSnedecor};
 
 use super::result::law_options;
-use crate::fit::{Fit, FitError, JointFit, ParameterUnit, Samples, SharedTrend, TrendPoint, fit_law};
+use crate::fit::{Fit, FitError, JointFit, ParameterUnit, Samples, SharedTrend, TrendPoint, fit_law_watched};
+use crate::watch::{Unwatched, Watch};
 
 /// What a parameter does from hold to hold.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
@@ -78,11 +79,24 @@ const NOTABLE: f64 = std::f64::consts::LN_2;
 /// ```
 ///
 /// # Errors
-/// [`FitError::Lengths`] if `strains` or `holds` are not as many as were fitted, and those of [`fit_law`].
+/// [`FitError::Lengths`] if `strains` or `holds` are not as many as were fitted, and those of [`fit_law`](crate::fit::fit_law).
 pub fn compare_joint(
     holds: &[Samples<'_>],
     joint: &JointFit,
     strains: Option<&[f64]>,
+) -> Result<JointComparison, FitError> {
+    compare_joint_watched(holds, joint, strains, &mut Unwatched)
+}
+
+/// [`compare_joint`] with a watch.
+///
+/// # Errors
+/// As [`compare_joint`], and [`FitError::Cancelled`].
+pub fn compare_joint_watched(
+    holds: &[Samples<'_>],
+    joint: &JointFit,
+    strains: Option<&[f64]>,
+    watch: &mut dyn Watch,
 ) -> Result<JointComparison, FitError> {
     let count = joint.holds.len();
     FitError::check_lengths(holds.len(), count)?;
@@ -101,7 +115,7 @@ pub fn compare_joint(
     let p = law.map(|law| law.sf(statistic));
     let likelihood = effective * (one / each).ln();
     let small = |parameters: f64| 2.0 * parameters * effective / (effective - parameters - 1.0);
-    let trend = trend(holds, joint, strains)?;
+    let trend = trend(holds, joint, strains, watch)?;
     Ok(JointComparison {
         statistic,
         freedom,
@@ -125,7 +139,12 @@ fn verdict(trend: Option<&SharedTrend>, p: Option<f64>, level: f64) -> TrendVerd
 }
 
 /// ln of the first shared parameter over the strain.
-fn trend(holds: &[Samples<'_>], joint: &JointFit, strains: Option<&[f64]>) -> Result<Option<SharedTrend>, FitError> {
+fn trend(
+    holds: &[Samples<'_>],
+    joint: &JointFit,
+    strains: Option<&[f64]>,
+    watch: &mut dyn Watch,
+) -> Result<Option<SharedTrend>, FitError> {
     let Some(name) = joint.shared.first().map(|parameter| parameter.name.to_string()) else {
         return Ok(None);
     };
@@ -136,11 +155,11 @@ fn trend(holds: &[Samples<'_>], joint: &JointFit, strains: Option<&[f64]>) -> Re
     let (fits, beside) = match held.and_then(|held| Some((common(&joint.separate, &held)?, held))) {
         None => (joint.separate.clone(), None),
         Some(((value, error), held)) => {
-            let at = |value: f64| -> Result<Vec<Fit>, FitError> {
+            let mut at = |value: f64| -> Result<Vec<Fit>, FitError> {
                 let mut options = law_options(joint.law, &joint.options);
                 options.bounds.clear();
                 options.fixed.push((held.clone(), value));
-                holds.iter().map(|hold| fit_law(hold, joint.law, &options)).collect()
+                holds.iter().map(|hold| fit_law_watched(hold, joint.law, &options, watch)).collect()
             };
             (at(value)?, Some(at(value + error)?))
         }

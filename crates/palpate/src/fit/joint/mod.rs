@@ -22,7 +22,7 @@ mod result;
 mod starts;
 mod trend;
 
-pub use comparison::{JointComparison, TrendVerdict, compare_joint};
+pub use comparison::{JointComparison, TrendVerdict, compare_joint, compare_joint_watched};
 pub use fit_joint::{fit_joint, fit_joint_watched};
 pub use result::{HoldWeights, JointFit, JointOptions};
 pub use trend::{SharedTrend, TrendPoint};

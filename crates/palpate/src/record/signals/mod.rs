@@ -13,8 +13,9 @@ mod values;
 pub use rounding::rounding_step;
 pub(super) use stamps::gap_rows;
 pub use stamps::{Gaps, Reversals, SampleInterval, Stamps};
+pub(super) use values::lost_rows;
+pub(crate) use values::stray_rows;
 pub use values::{Saturation, Strays, Values};
-pub(super) use values::{lost_rows, stray_rows};
 
 use serde::{Deserialize, Serialize};
 

@@ -89,7 +89,7 @@ impl Values {
 
 /// Rows that stray alone: over 5 % of the range away from both neighbours, which differ from each other by less than a
 /// tenth of that; and beyond what noise does, where there are rows enough to know it.
-pub(in crate::record) fn stray_rows(values: &[f64]) -> Vec<usize> {
+pub(crate) fn stray_rows(values: &[f64]) -> Vec<usize> {
     const ENOUGH: usize = 50;
     let (low, high) = bounds(values);
     let noise = if values.len() < ENOUGH { 0.0 } else { noise(values) };

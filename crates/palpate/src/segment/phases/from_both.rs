@@ -6,9 +6,10 @@ use super::rupture::ruptures;
 use crate::record::Record;
 use crate::segment::{
     After, Held, HoldMode, Level, Levels, Phase, Segment, SegmentError, SegmentOptions, SegmentSettings, Segmentation,
-    levels, mode, mode_at_large,
+    hear, levels, mode, mode_at_large,
 };
 use crate::statistics::{median, range};
+use crate::watch::{Cancelled, Watch};
 
 /// Share of its range by which a jaw wanders about what it holds.
 const SERVO: f64 = 0.002;
@@ -21,12 +22,14 @@ pub(super) fn phases(
     record: &Record,
     displacement: &[f64],
     options: &SegmentOptions,
+    watch: &mut dyn Watch,
 ) -> Result<Segmentation, SegmentError> {
     let ripple = of_jaw(record.time(), displacement);
+    hear(watch)?;
     let servo = ripple.map_or(0.0, |ripple| RIPPLES * ripple.height).max(SERVO * range(displacement));
     let held = Held::new(("displacement", "m"), displacement, options.tolerance.unwrap_or(servo), false);
-    let found = levels(record.time(), &held, options)?;
-    let pressed = force_held(record, &found, options);
+    let found = levels(record.time(), &held, options, watch)?;
+    let pressed = force_held(record, &found, options, watch)?;
     let together = together(record, &found.levels, &pressed);
     let mut segments = fill_gaps(&found.values, &together, 2.0 * found.settings.tolerance);
     if !segments.iter().any(|segment| segment.phase == Phase::Hold) {
@@ -36,6 +39,7 @@ pub(super) fn phases(
         if segments[index].phase != Phase::Hold {
             continue;
         }
+        hear(watch)?;
         let Segment { start, end, .. } = segments[index];
         let is_pressed = pressed.iter().any(|level| level.start == start && level.end == end);
         segments[index].mode = Some(if is_pressed && mode_at_large(record, start, end) == HoldMode::ForceHeld {
@@ -47,7 +51,7 @@ pub(super) fn phases(
             segments[index].after = direction(record.force(), &segments, index).or(segments[index].after);
         }
     }
-    let ruptures = ruptures(record, &mut segments);
+    let ruptures = ruptures(record, &mut segments, watch)?;
     match ruptures.first() {
         Some(rupture) if !segments.iter().any(|segment| segment.phase == Phase::Hold) => {
             Err(SegmentError::Ruptured(*rupture))
@@ -63,25 +67,35 @@ pub(super) fn phases(
 
 /// Levels of the force over which the displacement creeps; where none is observed, perhaps because its controller hunts, those
 /// of the force less its ripple, with the corners of the jaw.
-fn force_held(record: &Record, jaw: &Levels, options: &SegmentOptions) -> Vec<Level> {
-    let found = creeps(record, jaw, options);
+fn force_held(
+    record: &Record,
+    jaw: &Levels,
+    options: &SegmentOptions,
+    watch: &mut dyn Watch,
+) -> Result<Vec<Level>, Cancelled> {
+    let found = creeps(record, jaw, options, watch)?;
     if !found.is_empty() {
-        return found;
+        return Ok(found);
     }
     let Some(calm) = without_ripple(record) else {
-        return found;
+        return Ok(found);
     };
-    let mut found = creeps(&calm, jaw, options);
+    let mut found = creeps(&calm, jaw, options, watch)?;
     found.retain(|level| mode_at_large(&calm, level.start, level.end) == HoldMode::ForceHeld);
-    found.iter().map(|level| jaw.edges_of(record.time(), level)).collect()
+    Ok(found.iter().map(|level| jaw.edges_of(record.time(), level)).collect())
 }
 
 /// Levels of the force over which the displacement creeps.
-fn creeps(record: &Record, jaw: &Levels, options: &SegmentOptions) -> Vec<Level> {
+fn creeps(
+    record: &Record,
+    jaw: &Levels,
+    options: &SegmentOptions,
+    watch: &mut dyn Watch,
+) -> Result<Vec<Level>, Cancelled> {
     let still = &jaw.levels;
     let held = Held::new(("force", "N"), record.force(), CONTROLLER * range(record.force()), true);
-    let Ok(found) = levels(record.time(), &held, options) else {
-        return Vec::new();
+    let Ok(found) = SegmentError::unless_cancelled(levels(record.time(), &held, options, watch))? else {
+        return Ok(Vec::new());
     };
     let (low, range) = (least(record.force()), range(record.force()));
     // A contact that is open shows no force, and nobody holds that.
@@ -96,6 +110,7 @@ fn creeps(record: &Record, jaw: &Levels, options: &SegmentOptions) -> Vec<Level>
         .iter()
         .filter(|level| arrives(record, level, &jaw.settings) && (!open(level) || recovers(level)))
     {
+        hear(watch)?;
         let inside: Vec<&Level> = still.iter().filter(|still| overlap(still, level)).collect();
         let rests = || inside.iter().all(|still| rests_late(record, still, level));
         match mode_at_large(record, level.start, level.end) {
@@ -116,6 +131,7 @@ fn creeps(record: &Record, jaw: &Levels, options: &SegmentOptions) -> Vec<Level>
     // Of a force that stays from a relaxation on, the part after the jaw stood is held.
     let taken = pressed.clone();
     for level in found.levels.iter().filter(|level| !taken.iter().any(|other| overlap(other, level))) {
+        hear(watch)?;
         let stood = |still: &&Level| still.start <= level.start && (level.start..level.end).contains(&still.end);
         let Some(start) = still.iter().find(stood).map(|still| still.end) else {
             continue;
@@ -138,7 +154,7 @@ fn creeps(record: &Record, jaw: &Levels, options: &SegmentOptions) -> Vec<Level>
     }
     pressed.append(&mut unseen);
     pressed.sort_by_key(|level| level.start);
-    pressed
+    Ok(pressed)
 }
 
 /// Share of its range up to which a force may be that of an open contact.

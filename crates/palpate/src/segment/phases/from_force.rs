@@ -9,9 +9,10 @@ use super::after_peaks::relaxations;
 use super::ramps::fill_gaps;
 use super::turning::turns;
 use crate::segment::{
-    Held, Level, Phase, Segment, SegmentError, SegmentOptions, SegmentSettings, Segmentation, levels,
+    Held, Level, Phase, Segment, SegmentError, SegmentOptions, SegmentSettings, Segmentation, hear, levels,
 };
 use crate::statistics::median;
+use crate::watch::Watch;
 
 /// Speed of the core of a hold as a share of the speed of the ramps.
 const STILL_BELOW: f64 = 0.35;
@@ -22,7 +23,12 @@ const WANDER: f64 = 0.02;
 /// Least turn of a force, as a share of its range, about a relaxation that is slow all along: what relaxes less comes to stand.
 const SLOW: f64 = 0.1;
 
-pub(super) fn phases(time: &[f64], force: &[f64], options: &SegmentOptions) -> Result<Segmentation, SegmentError> {
+pub(super) fn phases(
+    time: &[f64],
+    force: &[f64],
+    options: &SegmentOptions,
+    watch: &mut dyn Watch,
+) -> Result<Segmentation, SegmentError> {
     let (low, high) = force.iter().fold((f64::MAX, f64::MIN), |(low, high), f| (low.min(*f), high.max(*f)));
     let range = high - low;
     let held = Held::new(("force", "N"), force, WANDER * range, false);
@@ -30,7 +36,7 @@ pub(super) fn phases(time: &[f64], force: &[f64], options: &SegmentOptions) -> R
         still_below: Some(options.still_below.unwrap_or(STILL_BELOW)),
         ..*options
     };
-    let found = levels(time, &held, &searched)?;
+    let found = levels(time, &held, &searched, watch)?;
     let settings = SegmentSettings {
         from_displacement: false,
         tolerance: (6.0 * found.settings.noise).max(TURN * range),
@@ -39,6 +45,7 @@ pub(super) fn phases(time: &[f64], force: &[f64], options: &SegmentOptions) -> R
     let (turn, noise, still) = (settings.tolerance, settings.noise, settings.still_speed);
     let (mut levels, mut before): (Vec<Level>, usize) = (Vec::new(), 0);
     for core in &found.levels {
+        hear(watch)?;
         if options.minimum_hold.is_none() && core.start > 0 && turns(time, force, *core, turn, 0.2) {
             continue;
         }
@@ -52,12 +59,14 @@ pub(super) fn phases(time: &[f64], force: &[f64], options: &SegmentOptions) -> R
         before = end;
     }
     if levels.iter().all(|level| level.start == 0 || force[level.end - 1] <= low + 0.02 * range) {
+        hear(watch)?;
         let mut slow = relaxations(time, force, (2.0 * turn).max(SLOW * range), found.settings.minimum_samples);
         slow.retain(|slow| options.minimum_hold.is_none_or(|least| time[slow.end - 1] - time[slow.start] >= least));
         levels.retain(|level| slow.iter().all(|slow| level.end <= slow.start || slow.end <= level.start));
         levels.extend(slow);
         levels.sort_by_key(|level| level.start);
     }
+    hear(watch)?;
     let segments = fill_gaps(force, &levels, turn);
     // A contact that is open shows no force and no hold; one at the end of a test counts only beside true holds.
     let floor = low + 0.02 * (high - low) + 3.0 * noise;

@@ -8,9 +8,10 @@ use super::whole::whole;
 use super::{from_both, from_force};
 use crate::record::Record;
 use crate::segment::{
-    Held, HoldMode, Level, Phase, SegmentError, SegmentOptions, SegmentSettings, Segmentation, levels, mode,
+    Held, HoldMode, Level, Phase, SegmentError, SegmentOptions, SegmentSettings, Segmentation, hear, levels, mode,
 };
 use crate::statistics::{noise_in_time, range};
+use crate::watch::{Cancelled, Unwatched, Watch};
 
 /// Fewest samples in which phases can be observed.
 const NEEDED: usize = 8;
@@ -23,6 +24,10 @@ const NEEDED: usize = 8;
 /// # Errors
 /// [`SegmentError`] when nothing moves, or when no standstill after a ramp is long enough to be a hold.
 pub fn find_phases(record: &Record, options: &SegmentOptions) -> Result<Segmentation, SegmentError> {
+    found(record, options, &mut Unwatched)
+}
+
+fn found(record: &Record, options: &SegmentOptions, watch: &mut dyn Watch) -> Result<Segmentation, SegmentError> {
     if record.len() < NEEDED {
         return Err(SegmentError::TooShort {
             needed: NEEDED,
@@ -30,19 +35,21 @@ pub fn find_phases(record: &Record, options: &SegmentOptions) -> Result<Segmenta
         });
     }
     let found = match record.displacement() {
-        Some(displacement) => from_both::phases(record, displacement, options),
-        None => from_force::phases(record.time(), record.force(), options),
+        Some(displacement) => from_both::phases(record, displacement, options, watch),
+        None => from_force::phases(record.time(), record.force(), options, watch),
     };
     match found {
         Ok(mut segmentation) => {
+            hear(watch)?;
             place_fits(record, options, &mut segmentation.segments);
             Ok(segmentation)
         }
+        Err(SegmentError::Cancelled(cancelled)) => Err(cancelled.into()),
         Err(error) => match whole(record, &error) {
             Some(mode) => {
                 let (from, to) = (record.time()[0], record.time()[record.len() - 1]);
                 let mode = Some(mode);
-                with_given(record, options, &[GivenHold { from, to, mode }])
+                with_given(record, options, &[GivenHold { from, to, mode }], watch)
             }
             None => Err(error),
         },
@@ -88,10 +95,32 @@ pub fn phases_with(
     options: &SegmentOptions,
     given: &[GivenHold],
 ) -> Result<Segmentation, SegmentError> {
-    if given.is_empty() { find_phases(record, options) } else { with_given(record, options, given) }
+    phases_watched(record, options, given, &mut Unwatched)
 }
 
-fn with_given(record: &Record, options: &SegmentOptions, given: &[GivenHold]) -> Result<Segmentation, SegmentError> {
+/// [`phases_with`] with a watch.
+///
+/// # Errors
+/// As [`phases_with`], and [`SegmentError::Cancelled`].
+pub fn phases_watched(
+    record: &Record,
+    options: &SegmentOptions,
+    given: &[GivenHold],
+    watch: &mut dyn Watch,
+) -> Result<Segmentation, SegmentError> {
+    if given.is_empty() {
+        found(record, options, watch)
+    } else {
+        with_given(record, options, given, watch)
+    }
+}
+
+fn with_given(
+    record: &Record,
+    options: &SegmentOptions,
+    given: &[GivenHold],
+    watch: &mut dyn Watch,
+) -> Result<Segmentation, SegmentError> {
     let held = record.displacement().unwrap_or_else(|| record.force());
     let mut places = Vec::with_capacity(given.len());
     for (index, hold) in given.iter().enumerate() {
@@ -104,10 +133,11 @@ fn with_given(record: &Record, options: &SegmentOptions, given: &[GivenHold]) ->
             return Err(SegmentError::GivenOverlap { first, second });
         }
     }
-    let (values, settings) = searched(record, held, options);
+    let (values, settings) = searched(record, held, options, watch)?;
     let given: Vec<Level> = places.iter().map(|((start, end), ..)| Level::of(&values, *start, *end)).collect();
     let mut segments = fill_gaps(&values, &given, 2.0 * settings.tolerance);
     for ((start, end), hold, _) in &places {
+        hear(watch)?;
         let segment = segments.iter_mut().find(|segment| (segment.start, segment.end) == (*start, *end));
         if let Some(segment) = segment {
             segment.phase = Phase::Hold;
@@ -157,16 +187,21 @@ fn samples(record: &Record, hold: &GivenHold, number: usize) -> Result<(usize, u
 }
 
 /// The column without spikes and the thresholds of a search, also where a search would find nothing.
-fn searched(record: &Record, values: &[f64], options: &SegmentOptions) -> (Vec<f64>, SegmentSettings) {
+fn searched(
+    record: &Record,
+    values: &[f64],
+    options: &SegmentOptions,
+    watch: &mut dyn Watch,
+) -> Result<(Vec<f64>, SegmentSettings), Cancelled> {
     let wander = options.tolerance.unwrap_or(0.002 * range(values));
     let held = Held::new(("displacement", "m"), values, wander, false);
     let from_displacement = record.displacement().is_some();
-    if let Ok(found) = levels(record.time(), &held, options) {
+    if let Ok(found) = SegmentError::unless_cancelled(levels(record.time(), &held, options, watch))? {
         let settings = SegmentSettings {
             from_displacement,
             ..found.settings
         };
-        return (found.values, settings);
+        return Ok((found.values, settings));
     }
     let noise = noise_in_time(record.time(), values);
     let settings = SegmentSettings {
@@ -179,5 +214,5 @@ fn searched(record: &Record, values: &[f64], options: &SegmentOptions) -> (Vec<f
         minimum_hold: 0.0,
         minimum_samples: FEWEST,
     };
-    (values.to_vec(), settings)
+    Ok((values.to_vec(), settings))
 }

@@ -26,4 +26,4 @@ mod rupture;
 mod turning;
 mod whole;
 
-pub use given::{GivenHold, find_phases, phases_with};
+pub use given::{GivenHold, find_phases, phases_watched, phases_with};

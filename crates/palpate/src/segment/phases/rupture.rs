@@ -1,8 +1,10 @@
 //! Standstills after the body broke: nothing relaxes in them.
 
 use crate::record::Record;
+use crate::segment::hear;
 use crate::segment::segmentation::{After, Phase, Rupture, Segment, ramps_before};
 use crate::statistics::{median, range};
+use crate::watch::{Cancelled, Watch};
 
 /// Share of the way of the jaw over which a body that relaxes cannot have lost half its force.
 const FIRST_PART: f64 = 0.75;
@@ -18,68 +20,111 @@ const FIRST: usize = 3;
 const FEWEST: usize = 10;
 
 /// Turns standstills after a rupture into rest, and says where the body broke.
-pub(super) fn ruptures(record: &Record, segments: &mut [Segment]) -> Vec<Rupture> {
+pub(super) fn ruptures(
+    record: &Record,
+    segments: &mut [Segment],
+    watch: &mut dyn Watch,
+) -> Result<Vec<Rupture>, Cancelled> {
     let mut found = Vec::new();
+    let Some(mut whole) = Whole::of(record) else {
+        return Ok(found);
+    };
     for index in 0..segments.len() {
         if segments[index].after != Some(After::Loading) {
             continue;
         }
+        hear(watch)?;
         let begin = ramps_before(segments, index).last().map_or(segments[index].start, |ramp| ramp.start);
-        if let Some(rupture) = rupture(record, begin, &segments[index]) {
+        if let Some(rupture) = whole.rupture(begin, &segments[index]) {
             (segments[index].phase, segments[index].after, segments[index].mode) = (Phase::Rest, None, None);
             found.push(rupture);
         }
     }
-    found
+    Ok(found)
 }
 
-/// Whether the body broke in the ramp from sample `begin` to a standstill.
-///
-/// The force there is less than half of what it had been when the jaw had gone three quarters of its way. A machine that goes on
-/// at its speed goes on after the force fell; a gripper, which the force drives, runs away just before.
-fn rupture(record: &Record, begin: usize, stand: &Segment) -> Option<Rupture> {
-    let (time, jaw, force) = (record.time(), record.displacement()?, record.force());
-    // A body breaks deeper than it was touched; else the jaw counts the other way round, and lets go.
-    let most = (0..stand.start).max_by(|a, b| force[*a].total_cmp(&force[*b]))?;
-    if jaw[most] < jaw[0] - 0.1 * range(jaw) {
-        return None;
+/// What all ramps of a record have in common.
+struct Whole<'a> {
+    time: &'a [f64],
+    jaw: &'a [f64],
+    force: &'a [f64],
+    jaw_range: f64,
+    force_range: f64,
+    /// The sample of the largest force among those looked at, and how many these are.
+    most: Option<usize>,
+    observed: usize,
+}
+
+impl<'a> Whole<'a> {
+    fn of(record: &'a Record) -> Option<Self> {
+        let (jaw, force) = (record.displacement()?, record.force());
+        Some(Self {
+            time: record.time(),
+            jaw,
+            force,
+            jaw_range: range(jaw),
+            force_range: range(force),
+            most: None,
+            observed: 0,
+        })
     }
-    let begin = (begin..stand.start).min_by(|a, b| jaw[*a].total_cmp(&jaw[*b]))?;
-    if stand.start < begin + FEWEST {
-        return None;
+
+    /// The sample of the largest force before sample `until`, which never falls: of equals the last.
+    fn largest_before(&mut self, until: usize) -> Option<usize> {
+        let rest = self.observed..until.max(self.observed);
+        self.observed = rest.end;
+        self.most = self.most.into_iter().chain(rest).max_by(|a, b| self.force[*a].total_cmp(&self.force[*b]));
+        self.most
     }
-    let first = (stand.start + FIRST).min(stand.end);
-    let level = median(&mut jaw[stand.start..stand.end].to_vec());
-    let place = |share: f64| jaw[begin] + share * (level - jaw[begin]);
-    let passes = |share: f64| (begin..stand.start).find(|i| jaw[*i] >= place(share));
-    let largest = |range: std::ops::Range<usize>| range.max_by(|a, b| force[*a].total_cmp(&force[*b]));
-    let (turn, peak) = (passes(FIRST_PART)?, largest(begin..stand.start)?);
-    let open = force[..=peak].iter().copied().fold(f64::MAX, f64::min);
-    let before = force[peak];
-    // A force that counts the other way round falls as it grows.
-    if before - open < LEAST_RISE * range(force) {
-        return None;
+
+    /// Whether the body broke in the ramp from sample `begin` to a standstill.
+    ///
+    /// The force there is less than half of what it had been when the jaw had gone three quarters of its way. A machine that goes on
+    /// at its speed goes on after the force fell; a gripper, which the force drives, runs away just before.
+    fn rupture(&mut self, begin: usize, stand: &Segment) -> Option<Rupture> {
+        // A body breaks deeper than it was touched; else the jaw counts the other way round, and lets go.
+        let most = self.largest_before(stand.start)?;
+        let Self { time, jaw, force, .. } = *self;
+        if jaw[most] < jaw[0] - 0.1 * self.jaw_range {
+            return None;
+        }
+        let begin = (begin..stand.start).min_by(|a, b| jaw[*a].total_cmp(&jaw[*b]))?;
+        if stand.start < begin + FEWEST {
+            return None;
+        }
+        let first = (stand.start + FIRST).min(stand.end);
+        let level = median(&mut jaw[stand.start..stand.end].to_vec());
+        let place = |share: f64| jaw[begin] + share * (level - jaw[begin]);
+        let passes = |share: f64| (begin..stand.start).find(|i| jaw[*i] >= place(share));
+        let largest = |range: std::ops::Range<usize>| range.max_by(|a, b| force[*a].total_cmp(&force[*b]));
+        let (turn, peak) = (passes(FIRST_PART)?, largest(begin..stand.start)?);
+        let open = force[..=peak].iter().copied().fold(f64::MAX, f64::min);
+        let before = force[peak];
+        // A force that counts the other way round falls as it grows.
+        if before - open < LEAST_RISE * self.force_range {
+            return None;
+        }
+        let stood = median(&mut force[stand.start..first].to_vec());
+        if stood - open >= 0.5 * (force[largest(begin..turn + 1)?] - open) {
+            return None;
+        }
+        let half = (peak..stand.end).find(|i| force[*i] - open < 0.5 * (before - open))?;
+        let goes_on = half < stand.start && {
+            let (left, since) = (level - jaw[half], time[stand.start] - time[half]);
+            let usual = (jaw[turn] - jaw[begin]) / (time[turn] - time[begin]);
+            jaw[half] < place(1.0 - STILL_TO_GO) && left > 0.5 * usual * since
+        };
+        let runs_away = {
+            let way = |from: usize, to: usize| (jaw[to] - jaw[from]) / (time[to] - time[from]);
+            way(turn, passes(1.0).unwrap_or(stand.start)) > RUNS_AWAY * way(begin, turn)
+        };
+        (goes_on || runs_away).then_some(Rupture {
+            sample: half,
+            time: time[half],
+            before,
+            after: stood,
+        })
     }
-    let stood = median(&mut force[stand.start..first].to_vec());
-    if stood - open >= 0.5 * (force[largest(begin..turn + 1)?] - open) {
-        return None;
-    }
-    let half = (peak..stand.end).find(|i| force[*i] - open < 0.5 * (before - open))?;
-    let goes_on = half < stand.start && {
-        let (left, since) = (level - jaw[half], time[stand.start] - time[half]);
-        let usual = (jaw[turn] - jaw[begin]) / (time[turn] - time[begin]);
-        jaw[half] < place(1.0 - STILL_TO_GO) && left > 0.5 * usual * since
-    };
-    let runs_away = {
-        let way = |from: usize, to: usize| (jaw[to] - jaw[from]) / (time[to] - time[from]);
-        way(turn, passes(1.0).unwrap_or(stand.start)) > RUNS_AWAY * way(begin, turn)
-    };
-    (goes_on || runs_away).then_some(Rupture {
-        sample: half,
-        time: time[half],
-        before,
-        after: stood,
-    })
 }
 
 #[cfg(test)]

@@ -9,8 +9,9 @@ use super::edges::sharpened;
 use super::evidence::Stillness;
 use super::pieces::{Piece, Roughness, pieces};
 use super::standstills::{Refused, Standstill, joined, standstills};
-use crate::segment::{SegmentError, SegmentOptions, SegmentSettings};
+use crate::segment::{SegmentError, SegmentOptions, SegmentSettings, hear};
 use crate::statistics::{median, noise_in_time, quantum, range};
+use crate::watch::Watch;
 
 /// Drift of a standstill as a share of the way at the speed of the slower ramp beside it.
 const STILL_BELOW: f64 = 0.12;
@@ -99,11 +100,14 @@ pub(in crate::segment) fn levels(
     time: &[f64],
     held: &Held<'_>,
     options: &SegmentOptions,
+    watch: &mut dyn Watch,
 ) -> Result<Levels, SegmentError> {
     let noise = noise_in_time(time, held.values);
+    hear(watch)?;
     let values = without_spikes(held.values, noise);
     let range = range(&values);
     let step = rounding(held.values);
+    hear(watch)?;
     if range == 0.0 || range < (8.0 * noise).max(STEPS * step) {
         return Err(SegmentError::NoMotion {
             column: held.name.0,
@@ -122,7 +126,8 @@ pub(in crate::segment) fn levels(
             stray,
             hunts: held.hunts,
         },
-    );
+        watch,
+    )?;
     let stillness = Stillness {
         noise,
         band: tolerance,
@@ -133,8 +138,10 @@ pub(in crate::segment) fn levels(
         duration: options.minimum_hold,
     };
     let (mut found, refused) = standstills(time, &values, &pieces, &stillness);
+    hear(watch)?;
     let near = (3.0 * noise).max(0.5 * held.wander);
     sharpened(time, &values, &pieces, near, &mut found);
+    hear(watch)?;
     let mut found = joined(&values, &found, &stillness);
     // What is left of a standstill between its ramps may be too little for one.
     found.retain(|found| found.end - found.start >= stillness.samples);

@@ -3,6 +3,9 @@
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 
+use crate::segment::hear;
+use crate::watch::{Cancelled, Watch};
+
 /// Moments of some samples about their mean, from which the straight line through them follows.
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct Line {
@@ -111,17 +114,28 @@ fn rank(cost: f64) -> i64 {
 ///    allowed) explains. Cost: N log N for short columns, N for long ones.
 /// 2. Among all polygons that have corners of this one, the one of least cost is taken.
 /// 3. Every corner moves to where its two lines leave least.
-pub(super) fn pieces(time: &[f64], values: &[f64], roughness: Roughness) -> Vec<Piece> {
+pub(super) fn pieces(
+    time: &[f64],
+    values: &[f64],
+    roughness: Roughness,
+    watch: &mut dyn Watch,
+) -> Result<Vec<Piece>, Cancelled> {
     let price = PRICE + (values.len() as f64).ln();
-    let mut fine = joined(time, values, roughness, price);
-    polish(time, values, &mut fine);
-    let mut pieces = fewest(&fine, roughness, price);
-    polish(time, values, &mut pieces);
-    pieces
+    let mut fine = joined(time, values, roughness, price, watch)?;
+    polish(time, values, &mut fine, watch)?;
+    let mut pieces = fewest(&fine, roughness, price, watch)?;
+    polish(time, values, &mut pieces, watch)?;
+    Ok(pieces)
 }
 
 /// Neighbours joined to pieces until no union is explained by a line.
-fn joined(time: &[f64], values: &[f64], roughness: Roughness, price: f64) -> Vec<Piece> {
+fn joined(
+    time: &[f64],
+    values: &[f64],
+    roughness: Roughness,
+    price: f64,
+    watch: &mut dyn Watch,
+) -> Result<Vec<Piece>, Cancelled> {
     let kept_apart = (price - FINER).max(LEAST_KEPT_APART);
     let cost = |a: &Line, b: &Line| {
         let more = a.joined(b).left() - a.left() - b.left();
@@ -130,6 +144,7 @@ fn joined(time: &[f64], values: &[f64], roughness: Roughness, price: f64) -> Vec
         more / allowed
     };
     let first = first_pieces(time, values, &cost);
+    hear(watch)?;
     let count = first.len();
     // Index of the piece after; 0 stands for a piece that was joined to another.
     let mut lines: Vec<Line> = first.iter().map(|piece| piece.line).collect();
@@ -147,7 +162,12 @@ fn joined(time: &[f64], values: &[f64], roughness: Roughness, price: f64) -> Vec
         let cost = if samples == 2 { 0.0 } else { cost(&lines[right - 1], &lines[right]) };
         propose(&mut proposals, cost, right - 1, right, right + 1);
     }
+    let mut done = 0usize;
     while let Some(Reverse((_, left, right, end))) = proposals.pop() {
+        done += 1;
+        if done.is_multiple_of(JOINED) {
+            hear(watch)?;
+        }
         // Out of date: one of the two has grown or gone since.
         if ends[left] != right || ends[right] != end {
             continue;
@@ -169,8 +189,11 @@ fn joined(time: &[f64], values: &[f64], roughness: Roughness, price: f64) -> Vec
         pieces.push(Piece::new(first[start].start, first[ends[start] - 1].end, lines[start]));
         start = ends[start];
     }
-    pieces
+    Ok(pieces)
 }
+
+/// Proposals from one report to the next.
+const JOINED: usize = 10_000;
 
 /// What the joining begins with: single samples; of a long column runs of two, four and more that a line explains so well that
 /// no other joining would part them.
@@ -211,12 +234,13 @@ const SURELY: f64 = 0.3;
 ///
 /// What the finer pieces leave, all of them leave; it does not count. What strays slowly strays for a finer piece together, so
 /// that its mean square grows with their length.
-fn fewest(fine: &[Piece], roughness: Roughness, price: f64) -> Vec<Piece> {
+fn fewest(fine: &[Piece], roughness: Roughness, price: f64, watch: &mut dyn Watch) -> Result<Vec<Piece>, Cancelled> {
     let noise = roughness.noise.powi(2);
     let stray = roughness.stray.powi(2) / if roughness.hunts { 1.0 } else { price };
     // Cost of the best polygon through the first pieces, where its last piece begins, and the line through that.
     let mut best: Vec<(f64, usize, Line)> = vec![(0.0, 0, Line::default())];
     for end in 1..=fine.len() {
+        hear(watch)?;
         let (mut line, mut own) = (Line::default(), 0.0);
         let mut chosen = (f64::MAX, 0, Line::default());
         for start in (end.saturating_sub(MOST_JOINED)..end).rev() {
@@ -239,20 +263,22 @@ fn fewest(fine: &[Piece], roughness: Roughness, price: f64) -> Vec<Piece> {
         end = start;
     }
     pieces.reverse();
-    pieces
+    Ok(pieces)
 }
 
 /// Most pieces that are joined to one.
 const MOST_JOINED: usize = 2000;
 
 /// Moves all corners to where they are best.
-fn polish(time: &[f64], values: &[f64], pieces: &mut [Piece]) {
+fn polish(time: &[f64], values: &[f64], pieces: &mut [Piece], watch: &mut dyn Watch) -> Result<(), Cancelled> {
     for _ in 0..POLISHED {
         for right in 1..pieces.len() {
+            hear(watch)?;
             let (left, rest) = pieces.split_at_mut(right);
             split(time, values, &mut left[right - 1], &mut rest[0]);
         }
     }
+    Ok(())
 }
 
 /// How far a cut is moved at most, in samples.
@@ -289,10 +315,11 @@ fn split(time: &[f64], values: &[f64], left: &mut Piece, right: &mut Piece) {
 mod tests {
     use super::*;
     use crate::random::Rng;
+    use crate::watch::Unwatched;
 
     fn cut(values: &[f64], roughness: Roughness) -> Vec<usize> {
         let time: Vec<f64> = (0..values.len()).map(|i| i as f64).collect();
-        pieces(&time, values, roughness).iter().map(|piece| piece.end).collect()
+        pieces(&time, values, roughness, &mut Unwatched).unwrap().iter().map(|piece| piece.end).collect()
     }
 
     #[test]
