@@ -209,7 +209,7 @@ def calls():
         Work("Material.predict", "material().predict([{'to': '5 mm', 'rate': '500 mm/min', 'hold': '20 s'}], at_s=np.linspace(0.1, 20, size))", size=1000, most=3_000_000),
         Work("Prediction._repr_html_", "of._repr_html_()", PREDICTION, size=20_000, most=2_000_000),
         Work("Prediction.to_csv", "of.to_csv()", PREDICTION, size=20_000, most=2_000_000),
-        Work("Material.grip", "material().grip(mass_kg=0.25, friction=0.6, hold_s=float(size), band_n=(2.1, 3.0), regrip='work', objective='work', confidence=0.9)", size=100, most=10**9),
+        Work("Material.grip", "material().grip(mass_kg=0.25, friction=0.6, hold_s=float(size), band_n=(2.1, 3.0), regrip='work', objective='work', confidence=0.9)", size=100, most=300_000_000),
         Work("Grip.report", "of.report(out / 'grip')", "of = material().grip(mass_kg=0.25, friction=0.6, hold_s=float(size), band_n=(2.1, 3.0))", size=100, most=10**7),
         Work("Grip._repr_html_", "of._repr_html_()", "of = material().grip(mass_kg=0.25, friction=0.6, hold_s=float(size), band_n=(2.1, 3.0))", size=100, most=10**7),
         Work("Observer.feed_many", "palpate.Observer(slip_force_n=1.0).feed_many(t, f, x)", "t, x, f = series(size)", size=100_000, most=20_000_000),
