@@ -172,7 +172,7 @@ def calls():
         Work("Fit.predict, interval", "fit.predict(t, interval=0.95)", FIT, size=1_000_000, most=30_000_000),
         Work("fit_many, 30,000 curves", "palpate.fit_many(t, rows)", MANY, size=25, most=4000),
         Work("fit_many, 30,000 lists", "palpate.fit_many([t] * 30_000, lists)", MANY + "; t = t.tolist(); lists = rows.tolist()", size=25, most=1000),
-        Work("fit_many, a long curve each", "palpate.fit_many(t, rows, law='prony:4')", "t, y = hold(size); rows = np.array([y, y, y, y])", size=100_000, most=5_000_000),
+        Work("fit_many, a long curve each", "palpate.fit_many(t, rows, law='prony:4')", "t, y = hold(size); rows = np.array([y, y, y, y])", size=100_000, most=500_000),
         Work("compare", "palpate.compare(t, y)", HELD, size=5000, most=5_000_000),
         Work("laws.latency", "palpate.laws.latency(t, 0, 1, 2, 5)", HELD, size=10_000_000, most=200_000_000),
         Work("read", "palpate.read(shared / 'record.csv')", **csv),

@@ -45,7 +45,7 @@ fn latency(scene: Result<(Option<String>, Contact), DescriptionError>) -> PyResu
 }
 
 /// A state out of a pickle, of a contact of this model: one that has a force.
-fn state_of(model: &ContactModel, bytes: [u8; 16]) -> PyResult<State> {
+fn state_of(model: &ContactModel, bytes: [u8; State::BYTES]) -> PyResult<State> {
     let state = State::from_bytes(bytes).map_err(refused_plainly::<ModelError>)?;
     match state.force(model).is_finite() {
         true => Ok(state),
@@ -156,7 +156,7 @@ shown! {
 
     #[classmethod]
     #[pyo3(signature = (text, state, format=0))]
-    fn _from_parts(_class: &Bound<'_, PyType>, text: String, state: [u8; 16], format: u32) -> PyResult<Self> {
+    fn _from_parts(_class: &Bound<'_, PyType>, text: String, state: [u8; State::BYTES], format: u32) -> PyResult<Self> {
         check_pickle(format)?;
         let model = latency(parse_scene(&text, Path::new("model")))?;
         Ok(Self {
@@ -351,7 +351,7 @@ shown! {
     fn _from_parts(
         _class: &Bound<'_, PyType>,
         texts: Vec<String>,
-        states: Vec<[u8; 16]>,
+        states: Vec<[u8; State::BYTES]>,
         format: u32,
     ) -> PyResult<Self> {
         check_pickle(format)?;

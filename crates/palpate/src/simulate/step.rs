@@ -71,6 +71,9 @@ pub enum StepError {
         /// What was given.
         found: f64,
     },
+    /// Bytes that begin otherwise than those of a state.
+    #[error("expected the {} bytes of a contact state of format {}", ContactState::BYTES, FORMAT[7] - b'0')]
+    Format,
     /// A displacement that the body cannot take.
     #[error(transparent)]
     Displacement(#[from] SpecimenError),
@@ -82,7 +85,13 @@ pub enum StepError {
     },
 }
 
+/// What the bytes of a state begin with; another number where the rest has another form.
+const FORMAT: [u8; 8] = *b"contact1";
+
 impl ContactState {
+    /// Length of [`to_bytes`](Self::to_bytes).
+    pub const BYTES: usize = 24;
+
     /// Moves the jaw to `displacement` (m, since first touch) within `dt` (s) and returns the contact force (N).
     ///
     /// # Errors
@@ -163,23 +172,26 @@ impl ContactState {
         model.separation == Separation::Bonded || self.jaw >= self.behind
     }
 
-    /// The state as bytes: the same on every machine.
+    /// The state as bytes, the same on every machine: their format, the jaw and the layer.
     #[must_use]
-    pub fn to_bytes(self) -> [u8; 16] {
-        let mut bytes = [0; 16];
-        bytes[..8].copy_from_slice(&self.jaw.to_le_bytes());
-        bytes[8..].copy_from_slice(&self.behind.to_le_bytes());
+    pub fn to_bytes(self) -> [u8; Self::BYTES] {
+        let mut bytes = [0; Self::BYTES];
+        let parts = [FORMAT, self.jaw.to_le_bytes(), self.behind.to_le_bytes()];
+        bytes.chunks_exact_mut(8).zip(parts).for_each(|(bytes, part)| bytes.copy_from_slice(&part));
         bytes
     }
 
     /// The state from [`to_bytes`](Self::to_bytes), to the last bit.
     ///
     /// # Errors
-    /// [`StepError::Number`] for bytes that hold no finite numbers.
-    pub fn from_bytes(bytes: [u8; 16]) -> Result<Self, StepError> {
-        let (mut jaw, mut behind) = ([0; 8], [0; 8]);
-        jaw.copy_from_slice(&bytes[..8]);
-        behind.copy_from_slice(&bytes[8..]);
+    /// [`StepError::Format`] for bytes of something else, [`StepError::Number`] for those that hold no finite numbers.
+    pub fn from_bytes(bytes: [u8; Self::BYTES]) -> Result<Self, StepError> {
+        let mut parts = [[0; 8]; 3];
+        parts.iter_mut().zip(bytes.chunks_exact(8)).for_each(|(part, bytes)| part.copy_from_slice(bytes));
+        let [format, jaw, behind] = parts;
+        if format != FORMAT {
+            return Err(StepError::Format);
+        }
         let (jaw, behind) = (f64::from_le_bytes(jaw), f64::from_le_bytes(behind));
         for found in [jaw, behind] {
             check_step(0.0, "displacement must be a finite number", found)?;

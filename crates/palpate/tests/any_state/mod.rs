@@ -67,7 +67,7 @@ pub(crate) fn answer_any(bytes: &[u8]) {
     }
     match which {
         0 => {
-            let Ok(mut contact) = <[u8; 16]>::try_from(state)
+            let Ok(mut contact) = <[u8; ContactState::BYTES]>::try_from(state)
                 .map_err(drop)
                 .and_then(|state| ContactState::from_bytes(state).map_err(drop))
             else {

@@ -172,5 +172,14 @@ fn a_saved_state_goes_on_to_the_last_bit() {
         let (a, b) = (contact.step(&model, 1e-3, displacement), restored.step(&model, 1e-3, displacement));
         assert_eq!(a.unwrap().to_bits(), b.unwrap().to_bits());
     }
-    assert!(ContactState::from_bytes([0xff; 16]).is_err());
+    let mut bytes = contact.to_bytes();
+    bytes[8..16].copy_from_slice(&f64::NAN.to_le_bytes());
+    assert!(matches!(ContactState::from_bytes(bytes), Err(StepError::Number { .. })));
+    // Bytes of another version, or of nothing.
+    bytes = contact.to_bytes();
+    bytes[7] = b'2';
+    for bytes in [bytes, [0; ContactState::BYTES]] {
+        let error = ContactState::from_bytes(bytes).unwrap_err();
+        assert_eq!(error.to_string(), "expected the 24 bytes of a contact state of format 1");
+    }
 }
