@@ -17,7 +17,7 @@ use crate::errors::{OptionError, failed, of_mapping, refused_plainly, undescribe
 use crate::fits::fit;
 use crate::shown::shown;
 use crate::table::{Table, columns};
-use crate::work::{job, plain};
+use crate::work::{job, plain, writing_job};
 
 /// An argument of Python of several kinds.
 pub(crate) type Given<'py, 'a> = Option<&'a Bound<'py, PyAny>>;
@@ -138,7 +138,7 @@ pub(crate) fn convert(
     columns: Given<'_, '_>,
 ) -> PyResult<PathBuf> {
     let described = described_with(test, part, columns)?;
-    job(py, move |watch| {
+    writing_job(py, move |watch| {
         Convert {}.run(&OpenedFile::open(&path, &described)?, watch)?.result.write(&out)?;
         Ok(out)
     })
@@ -198,7 +198,7 @@ pub(crate) fn batch(
         restart,
         ..Batch::default()
     };
-    let done = job(py, move |watch| question.run(NamedRecords::find(&paths, described)?, &out, watch))?.result;
+    let done = writing_job(py, move |watch| question.run(NamedRecords::find(&paths, described)?, &out, watch))?.result;
     Ok(BatchResult {
         answer: done.answer,
         rows: done.rows,
@@ -292,7 +292,7 @@ pub(crate) fn sweep(
         restart,
         threads: None,
     };
-    let done = job(py, move |watch| question.run(&protocol, Some(&out), figure.as_deref(), watch))?.result;
+    let done = writing_job(py, move |watch| question.run(&protocol, Some(&out), figure.as_deref(), watch))?.result;
     Ok((done.runs, done.refused))
 }
 
@@ -317,7 +317,7 @@ pub(crate) fn sweep(
 #[pyfunction]
 #[pyo3(signature = (folder, *, png=false))]
 pub(crate) fn reproduce(py: Python<'_>, folder: PathBuf, png: bool) -> PyResult<bool> {
-    job(py, move |watch| {
+    writing_job(py, move |watch| {
         let done = Reproduce {}.run(watch)?;
         write_bundle(&folder, &reproduction_bundle(&done.result, Pictures { png }, watch)?)?;
         Ok(done.result.all_passed())

@@ -3,7 +3,7 @@
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::process;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
-use std::sync::mpsc::{RecvTimeoutError, channel};
+use std::sync::mpsc::{Receiver, RecvTimeoutError, channel};
 use std::sync::{Arc, Mutex};
 use std::thread;
 use std::time::Duration;
@@ -20,6 +20,19 @@ use crate::errors::{PalpateError, failed, refused, refused_plainly};
 
 /// How often signals are looked for.
 const LOOK: Duration = Duration::from_millis(50);
+
+/// How long an interrupted call waits for work that has no effect but its result: it looks up between steps, and one of them over
+/// millions of samples takes longer.
+const PATIENCE: Duration = Duration::from_millis(100);
+
+/// What work does beside computing its result.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Effects {
+    /// Nothing: an interrupted call leaves it behind, and it ends at its next step.
+    None,
+    /// It writes files: an interrupted call ends after it.
+    Files,
+}
 
 /// What makes an object again: a function and its arguments.
 pub(crate) type Made<'py, T> = (Bound<'py, PyAny>, T);
@@ -105,30 +118,51 @@ pub(crate) fn briefly<T: Send>(py: Python<'_>, work: impl FnOnce() -> T + Send) 
     py.detach(|| catch_unwind(AssertUnwindSafe(work))).map_err(|panic| broken(panic.as_ref()))
 }
 
-/// Does work of seconds on a thread of its own; Ctrl-C ends it.
+/// Computes for seconds on a thread of its own; Ctrl-C ends it.
 pub(crate) fn at_length<T: Send + 'static>(
     py: Python<'_>,
     work: impl FnOnce(Heard) -> T + Send + 'static,
 ) -> PyResult<T> {
-    at_length_reported(py, None, work)
+    on_a_thread(py, Effects::None, None, work)
 }
 
-/// Likewise, and calls `tell` with how much is done; an exception of it ends the work too.
+/// Computes and writes files on a thread of its own; Ctrl-C ends it, and nothing is written behind the back of the caller.
+pub(crate) fn writing<T: Send + 'static>(
+    py: Python<'_>,
+    work: impl FnOnce(Heard) -> T + Send + 'static,
+) -> PyResult<T> {
+    on_a_thread(py, Effects::Files, None, work)
+}
+
+/// As [`at_length`], and calls `tell` with how much is done; an exception of it ends the work too.
 pub(crate) fn at_length_reported<T: Send + 'static>(
     py: Python<'_>,
+    tell: Option<&Py<PyAny>>,
+    work: impl FnOnce(Heard) -> T + Send + 'static,
+) -> PyResult<T> {
+    on_a_thread(py, Effects::None, tell, work)
+}
+
+fn on_a_thread<T: Send + 'static>(
+    py: Python<'_>,
+    effects: Effects,
     tell: Option<&Py<PyAny>>,
     work: impl FnOnce(Heard) -> T + Send + 'static,
 ) -> PyResult<T> {
     let (heard, (sender, mut receiver)) = (Heard::default(), channel());
     let (stop, done) = (Arc::clone(&heard.stop), Arc::clone(&heard.done));
     let worker = thread::spawn(move || {
-        // The receiver lives until this thread has ended.
+        // Where the call has ended before, nobody receives it.
         let _ = sender.send(catch_unwind(AssertUnwindSafe(|| work(heard))));
     });
-    // An exception ends the work before it ends the call: nothing is computed or written behind the back of the caller.
-    let ended = |worker: thread::JoinHandle<()>| {
+    // An exception ends the work before it ends the call, or soon after.
+    let ended = |worker: thread::JoinHandle<()>, receiver: Receiver<thread::Result<T>>| {
         stop.store(true, Ordering::Relaxed);
-        py.detach(|| worker.join()).map_err(|panic| broken(panic.as_ref()))
+        py.detach(move || match effects {
+            Effects::None => receiver.recv_timeout(PATIENCE).map_or(Ok(()), |done| done.map(drop)),
+            Effects::Files => worker.join(),
+        })
+        .map_err(|panic| broken(panic.as_ref()))
     };
     let look = || match tell {
         Some(tell) => tell.call1(py, (done.load(Ordering::Relaxed),)).map(drop),
@@ -148,7 +182,7 @@ pub(crate) fn at_length_reported<T: Send + 'static>(
             }
             Err(RecvTimeoutError::Timeout) => {
                 if let Err(exception) = py.check_signals().and_then(|()| look()) {
-                    ended(worker)?;
+                    ended(worker, receiver)?;
                     return Err(exception);
                 }
             }
@@ -181,10 +215,18 @@ pub(crate) fn in_parallel<T: Send>(work: impl FnOnce() -> T + Send) -> Result<T,
     Ok(threads.install(work))
 }
 
-/// Runs a job; Ctrl-C ends it.
+/// Runs a job that writes no file; Ctrl-C ends it.
 pub(crate) fn job<T: Send + 'static>(
     py: Python<'_>,
     run: impl FnOnce(&mut dyn Watch) -> Result<T, JobError> + Send + 'static,
 ) -> PyResult<T> {
     at_length(py, move |mut heard| run(&mut heard))?.map_err(failed)
+}
+
+/// Runs a job that writes files; Ctrl-C ends it.
+pub(crate) fn writing_job<T: Send + 'static>(
+    py: Python<'_>,
+    run: impl FnOnce(&mut dyn Watch) -> Result<T, JobError> + Send + 'static,
+) -> PyResult<T> {
+    writing(py, move |mut heard| run(&mut heard))?.map_err(failed)
 }

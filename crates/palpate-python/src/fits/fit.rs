@@ -205,7 +205,11 @@ shown! {
             }
         };
         let Some(confidence) = interval else {
-            let values = briefly(py, || self.fit.predict_many(&elapsed))?;
+            let mut values = Vec::with_capacity(elapsed.len());
+            for some in elapsed.chunks(AT_ONCE) {
+                py.check_signals()?;
+                briefly(py, || values.extend(self.fit.predict_many(some)))?;
+            }
             return Ok(PyArray1::from_vec(py, values).into_any());
         };
         let fit = self.with_confidence(confidence)?;
