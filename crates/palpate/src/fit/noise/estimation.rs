@@ -1,7 +1,8 @@
 //! Which noise left the residuals of a fit.
 
 use super::likelihood::{Mixture, Neighbours};
-use super::model::{Lags, Noise, NoiseModel};
+use super::model::{Lags, Noise};
+use crate::statistics::dot;
 
 /// Fall of −2 ln L that one more parameter of the noise has to bring.
 const EVIDENCE: f64 = 4.0;
@@ -9,18 +10,23 @@ const EVIDENCE: f64 = 4.0;
 impl Noise {
     /// The noise that left these residuals beside a fit with this Jacobian, whose columns may have any size.
     ///
-    /// Of a long series four stretches, evenly spread, say how it correlates; its size comes from all samples.
+    /// Of a long series stretches, evenly spread, say how it correlates; its size comes from all samples.
     pub(crate) fn of(jacobian: &[&[f64]], residuals: &[f64], lags: &Lags) -> Self {
+        let white = Self::white(lags, (residuals.len() - jacobian.len()) as f64);
+        let signs = Signs::of(residuals, lags, jacobian.len());
+        if signs.white() {
+            return white;
+        }
         if residuals.len() <= STRETCHES * STRETCH {
-            return Self::of_all(jacobian, residuals, lags);
+            return Self::correlated(jacobian, residuals, residuals.len(), &signs).unwrap_or(white);
         }
         let few: Vec<Vec<f64>> = jacobian.iter().copied().chain([residuals]).map(stretches).collect();
         let columns: Vec<&[f64]> = few[..jacobian.len()].iter().map(Vec::as_slice).collect();
         let left = &few[jacobian.len()];
-        let few = Lags::of(left);
-        let mut noise = Self::of_all(&columns, left, &few);
-        let whole = lags.square / (residuals.len() - jacobian.len()) as f64;
-        let scale = whole / (few.square / (left.len() - jacobian.len()) as f64);
+        let Some(mut noise) = Self::correlated(&columns, left, STRETCH, &signs) else {
+            return white;
+        };
+        let scale = white.variance / (dot(left, left) / (left.len() - jacobian.len()) as f64);
         if scale.is_finite() {
             noise.variance *= scale;
             noise.beside.iter_mut().for_each(|(_, variance)| *variance *= scale);
@@ -28,34 +34,28 @@ impl Noise {
         noise
     }
 
-    fn of_all(jacobian: &[&[f64]], residuals: &[f64], lags: &Lags) -> Self {
-        let white = Self::white(lags, (residuals.len() - jacobian.len()) as f64);
-        let signs = Signs::of(residuals, lags, jacobian.len());
-        if signs.white() {
-            return white;
-        }
-        let neighbours = Neighbours::new(jacobian, residuals);
-        let Some(alone) = neighbours.likelihood(0.0) else {
-            return white;
-        };
-        let mut best = (alone.deviance, white);
+    /// The correlated noise that left these residuals, in series of `length` samples each that are independent of each other; `None` if
+    /// white noise explains them as well.
+    fn correlated(jacobian: &[&[f64]], residuals: &[f64], length: usize, signs: &Signs) -> Option<Self> {
+        let neighbours = Neighbours::new(jacobian, residuals, length);
+        let mut best = (neighbours.likelihood(0.0)?.deviance, None);
         if let Some((deviance, noise)) = neighbours.noise()
             && deviance + EVIDENCE < best.0
         {
-            best = (deviance, noise);
+            best = (deviance, Some(noise));
         }
         if signs.slow
-            && let Some((deviance, noise)) = Mixture::new(jacobian, residuals).noise(best.0)
-            && deviance + EVIDENCE * if best.1.model == NoiseModel::White { 2.0 } else { 1.0 } < best.0
+            && let Some((deviance, noise)) = Mixture::new(jacobian, residuals, length).noise(best.0)
+            && deviance + EVIDENCE * if best.1.is_none() { 2.0 } else { 1.0 } < best.0
         {
-            best = (deviance, noise);
+            best = (deviance, Some(noise));
         }
         best.1
     }
 }
 
 /// Stretches of a long series, and samples of each.
-const STRETCHES: usize = 4;
+const STRETCHES: usize = 8;
 
 const STRETCH: usize = 1024;
 
@@ -104,10 +104,10 @@ impl Signs {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::fit::NoiseModel;
     use crate::fit::noise::likelihood::{Likelihood, correlation_of};
     use crate::fit::noise::rows::Columns;
     use crate::optimise::Cholesky;
-    use crate::statistics::dot;
     use crate::vector::cross_products;
 
     /// Noise of this model from a fixed sequence.
@@ -164,11 +164,18 @@ mod tests {
             correlation: correlation_of(x[0]),
         };
         let likelihoods = [
-            (alone, Neighbours::new(&jacobian, &residuals).likelihood(x[0])),
-            (Mixture::model(&x), Mixture::new(&jacobian, &residuals).likelihood(&x)),
+            (alone, COUNT, Neighbours::new(&jacobian, &residuals, COUNT).likelihood(x[0])),
+            (Mixture::model(&x), COUNT, Mixture::new(&jacobian, &residuals, COUNT).likelihood(&x)),
+            (alone, COUNT / 2, Neighbours::new(&jacobian, &residuals, COUNT / 2).likelihood(x[0])),
+            (Mixture::model(&x), COUNT / 2, Mixture::new(&jacobian, &residuals, COUNT / 2).likelihood(&x)),
         ];
-        for (model, likelihood) in likelihoods {
-            let matrix = dense(model, COUNT);
+        for (model, length, likelihood) in likelihoods {
+            let mut matrix = dense(model, COUNT);
+            for (at, entry) in matrix.iter_mut().enumerate() {
+                if at / COUNT / length != at % COUNT / length {
+                    *entry = 0.0;
+                }
+            }
             let factor = Cholesky::new(&matrix, COUNT).unwrap();
             let solved = all.map(|column| {
                 let mut solved = column.to_vec();
@@ -180,7 +187,7 @@ mod tests {
             let quick = likelihood.unwrap();
             assert!((quick.deviance - whole.deviance).abs() < 1e-9, "{model:?}: {} {}", quick.deviance, whole.deviance);
             assert!((quick.variance / whole.variance - 1.0).abs() < 1e-12);
-            let filling = Columns::new(&jacobian).quadratic(model);
+            let (matrix, filling) = (dense(model, COUNT), Columns::new(&jacobian).quadratic(model));
             for i in 0..2 {
                 for j in 0..2 {
                     let row = |a: usize| dot(&matrix[a * COUNT..(a + 1) * COUNT], jacobian[j]);
@@ -226,6 +233,20 @@ mod tests {
         let wide = (0..40).filter(|seed| found(&simulated(drift, 2000, *seed)).model.effective_samples(2000) < 400.0);
         // 2000/(1 + 0.2 · 99) = 96 samples count.
         assert!(wide.count() >= 36);
+    }
+
+    /// Stretches of a long series were taken for one, and its jumps from one to the next for noise ten times as slow.
+    #[test]
+    fn slow_noise_of_a_long_series_is_no_slower() {
+        let model = NoiseModel::Autoregressive { correlation: 0.99 };
+        for samples in [8000, 10_000, 50_000] {
+            for seed in 0..6 {
+                let noise = found(&simulated(model, samples, seed));
+                let counts = noise.model.effective_samples(samples) / model.effective_samples(samples);
+                assert!((0.5..2.0).contains(&counts), "{samples} {seed}: {counts} {:?}", noise.model);
+                assert!((0.5..2.0).contains(&noise.variance), "{samples} {seed}: {}", noise.variance);
+            }
+        }
     }
 
     #[test]

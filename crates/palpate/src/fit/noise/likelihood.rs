@@ -73,51 +73,63 @@ pub(crate) fn correlation_of(kappa: f64) -> f64 {
 /// AR(1): its R⁻¹ has three diagonals, so products of neighbours, formed once, give the likelihood at every ρ.
 pub(crate) struct Neighbours {
     samples: usize,
+    /// Samples of each of the series, which are independent of each other.
+    length: usize,
     size: usize,
     /// ZᵀZ.
     same: Vec<f64>,
     /// Σ z_i z_{i+1}ᵀ, made symmetric.
     next: Vec<f64>,
-    /// Products of the first and of the last row.
+    /// Products of the first and of the last row of each series.
     ends: Vec<f64>,
 }
 
 impl Neighbours {
-    pub(crate) fn new(jacobian: &[&[f64]], residuals: &[f64]) -> Self {
+    pub(crate) fn new(jacobian: &[&[f64]], residuals: &[f64], length: usize) -> Self {
         let all: Vec<&[f64]> = jacobian.iter().copied().chain([residuals]).collect();
         let (samples, size) = (residuals.len(), all.len());
-        let early: Vec<&[f64]> = all.iter().map(|column| &column[..samples - 1]).collect();
-        let late: Vec<&[f64]> = all.iter().map(|column| &column[1..]).collect();
         let mut same = vec![0.0; size * size];
-        let mut shifted = vec![0.0; size * size];
         cross_products(&all, &all, &mut same);
-        cross_products(&early, &late, &mut shifted);
+        let (mut shifted, mut own) = (vec![0.0; size * size], vec![0.0; size * size]);
+        let starts = || (0..samples).step_by(length);
+        for start in starts() {
+            let last = start + length - 1;
+            let early: Vec<&[f64]> = all.iter().map(|column| &column[start..last]).collect();
+            let late: Vec<&[f64]> = all.iter().map(|column| &column[start + 1..=last]).collect();
+            cross_products(&early, &late, &mut own);
+            shifted.iter_mut().zip(&own).for_each(|(sum, own)| *sum += own);
+        }
         let pairs = || (0..size).flat_map(|i| (0..size).map(move |j| (i, j)));
+        let at_ends = |i: usize, j: usize| -> f64 {
+            starts().flat_map(|start| [start, start + length - 1]).map(|end| all[i][end] * all[j][end]).sum()
+        };
         Self {
             samples,
+            length,
             size,
             same,
             next: pairs().map(|(i, j)| shifted[i * size + j] + shifted[j * size + i]).collect(),
-            ends: pairs().map(|(i, j)| all[i][0] * all[j][0] + all[i][samples - 1] * all[j][samples - 1]).collect(),
+            ends: pairs().map(|(i, j)| at_ends(i, j)).collect(),
         }
     }
 
-    /// R⁻¹ has 1 + ρ² on its diagonal (1 at the ends) and −ρ beside it, over 1 − ρ²; |R| = (1 − ρ²)^(N−1).
+    /// R⁻¹ has 1 + ρ² on its diagonal (1 at the ends) and −ρ beside it, over 1 − ρ²; |R| = (1 − ρ²)^(N−1) for each series.
     pub(crate) fn likelihood(&self, kappa: f64) -> Option<Likelihood> {
         let rho = correlation_of(kappa);
         let square = rho * rho;
         let entry =
             |i: usize| ((1.0 + square) * self.same[i] - square * self.ends[i] - rho * self.next[i]) / (1.0 - square);
         let product: Square = (0..self.size * self.size).map(entry).collect();
-        Likelihood::of(&product, (self.samples - 1) as f64 * (1.0 - square).ln(), self.samples)
+        let steps = self.samples - self.samples / self.length;
+        Likelihood::of(&product, steps as f64 * (1.0 - square).ln(), self.samples)
     }
 
-    /// The best ρ, between white noise and noise that is one sample in all.
+    /// The best ρ, between white noise and noise of which a series is one sample in all.
     pub(crate) fn noise(&self) -> Option<(f64, Noise)> {
         let model = |kappa: f64| NoiseModel::Autoregressive {
             correlation: correlation_of(kappa),
         };
-        let most = (self.samples as f64).ln();
+        let most = (self.length as f64).ln();
         let evaluate = |x: &[f64]| if x[0] < 0.0 || x[0] > most { None } else { self.likelihood(x[0]) };
         let last = self.same.len() - 1;
         let start = 2.0 * (0.5 * self.next[last] / self.same[last]).clamp(-0.999, 0.999).atanh();
@@ -134,14 +146,17 @@ const PROMISE: f64 = 2.0;
 pub(crate) struct Mixture<'a> {
     rows: Rows,
     residuals: &'a [f64],
+    /// Samples of each of the series, which are independent of each other.
+    length: usize,
 }
 
 impl<'a> Mixture<'a> {
-    pub(crate) fn new(jacobian: &[&'a [f64]], residuals: &'a [f64]) -> Self {
+    pub(crate) fn new(jacobian: &[&'a [f64]], residuals: &'a [f64], length: usize) -> Self {
         let columns: Vec<&[f64]> = jacobian.iter().copied().chain([residuals]).collect();
         Self {
             rows: Rows::new(&columns),
             residuals,
+            length,
         }
     }
 
@@ -155,7 +170,7 @@ impl<'a> Mixture<'a> {
 
     fn filter(&self, x: &[f64]) -> Filter {
         let (rho, share) = Self::model(x).parameters();
-        Filter::new(rho, share, self.rows.samples)
+        Filter::new(rho, share, self.length)
     }
 
     /// The likelihood, between white noise and noise that is one sample in all.
@@ -164,12 +179,18 @@ impl<'a> Mixture<'a> {
             return None;
         }
         let filter = self.filter(x);
-        Likelihood::of(&self.rows.whitened(&filter), filter.log_determinant, self.rows.samples)
+        let log_determinant = self.series() * filter.log_determinant;
+        Likelihood::of(&self.rows.whitened(&filter, self.length), log_determinant, self.rows.samples)
     }
 
-    /// κ of noise that is one sample in all.
+    /// How many series.
+    fn series(&self) -> f64 {
+        (self.rows.samples / self.length) as f64
+    }
+
+    /// κ of noise of which a series is one sample in all.
     fn longest(&self) -> f64 {
-        (self.rows.samples as f64).ln()
+        (self.length as f64).ln()
     }
 
     /// The best ρ and s, if a first look finds a deviance that promises to fall below this one.
@@ -188,12 +209,15 @@ impl<'a> Mixture<'a> {
         let kappas = (1..).map(|i| 1.2 * f64::from(i)).take_while(|kappa| *kappa < self.longest());
         let places: Vec<[f64; 2]> = kappas.flat_map(|kappa| [-2.5, 0.0, 2.5].map(|share| [kappa, share])).collect();
         let filters: Vec<Filter> = places.iter().map(|place| self.filter(place)).collect();
-        let squares = whitened_squares(self.residuals, &filters);
+        let mut squares = vec![0.0; filters.len()];
+        for series in self.residuals.chunks_exact(self.length) {
+            squares.iter_mut().zip(whitened_squares(series, &filters)).for_each(|(sum, square)| *sum += square);
+        }
         let samples = self.rows.samples as f64;
         let deviances = squares
             .iter()
             .zip(&filters)
-            .map(|(square, filter)| samples * (square / samples).ln() + filter.log_determinant);
+            .map(|(square, filter)| samples * (square / samples).ln() + self.series() * filter.log_determinant);
         let reported = deviances.zip(places).filter(|(deviance, _)| deviance.is_finite());
         reported.min_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, place)| place)
     }

@@ -41,7 +41,7 @@ impl Rows {
             dispatch!(level(), simd => {
                 let rho = f64x8::splat(simd, rho);
                 let mut before = f64x8::splat(simd, 0.0);
-                products(simd, left, right, #[inline(always)] |_, left, right| {
+                products(simd, left, right, #[inline(always)] |left, right| {
                     let now = before;
                     before = rho * (now + right);
                     [left, now]
@@ -50,14 +50,19 @@ impl Rows {
         })
     }
 
-    /// WᵀW with W the columns whitened by a filter.
-    pub(crate) fn whitened(&self, filter: &Filter) -> Vec<f64> {
+    /// WᵀW with W the columns whitened by a filter, which begins anew every `length` samples.
+    pub(crate) fn whitened(&self, filter: &Filter, length: usize) -> Vec<f64> {
         let last = filter.steps.len() - 1;
         self.tiled(|left, right| {
             dispatch!(level(), simd => {
-                let mut expected = [f64x8::splat(simd, 0.0); 2];
-                products(simd, left, right, #[inline(always)] |index, left, right| {
-                    let [kept, taken, root] = filter.steps[index.min(last)].map(|parameter| f64x8::splat(simd, parameter));
+                let nothing = [f64x8::splat(simd, 0.0); 2];
+                let (mut expected, mut at) = (nothing, 0);
+                products(simd, left, right, #[inline(always)] |left, right| {
+                    if at == length {
+                        (expected, at) = (nothing, 0);
+                    }
+                    let [kept, taken, root] = filter.steps[at.min(last)].map(|parameter| f64x8::splat(simd, parameter));
+                    at += 1;
                     let [of_left, of_right] = expected;
                     expected = [kept * of_left + taken * left, kept * of_right + taken * right];
                     [(left - of_left) * root, (right - of_right) * root]
@@ -90,11 +95,11 @@ fn products<S: Simd>(
     simd: S,
     left: &[[f64; LANES]],
     right: &[[f64; LANES]],
-    mut step: impl FnMut(usize, f64x8<S>, f64x8<S>) -> [f64x8<S>; 2],
+    mut step: impl FnMut(f64x8<S>, f64x8<S>) -> [f64x8<S>; 2],
 ) -> [[f64; LANES]; LANES] {
     let mut sums = [f64x8::splat(simd, 0.0); LANES];
-    for (index, (left, right)) in left.iter().zip(right).enumerate() {
-        let [left, right] = step(index, f64x8::from_slice(simd, left), f64x8::from_slice(simd, right));
+    for (left, right) in left.iter().zip(right) {
+        let [left, right] = step(f64x8::from_slice(simd, left), f64x8::from_slice(simd, right));
         let factors: [f64; LANES] = left.into();
         for lane in 0..LANES {
             sums[lane] += right * factors[lane];
@@ -242,7 +247,7 @@ mod tests {
                 column.iter().map(&mut step).collect::<Vec<f64>>()
             };
             let sums: Vec<Vec<f64>> = all.iter().map(before).collect();
-            let (products, across) = (rows.whitened(&filter), rows.with_sums_before(0.8));
+            let (products, across) = (rows.whitened(&filter, COUNT), rows.with_sums_before(0.8));
             for i in 0..count {
                 for j in 0..count {
                     assert!((products[i * count + j] - dot(&white[i], &white[j])).abs() < 1e-12);
@@ -250,7 +255,7 @@ mod tests {
                 }
             }
         }
-        assert!(Rows::new(&[]).whitened(&filter).is_empty());
+        assert!(Rows::new(&[]).whitened(&filter, COUNT).is_empty());
     }
 
     #[test]
