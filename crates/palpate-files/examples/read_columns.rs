@@ -16,7 +16,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let columns: Vec<usize> = arguments.map(|number| number.parse()).collect::<Result<_, _>>()?;
     let started = Instant::now();
     let contents = Contents::open(&path, &ReadOptions::default())?;
-    let read = contents.read(0, &columns, &mut |_, _| {})?;
+    let read = contents.read(0, &columns, &mut |_, _| Ok(()))?;
     let seconds = started.elapsed().as_secs_f64();
     let sums: Vec<f64> = read.values.iter().map(|values| values.iter().sum()).collect();
     println!(

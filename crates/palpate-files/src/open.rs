@@ -20,7 +20,7 @@ use crate::{
         text,
     },
     input::Input,
-    table::{Columns, Found, Layout, Part, ReadOptions, ReadPart, SkippedPart},
+    table::{Columns, Found, Heard, Layout, Part, ReadOptions, ReadPart, SkippedPart},
 };
 
 /// How a file is written.
@@ -157,12 +157,7 @@ impl Contents {
     ///
     /// # Errors
     /// [`FileError`] where the part or a column does not exist, or a cell holds no finite number.
-    pub fn read(
-        &self,
-        part: usize,
-        columns: &[usize],
-        progress: &mut dyn FnMut(u64, u64),
-    ) -> Result<Columns, FileError> {
+    pub fn read(&self, part: usize, columns: &[usize], progress: &mut Heard<'_>) -> Result<Columns, FileError> {
         let count = self.parts.get(part).map_or(0, |part| part.columns.len());
         let beyond = columns.iter().find(|column| !(1..=count).contains(*column));
         if let Some(&column) = beyond {

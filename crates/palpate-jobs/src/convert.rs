@@ -1,11 +1,11 @@
 //! A record of any format as a plain table in SI.
 
-use std::io::{self, Write};
+use std::io::{self, BufWriter, Write};
 use std::path::Path;
 
 use palpate::analysis::{corrected_watched, suspicious_signs};
 use palpate::record::CorrectionOptions;
-use palpate::watch::Watch;
+use palpate::watch::{Cancelled, Progress, Watch};
 use palpate_files::parquet_table::{Field, Kind, Rows, TableError, TableWriter, Values};
 use palpate_files::record::RecordFile;
 use palpate_report::document::Software;
@@ -80,21 +80,55 @@ impl Converted {
     /// Writes the table, in the format of its name.
     ///
     /// # Errors
-    /// [`JobError`] where the name says no format, or the file cannot be written.
-    pub fn write(&self, out: &Path) -> Result<(), JobError> {
+    /// [`JobError`] where the name says no format, the file cannot be written, or the watch ends it.
+    pub fn write(&self, out: &Path, watch: &mut dyn Watch) -> Result<(), JobError> {
         Self::check_name(out)?;
         let (file, origin) = (&self.file, &self.origin);
         let mut stage = Stage::default();
         stage.file(out, |into| {
-            let into = io::BufWriter::new(into);
-            let written = match out.extension().and_then(|ending| ending.to_str()) {
-                Some("parquet") => write_parquet(into, file, origin),
-                Some("json") => write_json(into, file, origin).map_err(TableError::from),
-                _ => write_csv(into, file, origin).map_err(TableError::from),
+            let mut heard = HeardWriter {
+                into,
+                watch: &mut *watch,
+                cancelled: false,
             };
-            written.map_err(|error| unwritten_table(out, &error))
+            let written = match out.extension().and_then(|ending| ending.to_str()) {
+                Some("parquet") => write_parquet(&mut *heard.into, file, origin),
+                Some("json") => {
+                    write_json(BufWriter::with_capacity(AT_ONCE, &mut heard), file, origin).map_err(TableError::from)
+                }
+                _ => write_csv(BufWriter::with_capacity(AT_ONCE, &mut heard), file, origin).map_err(TableError::from),
+            };
+            match heard.cancelled {
+                true => Err(Cancelled.into()),
+                false => written.map_err(|error| unwritten_table(out, &error)),
+            }
         })?;
+        watch.report(Progress::open("writing", 0))?;
         stage.commit()
+    }
+}
+
+/// Bytes between two reports of writing.
+const AT_ONCE: usize = 1 << 18;
+
+/// A file whose writing a watch hears of, and ends.
+struct HeardWriter<'a, W> {
+    into: W,
+    watch: &'a mut dyn Watch,
+    cancelled: bool,
+}
+
+impl<W: Write> Write for HeardWriter<'_, W> {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        self.watch.report(Progress::open("writing", 0)).map_err(|cancelled| {
+            self.cancelled = true;
+            io::Error::other(cancelled)
+        })?;
+        self.into.write(bytes)
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        self.into.flush()
     }
 }
 

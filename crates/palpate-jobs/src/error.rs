@@ -9,6 +9,7 @@ use palpate::simulate::SimulateError;
 use palpate::watch::Cancelled;
 use palpate_files::description::DescriptionError;
 use palpate_files::record::ReadError;
+use palpate_files::{FileError, FileProblem};
 use palpate_report::spelling::spelled;
 use palpate_report::study::StudyError;
 
@@ -120,6 +121,13 @@ impl From<Cancelled> for JobError {
 
 impl From<ReadError> for JobError {
     fn from(error: ReadError) -> Self {
+        if let ReadError::File(FileError {
+            problem: FileProblem::Cancelled,
+            ..
+        }) = &error
+        {
+            return Cancelled.into();
+        }
         let io = if let ReadError::File(error) = &error { error.io_kind() } else { None };
         Self::new(io.map_or(ErrorKind::Record, ErrorKind::File), &error, error.hint())
     }

@@ -138,8 +138,9 @@ pub(crate) fn convert(
     columns: Given<'_, '_>,
 ) -> PyResult<PathBuf> {
     let described = described_with(test, part, columns)?;
+    let read = job(py, move |watch| Convert {}.run(&OpenedFile::open(&path, &described)?, watch))?.result;
     writing_job(py, move |watch| {
-        Convert {}.run(&OpenedFile::open(&path, &described)?, watch)?.result.write(&out)?;
+        read.write(&out, watch)?;
         Ok(out)
     })
 }

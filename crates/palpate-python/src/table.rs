@@ -104,6 +104,9 @@ pub(crate) fn parameter_columns(rows: &[ParameterRow]) -> Vec<(&'static str, Arr
 /// Rows that a notebook shows of each end of a table.
 const ENDS: usize = 5;
 
+/// Rows that become dicts in some milliseconds.
+const AT_ONCE: usize = 1 << 12;
+
 /// A cell as a notebook shows it.
 fn cell(column: &ArrayRef, row: usize) -> String {
     if column.is_null(row) {
@@ -152,6 +155,9 @@ impl Table {
         };
         let columns: Vec<Bound<'py, PyAny>> = names.iter().map(cells).collect::<PyResult<_>>()?;
         let row = |index: usize| -> PyResult<Bound<'py, PyDict>> {
+            if index.is_multiple_of(AT_ONCE) {
+                py.check_signals()?;
+            }
             let row = PyDict::new(py);
             names
                 .iter()

@@ -67,6 +67,20 @@ record = palpate.Record.from_arrays(time_s=t, displacement_m=depth, force_n=forc
 work = lambda: record.analyze(test={"specimen": {"shape": "ball", "radius": "35 mm"}})
 """
 
+SEARCHES = """
+t = np.linspace(0, 60, 200_000)
+y = 1 + palpate.laws.latency(t, 0, 1, 2, 5) + 1e-3 * np.sin(37 * t)
+work = lambda: palpate.fit_hold(t, y, law="prony:4", loss="huber")
+"""
+
+PHASES = """
+t = np.linspace(0, 400, 500_000)
+depth = 1e-3 * np.minimum(t % 20, 1) + 1e-3 * (t // 20)
+force = 400 * depth * (1 + np.exp(-(t % 20))) + np.random.default_rng(1).normal(0, 0.01, len(t))
+record = palpate.Record.from_arrays(time_s=t, displacement_m=depth, force_n=force)
+work = record.segments
+"""
+
 INTERRUPTED = """
 import numpy as np, palpate, threading, time, os, signal
 signal.signal(signal.SIGINT, signal.default_int_handler)
@@ -91,7 +105,7 @@ os._exit(0)
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="signals of POSIX")
-@pytest.mark.parametrize("work", [FITS, CALIBRATIONS, ANALYSES], ids=["fits", "calibrations", "analyses"])
+@pytest.mark.parametrize("work", [FITS, SEARCHES, PHASES, CALIBRATIONS, ANALYSES], ids=["fits", "searches", "phases", "calibrations", "analyses"])
 def test_ctrl_c_ends_the_work(work: str) -> None:
     before = signal.getsignal(signal.SIGINT)
     script = INTERRUPTED.format(work=work)

@@ -15,9 +15,10 @@ pub(crate) fn run(requested: &ConvertArguments) -> Result<Verdict, JobError> {
     let described = requested.described.read()?;
     let opened = OpenedFile::open(record, &described)?;
     notes(&opened.notes());
-    let outcome = Convert {}.run(&opened, &mut Bars::default())?;
+    let mut bars = Bars::default();
+    let outcome = Convert {}.run(&opened, &mut bars)?;
     notes(&outcome.notes);
-    outcome.result.write(out)?;
+    outcome.result.write(out, &mut bars)?;
     note(&format!("{} rows written: {}", outcome.result.file.record.len(), out.display()));
     Ok(outcome.verdict)
 }

@@ -6,6 +6,8 @@ use std::{
     path::{Path, PathBuf},
 };
 
+use palpate::watch::Cancelled;
+
 use super::{
     foreign::Foreign,
     shown::{bytes, files, shown, skipped},
@@ -70,10 +72,22 @@ impl Error for FileError {
     }
 }
 
+impl From<Cancelled> for FileError {
+    fn from(_: Cancelled) -> Self {
+        Self {
+            path: PathBuf::new(),
+            problem: FileProblem::Cancelled,
+        }
+    }
+}
+
 /// What can be wrong with a file, as it is written behind its path.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum FileProblem {
+    /// Who heard of the reading ended it.
+    #[error(": cancelled")]
+    Cancelled,
     /// There is no such file; what the operating system says.
     #[error(": no such file")]
     NotFound(#[source] io::Error),

@@ -13,6 +13,7 @@ impl FileError {
     #[must_use]
     pub fn hint(&self) -> Option<String> {
         let help = match &self.problem {
+            FileProblem::Cancelled => return None,
             FileProblem::NotFound(_) => "check the spelling of the path",
             FileProblem::Directory => "name one file inside it",
             FileProblem::NoFile("a terminal") => "send the file through a pipe: `palpate watch - < log.csv`",

@@ -14,11 +14,12 @@ use super::{
     parts,
 };
 use crate::{
+    FileError,
     description::TestDescription,
     input::Packing,
     naming::Quantity,
     open::{Contents, Format},
-    table::{Columns, IgnoredLines, Part, epoch, recognise},
+    table::{Columns, Heard, IgnoredLines, Part, epoch, recognise},
 };
 
 /// A record and where it came from.
@@ -78,7 +79,7 @@ pub struct RecordFile {
 pub fn read_record(
     path: &Path,
     description: Option<&TestDescription>,
-    progress: &mut dyn FnMut(u64, u64),
+    progress: &mut Heard<'_>,
 ) -> Result<RecordFile, ReadError> {
     let usual = TestDescription::default();
     let test = description.unwrap_or(&usual);
@@ -101,7 +102,7 @@ pub fn read_part(
     contents: &Contents,
     part: usize,
     description: Option<&TestDescription>,
-    progress: &mut dyn FnMut(u64, u64),
+    progress: &mut Heard<'_>,
 ) -> Result<RecordFile, ReadError> {
     let usual = TestDescription::default();
     let test = description.unwrap_or(&usual);
@@ -128,6 +129,7 @@ pub fn read_part(
         (column.role, values)
     });
     let (raw, bent) = assemble(series.collect());
+    progress(read.bytes, read.bytes).map_err(FileError::from)?;
     let (signals, has_displacement) = (raw.report(), raw.displacement.is_some());
     let averaged = (read.averaged > 1).then(|| Correction::RowsAveraged {
         rows: read.rows(),
@@ -142,6 +144,7 @@ pub fn read_part(
     let of_stress = plan.per_unit_area.then_some(Correction::StressAsForce);
     let bent = bent.map(|largest| Correction::DeflectionRemoved { largest });
     let done = left_out.into_iter().chain(of_stress).chain(averaged).chain(bent);
+    progress(read.bytes, read.bytes).map_err(FileError::from)?;
     let record = raw.into_record().map(|record| record.corrected_before(done));
     let record = record.map_err(|source| refused(contents, about, &read, (has_displacement, source)))?;
     Ok(RecordFile {

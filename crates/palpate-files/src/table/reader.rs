@@ -2,6 +2,7 @@
 
 use std::fmt;
 
+use palpate::watch::Cancelled;
 use schemars::JsonSchema;
 use serde::Deserialize;
 
@@ -44,12 +45,15 @@ pub(crate) struct Found {
     pub(crate) reader: Box<dyn ReadPart>,
 }
 
+/// Hears of the bytes done and of those there are while a file is read, and may end it.
+pub type Heard<'a> = dyn FnMut(u64, u64) -> Result<(), Cancelled> + 'a;
+
 /// What a format can do once it has looked into a file.
 pub(crate) trait ReadPart: Send + Sync {
     /// Reads the columns with these numbers (from 1, in any order, perhaps one twice) of the part with this index.
     ///
     /// Both the index and the numbers are those of [`Contents::parts`]. Columns of one clock have the same length.
-    fn read(&self, part: usize, columns: &[usize], progress: &mut dyn FnMut(u64, u64)) -> Result<Columns, FileError>;
+    fn read(&self, part: usize, columns: &[usize], progress: &mut Heard<'_>) -> Result<Columns, FileError>;
 
     /// How delimited text is written; `None` in other formats.
     fn layout(&self) -> Option<&Layout> {

@@ -84,7 +84,7 @@ pub(crate) fn read_all(name: &str, bytes: &[u8]) -> Result<usize, Complaint> {
     for (index, part) in contents.parts.iter().enumerate().take(MOST_PARTS) {
         check(part);
         for columns in choices(part) {
-            let read = contents.read(index, &columns, &mut |_, _| {}).map_err(|error| file(&error))?;
+            let read = contents.read(index, &columns, &mut |_, _| Ok(())).map_err(|error| file(&error))?;
             check_columns(contents.format, part, &columns, &read);
             rows += read.rows();
         }
@@ -101,12 +101,12 @@ fn records(name: &str, contents: &Contents) -> Result<(), (Complaint, bool)> {
     let tests = tests(contents, &TestDescription::default()).map_err(|error| complaint(&error))?;
     let mut first = None;
     for &part in tests.parts.iter().take(MOST_PARTS) {
-        let file = read_part(contents, part, None, &mut |_, _| {});
+        let file = read_part(contents, part, None, &mut |_, _| Ok(()));
         let text = describe(contents, part, file.as_ref().ok(), None);
         let described = parse_test(&text, "described.toml".as_ref());
         match (file, described) {
             (Ok(file), Ok(test)) => {
-                let again = read_part(contents, part, Some(&test), &mut |_, _| {});
+                let again = read_part(contents, part, Some(&test), &mut |_, _| Ok(()));
                 let again = again.unwrap_or_else(|error| panic!("{error}\n{text}"));
                 assert_eq!(again.record, file.record, "{text}");
             }

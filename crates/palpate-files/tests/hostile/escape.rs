@@ -19,7 +19,7 @@ fn members_of_any_name_are_read_and_never_written() {
         let member = format!("=== {name}\nTime (s),Force (N)\n0,0.5\n1,4.5\n2,3.5\n");
         let path = inner.join("press.zip");
         fs::write(&path, any_file::packed(Kind::Packed, member.as_bytes())).expect("an archive");
-        let file = palpate_files::record::read_record(&path, None, &mut |_, _| {});
+        let file = palpate_files::record::read_record(&path, None, &mut |_, _| Ok(()));
         let file = file.unwrap_or_else(|error| panic!("{name}: {error}"));
         assert_eq!((file.format, file.rows), (Format::Text, 3));
         fs::remove_file(&path).expect("an archive");

@@ -13,7 +13,7 @@ use palpate_files::{
 fn record(text: &str, test: &str) -> Result<RecordFile, ReadError> {
     let test = parse_test(test, Path::new("test.toml")).unwrap_or_else(|error| panic!("{error}"));
     let contents = Contents::of(Input::from_bytes("log.csv", text.as_bytes())?, &ReadOptions::default())?;
-    read_part(&contents, 0, Some(&test), &mut |_, _| {})
+    read_part(&contents, 0, Some(&test), &mut |_, _| Ok(()))
 }
 
 /// Four rows of a gripper whose time has this header and these cells.
@@ -207,7 +207,7 @@ fn a_real_gripper() {
     }
     let units = "columns = { time.unit = \"epoch\", displacement.unit = \"mm\", force.unit = \"N\" }";
     let test = parse_test(units, Path::new("test.toml")).unwrap();
-    let file = read_record(&path, Some(&test), &mut |_, _| {}).unwrap();
+    let file = read_record(&path, Some(&test), &mut |_, _| Ok(())).unwrap();
     assert_eq!((file.start, file.record.time()[0], file.rows), (Some(1_724_504_945.198_464_4), 0.0, 3552));
     assert_eq!(file.columns[0].unit, "s since 1970");
 }

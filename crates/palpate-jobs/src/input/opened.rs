@@ -4,16 +4,17 @@ use std::path::Path;
 
 use palpate::analysis::AnalysisOptions;
 use palpate::record::Record;
-use palpate::watch::{Progress, Watch};
+use palpate::watch::{Cancelled, Progress, Watch};
 use palpate_files::open::Contents;
 use palpate_files::record::{ReadError, RecordFile, Tests, read_part, tests};
 use palpate_files::table::SkippedPart;
 use palpate_report::result::Input;
+use sha2::{Digest, Sha256};
 
 use super::Described;
 use super::source::{FileDigest, Source};
 use crate::JobError;
-use crate::output::sha256;
+use crate::output::hexadecimal;
 
 /// A record as the jobs take it.
 #[derive(Debug, Clone, PartialEq)]
@@ -98,16 +99,13 @@ impl<'d> OpenedFile<'d> {
         let path = &self.contents.input.name;
         let name = path.file_name().unwrap_or(path.as_os_str()).to_string_lossy();
         let task = format!("reading {name}");
-        let mut heard = Ok(());
         let mut report = |done, total| {
             let (task, total) = (task.as_str(), Some(total));
-            heard = heard.and_then(|()| watch.report(Progress { task, done, total }));
+            watch.report(Progress { task, done, total })
         };
-        let file = read_part(&self.contents, part, self.described.test.as_ref(), &mut report);
+        let file = read_part(&self.contents, part, self.described.test.as_ref(), &mut report)?;
         let size = self.contents.input.size;
-        report(size, size);
-        heard?;
-        let file = file?;
+        report(size, size)?;
         self.contents.input.check_unchanged().map_err(ReadError::File)?;
         Ok(file)
     }
@@ -151,14 +149,21 @@ impl<'d> OpenedFile<'d> {
 
 /// SHA-256 of a record that was in memory already, hexadecimal: of its columns as doubles, the lowest byte first, time, displacement and
 /// force in this order.
-#[must_use]
-pub fn record_sha256(record: &Record) -> String {
+///
+/// # Errors
+/// [`Cancelled`] once the watch ends it.
+pub fn record_sha256(record: &Record, watch: &mut dyn Watch) -> Result<String, Cancelled> {
+    const AT_ONCE: usize = 1 << 16;
     let columns = [Some(record.time()), record.displacement(), Some(record.force())];
-    let mut bytes = Vec::with_capacity(24 * record.len());
-    for values in columns.into_iter().flatten() {
+    let mut digest = Sha256::new();
+    let mut bytes = Vec::with_capacity(8 * AT_ONCE);
+    for values in columns.into_iter().flatten().flat_map(|column| column.chunks(AT_ONCE)) {
+        watch.report(Progress::open("digesting the record", 0))?;
+        bytes.clear();
         bytes.extend(values.iter().flat_map(|value| value.to_le_bytes()));
+        digest.update(&bytes);
     }
-    sha256(&bytes)
+    Ok(hexadecimal(digest.finalize()))
 }
 
 /// That a file is so long that its rows were averaged.

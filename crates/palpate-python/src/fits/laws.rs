@@ -8,6 +8,9 @@ use pyo3::prelude::*;
 use crate::arrays::doubles;
 use crate::errors::{ModelError, refused_plainly};
 
+/// Times whose values are computed in some milliseconds.
+const AT_ONCE: usize = 1 << 16;
+
 /// y_e + Δ φ(t; λ, n) with φ = (1 + (n − 1) λ t)^(−1/(n − 1)).
 #[pyfunction]
 pub(crate) fn latency<'py>(
@@ -30,10 +33,13 @@ pub(crate) fn latency<'py>(
     let missing: Vec<usize> = (0..times.len()).filter(|index| times[*index].is_nan()).collect();
     times.iter_mut().for_each(|time| *time = time.max(0.0));
     let mut values = vec![0.0; times.len()];
-    py.detach(|| {
-        decay_many(&times, relative_rate_per_s, exponent, &mut values);
-        values.iter_mut().for_each(|value| *value = equilibrium + amplitude * *value);
-    });
+    for (times, values) in times.chunks(AT_ONCE).zip(values.chunks_mut(AT_ONCE)) {
+        py.check_signals()?;
+        py.detach(|| {
+            decay_many(times, relative_rate_per_s, exponent, values);
+            values.iter_mut().for_each(|value| *value = equilibrium + amplitude * *value);
+        });
+    }
     missing.into_iter().for_each(|index| values[index] = f64::NAN);
     Ok(PyArray1::from_vec(py, values))
 }

@@ -10,8 +10,9 @@ use arrow_schema::DataType;
 use numpy::PyArray1;
 use palpate::analysis::corrected_watched;
 use palpate::calibrate::CalibrateError;
-use palpate::record::Record as Measured;
+use palpate::record::{Record as Measured, RecordError as Unlike};
 use palpate::simulate::SimulateError;
+use palpate::watch::{Unwatched, Watch};
 use palpate_jobs::input::{Described, Measurement, OpenedFile, record_sha256};
 use palpate_jobs::{Analyze, Calibrate, Compare, ErrorKind, JobError};
 use palpate_report::result::{Input, word};
@@ -21,7 +22,7 @@ use pyo3_arrow::PyTable;
 use serde::{Deserialize, Serialize};
 
 use crate::arrays::doubles;
-use crate::errors::{OptionError, RecordError, choice, refused, refused_plainly};
+use crate::errors::{OptionError, PalpateError, RecordError, choice, refused, refused_plainly};
 use crate::files::{self, Given, all_laws, described, described_with, read_or_parsed};
 use crate::fits::fit;
 use crate::materials::calibration::Calibration;
@@ -183,6 +184,9 @@ fn column(table: &PyTable, name: &str) -> PyResult<Vec<f64>> {
     Ok(values)
 }
 
+/// Samples that are checked and digested in a few milliseconds.
+const BRIEF: usize = 100_000;
+
 impl Record {
     /// A record of columns of Python: time, displacement, force.
     fn checked(
@@ -190,12 +194,21 @@ impl Record {
         (time, displacement, force): (Vec<f64>, Option<Vec<f64>>, Vec<f64>),
         title: &str,
     ) -> PyResult<Self> {
-        let record = briefly(py, move || Measured::new(time, displacement, force))?;
-        let record = record.map_err(|error| refused::<RecordError>(&error, Some(error.hint())))?;
+        let is_brief = time.len() <= BRIEF;
+        let make = move |watch: &mut dyn Watch| {
+            let record = Measured::new(time, displacement, force)?;
+            let sha256 = record_sha256(&record, watch);
+            Ok((record, sha256))
+        };
+        let made = match is_brief {
+            true => briefly(py, move || make(&mut Unwatched))?,
+            false => at_length(py, move |mut heard| make(&mut heard))?,
+        };
+        let (record, sha256) = made.map_err(|error: Unlike| refused::<RecordError>(&error, Some(error.hint())))?;
         let input = Input {
             path: "arrays".to_owned(),
             part: None,
-            sha256: record_sha256(&record),
+            sha256: sha256.map_err(refused_plainly::<PalpateError>)?,
             test_sha256: None,
             air_run_sha256: None,
             depends_on_sha256: None,

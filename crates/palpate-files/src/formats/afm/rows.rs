@@ -5,7 +5,7 @@ use crate::{
     cell::{DecimalMark, number},
     error::{CellPosition, FileError, FileProblem, shorten},
     input::{Encoding, Input, LineReader},
-    table::{Columns, Found, ReadPart, SkippedPart},
+    table::{Columns, Found, Heard, ReadPart, SkippedPart},
 };
 
 /// How the rows of a segment are written.
@@ -96,7 +96,7 @@ pub(super) fn found(input: &Input, rows: Vec<Rows>, (curve, skipped): (Option<Cu
 }
 
 impl ReadPart for Lines {
-    fn read(&self, _part: usize, columns: &[usize], progress: &mut dyn FnMut(u64, u64)) -> Result<Columns, FileError> {
+    fn read(&self, _part: usize, columns: &[usize], progress: &mut Heard<'_>) -> Result<Columns, FileError> {
         let mut read = Columns::of(columns.len());
         let mut lines = LineReader::open(&self.input, Encoding::Utf8)?;
         let mut values = vec![0.0; columns.len()];
@@ -125,7 +125,7 @@ impl ReadPart for Lines {
                 index += 1;
                 let (done, total) = lines.progress();
                 if done != reported {
-                    progress(done, total);
+                    progress(done, total)?;
                     reported = done;
                 }
             }

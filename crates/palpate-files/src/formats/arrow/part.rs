@@ -20,7 +20,7 @@ use crate::{
     error::{FileError, FileProblem, few, shorten, shown},
     faults::admits,
     input::Input,
-    table::{ColumnInfo, ColumnKind, Columns, Found, Part, ReadOptions, ReadPart, SkippedPart},
+    table::{ColumnInfo, ColumnKind, Columns, Found, Heard, Part, ReadOptions, ReadPart, SkippedPart},
 };
 
 /// Most columns of all tests together: each test describes its own.
@@ -159,7 +159,7 @@ fn samples(source: &Source, columns: &[(usize, Reading)]) -> Result<Vec<String>,
 }
 
 impl ReadPart for Table {
-    fn read(&self, part: usize, columns: &[usize], progress: &mut dyn FnMut(u64, u64)) -> Result<Columns, FileError> {
+    fn read(&self, part: usize, columns: &[usize], progress: &mut Heard<'_>) -> Result<Columns, FileError> {
         let Some(Test { rows, .. }) = self.tests.get(part) else {
             return Ok(Columns::of(columns.len()));
         };
@@ -184,13 +184,14 @@ impl ReadPart for Table {
             while let Some(stretch) = taking.stretches.first() {
                 row = row.max(stretch.start);
                 let Some((first, batch)) = kept.batch(row) else { break };
+                progress(row.saturating_sub(span.start) * size / (span.end - span.start).max(1), size)?;
                 taking.take(first, batch)?;
                 row = first.saturating_add(batch.num_rows() as u64);
             }
         } else {
             self.source.visit(&indices, span.clone(), &mut |first, batch, (done, total)| {
                 taking.take(first, batch)?;
-                progress((done as f64 / total.max(1) as f64 * size as f64) as u64, size);
+                progress((done as f64 / total.max(1) as f64 * size as f64) as u64, size)?;
                 let end = first.saturating_add(batch.num_rows() as u64);
                 Ok(if end >= span.end { ControlFlow::Break(()) } else { ControlFlow::Continue(()) })
             })?;
@@ -200,7 +201,7 @@ impl ReadPart for Table {
             let name = self.tests[part].name.as_deref().unwrap_or("the table");
             return Err(self.source.input.wrong(FileProblem::NoParts(vec![(name.to_owned(), "no rows".to_owned())])));
         }
-        progress(size, size);
+        progress(size, size)?;
         read.finish();
         Ok(read)
     }

@@ -15,6 +15,7 @@ use super::record::{self, Chunk, Entry};
 use crate::{
     error::FileError,
     input::{Input, InputReader},
+    table::Heard,
 };
 
 /// Most bytes of one record, such as a packed chunk, and of one unpacked chunk (256 MiB).
@@ -30,7 +31,7 @@ const LEAD: usize = 1 + 8;
 pub(super) type Visit<'v> = dyn FnMut(Entry<'_>) -> Result<(), FileError> + 'v;
 
 /// Goes through the data section of the log; what stands behind it only repeats and indexes.
-pub(super) fn walk(input: &Input, progress: &mut dyn FnMut(u64, u64), visit: &mut Visit<'_>) -> Result<(), FileError> {
+pub(super) fn walk(input: &Input, progress: &mut Heard<'_>, visit: &mut Visit<'_>) -> Result<(), FileError> {
     let mut log = Log {
         input,
         bytes: input.reader()?,
@@ -50,7 +51,7 @@ pub(super) fn walk(input: &Input, progress: &mut dyn FnMut(u64, u64), visit: &mu
                 let got = log.bytes.read(reader.insert(wanted.min(PIECE))).map_err(|error| input.failed(error))?;
                 reader.notify_read(got);
                 let (done, total) = log.bytes.progress();
-                progress(done, total);
+                progress(done, total)?;
             }
             Ok(LinearReadEvent::Record { data, opcode }) => {
                 in_data = in_data && opcode != op::DATA_END;

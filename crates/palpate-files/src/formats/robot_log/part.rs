@@ -11,7 +11,7 @@ use super::{
 use crate::{
     error::FileError,
     input::Input,
-    table::{Clock, ColumnInfo, ColumnKind, Columns, Metadata, Part, ReadPart},
+    table::{Clock, ColumnInfo, ColumnKind, Columns, Heard, Metadata, Part, ReadPart},
 };
 
 /// What a column of a log holds.
@@ -75,7 +75,7 @@ impl Log {
 }
 
 impl ReadPart for Log {
-    fn read(&self, _part: usize, columns: &[usize], progress: &mut dyn FnMut(u64, u64)) -> Result<Columns, FileError> {
+    fn read(&self, _part: usize, columns: &[usize], progress: &mut Heard<'_>) -> Result<Columns, FileError> {
         let chosen: Vec<(usize, Source)> = columns.iter().map(|number| self.sources[number - 1]).collect();
         let mut wanted: Vec<Vec<Source>> = vec![Vec::new(); self.survey.series.len()];
         chosen.iter().for_each(|(series, source)| wanted[*series].push(*source));

@@ -84,7 +84,7 @@ pub(super) fn survey(input: &Input) -> Result<Survey, FileError> {
         known: Known::default(),
         refused: HashMap::new(),
     };
-    container::walk(input, &mut |_, _| {}, &mut |entry| surveyor.entry(entry))?;
+    container::walk(input, &mut |_, _| Ok(()), &mut |entry| surveyor.entry(entry))?;
     Ok(surveyor.finish())
 }
 

@@ -18,7 +18,7 @@ use super::{
 use crate::{
     error::FileError,
     input::Input,
-    table::{ColumnKind, Columns, Found, Part, ReadOptions, ReadPart, SkippedPart},
+    table::{ColumnKind, Columns, Found, Heard, Part, ReadOptions, ReadPart, SkippedPart},
 };
 
 /// How a workbook is written.
@@ -170,7 +170,7 @@ fn part((sheet, name): (&str, &str), table: &Table, several: bool, beside: usize
 }
 
 impl ReadPart for Workbook {
-    fn read(&self, part: usize, columns: &[usize], progress: &mut dyn FnMut(u64, u64)) -> Result<Columns, FileError> {
+    fn read(&self, part: usize, columns: &[usize], progress: &mut Heard<'_>) -> Result<Columns, FileError> {
         let Some(Place { sheet, table }) = self.places.get(part) else {
             return Ok(Columns::of(columns.len()));
         };
@@ -179,7 +179,7 @@ impl ReadPart for Workbook {
         let size = self.input.size;
         let mut share = |done: u64, total: u64| {
             let share = done as f64 / total.max(1) as f64;
-            progress((share * size as f64) as u64, size);
+            progress((share * size as f64) as u64, size)
         };
         let days_to_epoch = self.book.days_to_epoch();
         let visit = |each: &mut Visitor<'_>| self.visit(part, *sheet, each);

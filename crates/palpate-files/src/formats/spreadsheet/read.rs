@@ -11,7 +11,7 @@ use crate::{
     cell::{DecimalMark, number},
     error::{FileError, FileProblem, shorten},
     input::Input,
-    table::{Columns, Doubt, Suspect},
+    table::{Columns, Doubt, Heard, Suspect},
 };
 
 /// How many rows go by between two reports of progress.
@@ -26,7 +26,7 @@ pub(super) fn read(
     (name, table, days_to_epoch): (&str, &Table, f64),
     visit: &Visit<'_>,
     columns: &[usize],
-    progress: &mut dyn FnMut(u64, u64),
+    progress: &mut Heard<'_>,
 ) -> Result<Columns, FileError> {
     let mut reading = Reading {
         input,
@@ -53,7 +53,7 @@ pub(super) fn read(
             if reading.number.is_some_and(|number| number != cell.row) {
                 reading.end_row()?;
                 if reading.read.rows().is_multiple_of(ROWS_A_REPORT) {
-                    progress(done.min(total), total);
+                    progress(done.min(total), total)?;
                 }
             }
             reading.number = Some(cell.row);
@@ -63,7 +63,7 @@ pub(super) fn read(
         Ok(ControlFlow::Continue(()))
     })?;
     reading.end_row()?;
-    progress(ends.0, ends.1);
+    progress(ends.0, ends.1)?;
     let Reading { read, suspect, .. } = reading;
     read.ended(suspect, || input.wrong(FileProblem::NoParts(vec![(name.to_owned(), "no rows".to_owned())])))
 }

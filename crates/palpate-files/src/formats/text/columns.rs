@@ -8,7 +8,7 @@ use crate::{
     cell::{DecimalMark, Delimiter},
     error::{DecimalDoubt, FileError, FileProblem},
     input::{Idle, Input, LineReader},
-    table::{Columns, Lacking, Layout, Suspect, decimal},
+    table::{Columns, Heard, Lacking, Layout, Suspect, decimal},
 };
 
 /// How many blocks may hold something else than rows of plain numbers before blocks are no longer tried.
@@ -33,7 +33,7 @@ pub fn read_columns(
     input: &Input,
     layout: &Layout,
     columns: &[usize],
-    progress: &mut dyn FnMut(u64, u64),
+    progress: &mut Heard<'_>,
 ) -> Result<Columns, FileError> {
     let path = &input.name;
     let mut distinct = columns.to_vec();
@@ -54,7 +54,7 @@ pub fn read_columns(
         let (done, total) = reader.progress();
         let number = reader.line() + 1;
         if done != reported && number > 1 {
-            progress(done, total);
+            progress(done, total)?;
             if reported > 0 && !reserved {
                 // The rows so far came from the pieces before this one.
                 read.reserve(reported, total);
@@ -99,7 +99,7 @@ pub fn read_columns(
         }
     }
     let (done, total) = reader.progress();
-    progress(done, total);
+    progress(done, total)?;
     read.bytes = total;
     let lines = reader.line();
     let read = read.ended(suspect, || {

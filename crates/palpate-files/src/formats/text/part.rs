@@ -4,7 +4,7 @@ use super::{columns::read_columns, detect};
 use crate::{
     error::FileError,
     input::Input,
-    table::{Columns, Found, Layout, Part, ReadOptions, ReadPart},
+    table::{Columns, Found, Heard, Layout, Part, ReadOptions, ReadPart},
 };
 
 /// A file of delimited text whose layout is known.
@@ -33,7 +33,7 @@ pub(crate) fn look_into(input: &Input, options: &ReadOptions) -> Result<Found, F
 }
 
 impl ReadPart for TextFile {
-    fn read(&self, _part: usize, columns: &[usize], progress: &mut dyn FnMut(u64, u64)) -> Result<Columns, FileError> {
+    fn read(&self, _part: usize, columns: &[usize], progress: &mut Heard<'_>) -> Result<Columns, FileError> {
         read_columns(&self.input, &self.layout, columns, progress)
     }
 

@@ -8,7 +8,7 @@ use super::row::RowPlan;
 use crate::{
     error::FileError,
     input::{LONGEST_LINE, LineReader},
-    table::Columns,
+    table::{Columns, Heard},
 };
 
 /// Bytes that one thread reads at a time: much against the cost of a thread, little against a cache.
@@ -61,7 +61,7 @@ impl RowsAhead {
         reader: &mut LineReader<'_>,
         plan: &RowPlan<'_>,
         read: &mut Columns,
-        progress: &mut dyn FnMut(u64, u64),
+        progress: &mut Heard<'_>,
     ) -> Result<Stop, FileError> {
         let block = SHARE * self.parts.len();
         reader.take_lines(block, &mut self.lines)?;
@@ -89,7 +89,7 @@ impl RowsAhead {
             });
             (self.lines, self.parts) = (lines, parts);
             taken?;
-            progress(reader.progress().0, total);
+            progress(reader.progress().0, total)?;
             if !plain {
                 let odd = memchr::memchr_iter(b'\n', &self.lines).count();
                 reader.put_back(&mut self.next);

@@ -184,7 +184,7 @@ fn a_record_needs_no_description() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("curve.jpk-force");
     std::fs::write(&path, packed(&press())).unwrap();
-    let file = read_record(&path, None, &mut |_, _| {}).unwrap_or_else(|error| panic!("{error}"));
+    let file = read_record(&path, None, &mut |_, _| Ok(())).unwrap_or_else(|error| panic!("{error}"));
     let used: Vec<&str> = file.columns.iter().filter_map(|column| column.name.as_deref()).collect();
     assert_eq!(used, ["time", "indentation", "force"]);
     let displacement = file.record.displacement().unwrap();
@@ -255,7 +255,7 @@ fn volts_without_calibration_are_requested_about() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("curve.jpk-force");
     std::fs::write(&path, packed(&members)).unwrap();
-    let error = read_record(&path, None, &mut |_, _| {}).expect_err("an error");
+    let error = read_record(&path, None, &mut |_, _| Ok(())).expect_err("an error");
     assert!(matches!(error, ReadError::Column { .. }), "{error}");
     assert!(error.to_string().contains("column 2 (uncalibrated force): \"V\" is not a unit of force"), "{error}");
     assert!(error.hint().unwrap().contains("[columns.force]"));
@@ -274,7 +274,7 @@ fn a_sensitivity_alone_gives_the_indentation() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("curve.jpk-force");
     std::fs::write(&path, packed(&members)).unwrap();
-    let error = read_record(&path, None, &mut |_, _| {}).expect_err("an error").to_string();
+    let error = read_record(&path, None, &mut |_, _| Ok(())).expect_err("an error").to_string();
     assert!(error.contains("column 2 (uncalibrated force): \"m\" is not a unit of force"), "{error}");
 }
 

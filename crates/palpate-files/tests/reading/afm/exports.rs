@@ -118,7 +118,7 @@ fn segments_become_one_test_with_labels() {
 fn rows_keep_their_lines() {
     let bytes = written(&press());
     let contents = opened(&bytes);
-    let read = contents.read(0, &[1], &mut |_, _| {}).unwrap();
+    let read = contents.read(0, &[1], &mut |_, _| Ok(())).unwrap();
     let text = String::from_utf8(bytes).unwrap();
     let lines: Vec<usize> = text
         .lines()
@@ -135,7 +135,7 @@ fn a_record_needs_no_description() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("curve.txt");
     std::fs::write(&path, written(&press())).unwrap();
-    let file = read_record(&path, None, &mut |_, _| {}).unwrap_or_else(|error| panic!("{error}"));
+    let file = read_record(&path, None, &mut |_, _| Ok(())).unwrap_or_else(|error| panic!("{error}"));
     let used: Vec<&str> = file.columns.iter().filter_map(|column| column.name.as_deref()).collect();
     assert_eq!(used, ["time", "indentation", "force"]);
     assert_eq!(file.record.len(), 9);
@@ -150,7 +150,7 @@ fn the_travel_of_the_base_can_be_chosen_instead() {
     std::fs::write(&path, written(&press())).unwrap();
     let text = "[columns.displacement]\ncolumn = \"measuredHeight\"\nsign = -1\n";
     let test = parse_test(text, Path::new("test.toml")).unwrap_or_else(|error| panic!("{error}"));
-    let file = read_record(&path, Some(&test), &mut |_, _| {}).unwrap_or_else(|error| panic!("{error}"));
+    let file = read_record(&path, Some(&test), &mut |_, _| Ok(())).unwrap_or_else(|error| panic!("{error}"));
     assert_eq!(file.record.displacement().unwrap()[..4], [-4e-6, -2e-6, 0.0, 0.0]);
 }
 
@@ -244,7 +244,7 @@ fn refused_as_record(exports: &[Export]) -> ReadError {
     let folder = tempfile::tempdir().expect("a temporary folder");
     let path = folder.path().join("curve.txt");
     std::fs::write(&path, written(exports)).expect("a file written");
-    read_record(&path, None, &mut |_, _| {}).expect_err("an error")
+    read_record(&path, None, &mut |_, _| Ok(())).expect_err("an error")
 }
 
 #[test]
@@ -285,7 +285,7 @@ fn record(exports: &[Export], test: &str) -> Result<RecordFile, ReadError> {
     let path = folder.path().join("curve.txt");
     std::fs::write(&path, written(exports)).expect("a file written");
     let test = parse_test(test, Path::new("test.toml")).unwrap_or_else(|error| panic!("{error}"));
-    read_record(&path, Some(&test), &mut |_, _| {})
+    read_record(&path, Some(&test), &mut |_, _| Ok(()))
 }
 
 #[test]

@@ -25,7 +25,7 @@ fn opened(bytes: &[u8]) -> Contents {
 /// The values of the column called `name` in a part.
 fn column_of(contents: &Contents, part: usize, name: &str) -> Vec<f64> {
     let number = contents.parts[part].column_named(name).unwrap_or_else(|| panic!("no column {name}")).number;
-    let read = contents.read(part, &[number], &mut |_, _| {}).unwrap_or_else(|error| panic!("{error}"));
+    let read = contents.read(part, &[number], &mut |_, _| Ok(())).unwrap_or_else(|error| panic!("{error}"));
     read.values.into_iter().next().expect("one column")
 }
 
@@ -39,7 +39,7 @@ fn read_all(bytes: &[u8]) -> Result<usize, FileError> {
     let mut rows = 0;
     for (index, part) in contents.parts.iter().enumerate() {
         let all: Vec<usize> = (1..=part.columns.len()).collect();
-        let read = contents.read(index, &all, &mut |_, _| {})?;
+        let read = contents.read(index, &all, &mut |_, _| Ok(()))?;
         assert!(read.values.iter().flatten().all(|value| value.is_finite()));
         rows += read.rows();
     }

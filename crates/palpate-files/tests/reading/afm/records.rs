@@ -23,7 +23,7 @@ fn record(name: &str) -> Option<PathBuf> {
 }
 
 fn read(path: &Path) -> RecordFile {
-    read_record(path, None, &mut |_, _| {}).unwrap_or_else(|error| panic!("{error}"))
+    read_record(path, None, &mut |_, _| Ok(())).unwrap_or_else(|error| panic!("{error}"))
 }
 
 /// How long the segment called `name` lasts in a record, and how much of its first force it has at its end.

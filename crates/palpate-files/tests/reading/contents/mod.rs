@@ -16,7 +16,7 @@ fn refused(name: &str, bytes: impl Into<Vec<u8>>) -> FileError {
 
 /// Force and time of the table above.
 fn check(contents: &Contents) {
-    let read = contents.read(0, &[3, 1], &mut |_, _| {}).expect("columns");
+    let read = contents.read(0, &[3, 1], &mut |_, _| Ok(())).expect("columns");
     assert_eq!(read.values, [vec![0.5, 12.0, 9.0], vec![0.0, 1.0, 2.0]]);
     assert_eq!((read.rows(), read.averaged, read.line_of(2)), (3, 1, Some(4)));
     assert_eq!(read.bytes, contents.input.size);
@@ -49,7 +49,7 @@ fn columns_by_name() {
 fn a_column_that_is_not_there() {
     let contents = contents("a.csv", TABLE).expect("a table");
     for column in [0, 4] {
-        let error = contents.read(0, &[column], &mut |_, _| {}).expect_err("no column");
+        let error = contents.read(0, &[column], &mut |_, _| Ok(())).expect_err("no column");
         assert!(matches!(error.problem, FileProblem::NoSuchColumn { columns: 3, .. }), "{error}");
     }
 }

@@ -3,6 +3,7 @@
 use std::io::Write;
 
 use flate2::{Compression, write::GzEncoder};
+use palpate::watch::Cancelled;
 use palpate_files::{FileProblem, input::Packing};
 use zip::{CompressionMethod, ZipWriter, write::SimpleFileOptions};
 
@@ -66,10 +67,24 @@ fn progress_counts_packed_bytes() {
     let size = packed.len() as u64;
     let contents = contents("long.gz", packed).expect("a table");
     let mut reported = Vec::new();
-    let read = contents.read(0, &[2], &mut |done, total| reported.push((done, total))).expect("a column");
+    let read = contents
+        .read(0, &[2], &mut |done, total| {
+            reported.push((done, total));
+            Ok(())
+        })
+        .expect("a column");
     assert_eq!(read.rows(), 1_000_000);
     assert_eq!(reported.last(), Some(&(size, size)));
     assert!(reported.len() > 3 && reported.is_sorted());
+    // Reading ends at any of the reports.
+    for last in [0, 1, reported.len() - 1] {
+        let mut count = 0;
+        let ended = contents.read(0, &[2], &mut |_, _| {
+            count += 1;
+            if count > last { Err(Cancelled) } else { Ok(()) }
+        });
+        assert!(matches!(ended.expect_err("ended").problem, FileProblem::Cancelled) && count == last + 1);
+    }
 }
 
 #[test]
@@ -77,7 +92,7 @@ fn cut_off_anywhere_is_an_error_that_says_so() {
     let rows: String = (0..200).map(|row| format!("{row},{}\n", (row * 7919) % 1009)).collect();
     for whole in [gzip(rows.as_bytes()), zip(&[("a.csv", rows.as_bytes())], CompressionMethod::Deflated)] {
         for length in 4..whole.len() {
-            let cut = contents("cut", &whole[..length]).and_then(|found| found.read(0, &[1], &mut |_, _| {}));
+            let cut = contents("cut", &whole[..length]).and_then(|found| found.read(0, &[1], &mut |_, _| Ok(())));
             let error = cut.expect_err("cut off");
             assert!(error.to_string().starts_with("cut: "), "{error}");
             assert!(
@@ -94,7 +109,7 @@ fn changed_bytes_are_noticed() {
     let place = archive.windows(2).position(|pair| pair == b"12").expect("a number");
     archive[place] = b'2';
     let error = contents("a.zip", archive)
-        .and_then(|found| found.read(0, &[1], &mut |_, _| {}))
+        .and_then(|found| found.read(0, &[1], &mut |_, _| Ok(())))
         .expect_err("changed");
     assert!(error.to_string().contains("checksum"), "{error}");
 }

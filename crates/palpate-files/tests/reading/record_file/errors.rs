@@ -208,7 +208,7 @@ fn numbers_that_make_no_record_name_their_line() {
 fn files_that_cannot_be_read_say_so() {
     says("", "", &["the file is empty"], &["export"]);
     let test = parse_test("", "test.toml".as_ref()).unwrap();
-    let error = palpate_files::record::read_record("none.csv".as_ref(), Some(&test), &mut |_, _| {});
+    let error = palpate_files::record::read_record("none.csv".as_ref(), Some(&test), &mut |_, _| Ok(()));
     let error = error.unwrap_err();
     assert_eq!(error.to_string(), "none.csv: no such file");
     assert!(error.hint().unwrap().contains("spelling"));

@@ -22,5 +22,5 @@ fn read(bytes: impl AsRef<[u8]>, test: &str) -> Result<RecordFile, ReadError> {
     let path = folder.path().join("press.csv");
     std::fs::write(&path, bytes).expect("a file written");
     let test = described(test);
-    read_record(&path, Some(&test), &mut |_, _| {})
+    read_record(&path, Some(&test), &mut |_, _| Ok(()))
 }

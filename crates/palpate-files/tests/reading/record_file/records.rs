@@ -27,11 +27,11 @@ fn example(name: &str) -> TestDescription {
 }
 
 fn open(path: &Path, test: Option<&TestDescription>) -> RecordFile {
-    read_record(path, test, &mut |_, _| {}).unwrap_or_else(|error| panic!("{error}"))
+    read_record(path, test, &mut |_, _| Ok(())).unwrap_or_else(|error| panic!("{error}"))
 }
 
 fn refused(path: &Path) -> ReadError {
-    let error = read_record(path, None, &mut |_, _| {}).expect_err("an error");
+    let error = read_record(path, None, &mut |_, _| Ok(())).expect_err("an error");
     eprintln!("{error}\n   hint: {}", error.hint().unwrap_or_default());
     error
 }

@@ -30,7 +30,7 @@ fn record(bytes: &[u8], test: &str) -> Result<RecordFile, ReadError> {
     let contents = look(bytes)?;
     let parts = tests(&contents, &test)?.parts;
     assert_eq!(parts, [0]);
-    read_part(&contents, 0, Some(&test), &mut |_, _| {})
+    read_part(&contents, 0, Some(&test), &mut |_, _| Ok(()))
 }
 
 /// The names of all columns of a log.
@@ -42,6 +42,6 @@ fn names(contents: &Contents) -> Vec<&str> {
 /// The values of one column of a log.
 fn values(contents: &Contents, name: &str) -> Vec<f64> {
     let column = contents.parts[0].column_named(name).unwrap_or_else(|| panic!("{name} in {:?}", names(contents)));
-    let mut read = contents.read(0, &[column.number], &mut |_, _| {}).unwrap_or_else(|error| panic!("{error}"));
+    let mut read = contents.read(0, &[column.number], &mut |_, _| Ok(())).unwrap_or_else(|error| panic!("{error}"));
     read.values.remove(0)
 }

@@ -50,7 +50,7 @@ fn topics_become_columns_with_clocks() {
     // The stamps are 1 ms before what was written down first; times of the log are not.
     assert_eq!(values(&contents, "/joint_states time")[..2], [-0.001, 0.019]);
     assert_eq!(values(&contents, "/joint_states log time")[..2], [0.0, 0.02]);
-    let read = contents.read(0, &[9, 4, 7, 9], &mut |_, _| {}).unwrap();
+    let read = contents.read(0, &[9, 4, 7, 9], &mut |_, _| Ok(())).unwrap();
     let lengths: Vec<usize> = read.values.iter().map(Vec::len).collect();
     assert_eq!((lengths.as_slice(), read.rows()), ([100, 50, 100, 100].as_slice(), 100));
     assert_eq!(read.values[0], read.values[3]);

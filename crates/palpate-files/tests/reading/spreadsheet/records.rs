@@ -38,7 +38,7 @@ fn every_test_of_two_workbooks_becomes_a_record() {
         let tests = record::tests(&contents, &TestDescription::default()).expect("tests");
         for &index in &tests.parts {
             let part = &contents.parts[index];
-            let file = record::read_part(&contents, index, None, &mut |_, _| {});
+            let file = record::read_part(&contents, index, None, &mut |_, _| Ok(()));
             let file = file.unwrap_or_else(|error| panic!("{}: {error}", part.title()));
             println!(
                 "{}: {} rows; {:?}; {}",

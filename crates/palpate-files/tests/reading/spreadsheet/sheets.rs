@@ -56,7 +56,7 @@ fn every_sheet_with_a_test_is_a_part_and_the_others_are_reported() {
     let columns = read(&contents, 1, &[2, 1]).expect("columns");
     assert_eq!((columns.rows(), columns.values[0][2], columns.values[1][19]), (20, 3.0, 1.9));
     assert_eq!(columns.line_of(0), Some(4));
-    let file = record::read_part(&contents, 0, None, &mut |_, _| {}).expect("a record");
+    let file = record::read_part(&contents, 0, None, &mut |_, _| Ok(())).expect("a record");
     assert_eq!(file.record.displacement().map(|all| all[19]), Some(0.019));
 }
 
@@ -125,14 +125,19 @@ fn more_rows_than_the_sample_and_a_table_that_goes_on_below_it() {
     table.extend((0..6000).map(|row| vec![N(f64::from(row)), N(1.0)]));
     let contents = open(&Book::of(&[("long", &table)]).bytes()).expect("a workbook");
     let mut reported = Vec::new();
-    let read = contents.read(0, &[1, 2], &mut |done, total| reported.push((done, total))).expect("columns");
+    let read = contents
+        .read(0, &[1, 2], &mut |done, total| {
+            reported.push((done, total));
+            Ok(())
+        })
+        .expect("columns");
     assert_eq!((read.rows(), read.values[0][5999]), (6000, 5999.0));
     assert!(reported.len() >= 2 && reported.iter().all(|(done, total)| done <= total), "{reported:?}");
 
     table.push(vec![T("second"), T("test")]);
     table.push(vec![N(0.0), N(1.0)]);
     let contents = open(&Book::of(&[("long", &table)]).bytes()).expect("a workbook");
-    let text = message(contents.read(0, &[1, 2], &mut |_, _| {}));
+    let text = message(contents.read(0, &[1, 2], &mut |_, _| Ok(())));
     assert_eq!(text, "book, line 6003: expected a row of data, found `second` with more data from line 6004");
 }
 
@@ -166,7 +171,7 @@ fn a_mean_beside_tests_is_none_and_alone_is_one() {
     assert_eq!((contents.parts.len(), contents.parts[0].title()), (1, "Eprouvette 1"));
     assert_eq!(contents.skipped[0].reason, "a mean of tests, by its name");
     assert_eq!(read(&contents, 0, &[1]).expect("columns").values, [[0.0, 1.0, 2.0, 3.0, 4.0]]);
-    let file = record::read_part(&contents, 0, None, &mut |_, _| {}).expect("a record");
+    let file = record::read_part(&contents, 0, None, &mut |_, _| Ok(())).expect("a record");
     assert_eq!((file.rows, file.columns.len()), (5, 3));
     let alone = open(&Book::of(&[("Eprouvette moyenne", &table)]).bytes()).expect("a workbook");
     assert_eq!(alone.parts.len(), 1);

@@ -110,7 +110,7 @@ fn dates_of_a_workbook_count_from_the_first_row() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("run.xls");
     std::fs::write(&path, book).unwrap();
-    let read = read_record(&path, None, &mut |_, _| {}).unwrap();
+    let read = read_record(&path, None, &mut |_, _| Ok(())).unwrap();
     assert_eq!(read.record.time(), [0.0, 0.05, 0.1, 0.15]);
     assert!((read.start.unwrap() - 1_678_881_600.0).abs() < 1e-6);
     assert!(read.columns[0].epoch);

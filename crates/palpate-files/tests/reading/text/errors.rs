@@ -243,7 +243,7 @@ fn file_gone_between_looking_and_reading() {
     let input = Input::open(&file.path).expect("a file");
     let layout = detect(&input, &ReadOptions::default()).expect("a layout");
     std::fs::write(&file.path, "").expect("emptied");
-    let error = palpate_files::formats::text::read_columns(&input, &layout, &[1], &mut |_, _| {});
+    let error = palpate_files::formats::text::read_columns(&input, &layout, &[1], &mut |_, _| Ok(()));
     assert!(matches!(
         error,
         Err(FileError {

@@ -252,6 +252,7 @@ fn progress_reaches_the_end() {
     let input = Input::open(&file.path).expect("a file");
     let columns = read_columns(&input, &layout, &[1, 2], &mut |done, total| {
         reported.push((done, total));
+        Ok(())
     })
     .expect("columns");
     assert_eq!(columns.rows(), 200_000);

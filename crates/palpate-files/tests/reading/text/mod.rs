@@ -36,7 +36,7 @@ fn read(bytes: impl AsRef<[u8]>, columns: &[usize]) -> Result<Columns, FileError
     let file = written(bytes);
     let input = Input::open(&file.path)?;
     let layout = detect(&input, &ReadOptions::default())?;
-    read_columns(&input, &layout, columns, &mut |_, _| {})
+    read_columns(&input, &layout, columns, &mut |_, _| Ok(()))
 }
 
 /// Names of the columns, `-` for none.

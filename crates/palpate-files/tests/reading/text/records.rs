@@ -24,7 +24,7 @@ fn open(folder: &Path, name: &str, columns: &[usize]) -> (Layout, Columns) {
     let path = folder.join(name);
     let input = Input::open(&path).unwrap_or_else(|error| panic!("{error}"));
     let layout = detect(&input, &ReadOptions::default()).unwrap_or_else(|error| panic!("{error}"));
-    let read = read_columns(&input, &layout, columns, &mut |_, _| {});
+    let read = read_columns(&input, &layout, columns, &mut |_, _| Ok(()));
     (layout, read.unwrap_or_else(|error| panic!("{error}")))
 }
 

@@ -29,7 +29,7 @@ use crate::{
         metadata,
     },
     input::{Input, MOST_IN_MEMORY, is_zip},
-    table::{Columns, Found, Metadata, Part, ReadOptions, ReadPart, SkippedPart},
+    table::{Columns, Found, Heard, Metadata, Part, ReadOptions, ReadPart, SkippedPart},
 };
 use archive::{Archive, HEADER, MOST_CHANNEL, Place};
 use properties::List;
@@ -168,7 +168,7 @@ fn first_row(archive: &mut Archive, segment: &StoredSegment) -> Result<Option<Ve
 }
 
 impl ReadPart for JpkForce {
-    fn read(&self, part: usize, columns: &[usize], progress: &mut dyn FnMut(u64, u64)) -> Result<Columns, FileError> {
+    fn read(&self, part: usize, columns: &[usize], progress: &mut Heard<'_>) -> Result<Columns, FileError> {
         let mut archive = self.archive.lock().unwrap_or_else(PoisonError::into_inner);
         let nothing = || self.input.damaged("segments", "the curve that was there before", "none");
         let place = self.places.get(part).ok_or_else(nothing)?;
@@ -177,10 +177,10 @@ impl ReadPart for JpkForce {
         let mut read = Columns::of(columns.len());
         let total = self.input.size;
         for (done, segment) in curve.segments.iter().enumerate() {
-            progress(total * done as u64 / curve.segments.len() as u64, total);
+            progress(total * done as u64 / curve.segments.len() as u64, total)?;
             self.read_segment(&mut archive, segment, &members[segment.number], columns, &mut read)?;
         }
-        progress(total, total);
+        progress(total, total)?;
         read.finish();
         Ok(read)
     }
