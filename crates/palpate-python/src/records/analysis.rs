@@ -24,7 +24,7 @@ use crate::html::framed;
 use crate::records::kept::Kept;
 use crate::shown::shown;
 use crate::table::{Column, Table, columns, parameter_columns};
-use crate::work::{Made, job, made_again, plain, printed, unpickled, writing};
+use crate::work::{Made, at_length, job, made_again, plain, printed, unpickled, writing};
 
 /// Something about a record, or a hold, that its numbers alone do not tell.
 #[pyclass(name = "Finding", module = "palpate", frozen, eq)]
@@ -238,8 +238,9 @@ shown! {
     fn report(&self, py: Python<'_>, folder: PathBuf, png: bool) -> PyResult<PathBuf> {
         let done = self.done(py)?;
         let report = folder.join("report.html");
+        let bundle = at_length(py, move |mut heard| done.result.bundle(Pictures { png }, &mut heard))?;
+        let bundle = bundle.map_err(unwritten)?;
         let written = writing(py, move |mut heard| {
-            let bundle = done.result.bundle(Pictures { png }, &mut heard)?;
             heard.report(Progress::open("writing", 0))?;
             write_bundle(&folder, &bundle)
         })?;
