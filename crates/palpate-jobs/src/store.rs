@@ -139,11 +139,11 @@ pub(crate) fn is_store(folder: &Path) -> bool {
     folder.join(PIECES).is_file()
 }
 
-/// What the pieces in a folder depend on, if there are any.
+/// What the pieces in a folder depend on, if there are any: a store whose first line is not whole has none.
 pub(crate) fn depends_on(folder: &Path) -> Option<String> {
     let mut first = Vec::new();
     BufReader::new(File::open(folder.join(PIECES)).ok()?).read_until(b'\n', &mut first).ok()?;
-    Some(stated::<Head>(&first).map(|head| head.depends_on_sha256).unwrap_or_default())
+    stated::<Head>(&first).map(|head| head.depends_on_sha256)
 }
 
 /// A name with this ending more, beside a table.

@@ -194,6 +194,31 @@ fn parts_of(parts: &Path, digest: &str) {
     fs::write(parts.join("pieces"), head).unwrap();
 }
 
+/// A sweep that was killed before the first line of its parts was whole was refused when it ran again, as one with the parts of another.
+#[test]
+fn a_sweep_that_was_killed_before_its_first_part_goes_on() {
+    let folder = tempdir().unwrap();
+    let sweep = protocol(folder.path(), "law.exponent = \"linear 1..6, 5\"");
+    let arguments = ["sweep", &sweep, "--out", "t.parquet"];
+    done(folder.path(), &arguments);
+    let (parts, out) = (folder.path().join("t.parquet.parts"), folder.path().join("t.parquet"));
+    let whole = fs::read(&out).unwrap();
+    for pieces in [None, Some(""), Some("0f5c"), Some("0f5c {\"palpate\":")] {
+        for is_made in [false, true] {
+            if !is_made {
+                fs::remove_file(&out).unwrap();
+            }
+            fs::create_dir(&parts).unwrap();
+            fs::write(parts.join("lock"), "").unwrap();
+            if let Some(pieces) = pieces {
+                fs::write(parts.join("pieces"), pieces).unwrap();
+            }
+            done(folder.path(), &arguments);
+            assert!(fs::read(&out).unwrap() == whole && !parts.exists(), "{pieces:?} {:?}", names(folder.path()));
+        }
+    }
+}
+
 #[test]
 fn a_sweep_that_was_killed_goes_on_and_nothing_is_lost_or_doubled() {
     let folder = tempdir().unwrap();

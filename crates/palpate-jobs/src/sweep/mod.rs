@@ -122,8 +122,8 @@ impl Sweep {
         let folder = beside(out, ".parts");
         let found = depends_on(&folder);
         if !self.restart && is_complete(out, &digest, sweep.runs) {
-            if found.is_some_and(|found| found == digest) {
-                // Killed after the table was whole: only its parts remain.
+            if folder.is_dir() && found.is_none_or(|found| found == digest) {
+                // Killed after the table was whole: only its parts remain, or some of what was removed.
                 Store::open(&folder, "sweep", &digest, false)?.remove()?;
             }
             return Ok(sweep.runs);
