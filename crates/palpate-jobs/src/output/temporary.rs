@@ -43,7 +43,22 @@ pub fn abandon() {
     for folder in guard.folders.drain(..).rev() {
         // What was made for temporary folders goes with them, if nothing else has come into it.
         let is_temporary = folder.file_name().is_some_and(|name| name.to_string_lossy().starts_with(PREFIX));
-        let _ = if is_temporary { fs::remove_dir_all(&folder) } else { fs::remove_dir(&folder) };
+        if is_temporary {
+            remove(&folder);
+        } else {
+            let _ = fs::remove_dir(&folder);
+        }
+    }
+}
+
+/// Removes a temporary folder into which another thread may just be writing: a file that appears meanwhile keeps it from going.
+fn remove(folder: &Path) {
+    const TRIES: usize = 1000;
+    for _ in 0..TRIES {
+        match fs::remove_dir_all(folder) {
+            Err(error) if error.kind() != io::ErrorKind::NotFound => std::thread::yield_now(),
+            _ => return,
+        }
     }
 }
 
@@ -176,6 +191,24 @@ fn remove_stale(folder: &Path) {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// A file that another thread wrote while a signal removed the folder kept it from going.
+    #[test]
+    fn a_folder_goes_while_files_appear_in_it() {
+        let folder = tempfile::tempdir().unwrap();
+        for round in 0..20 {
+            let path = folder.path().join(format!("{PREFIX}{round}"));
+            fs::create_dir(&path).unwrap();
+            let into = path.clone();
+            let writes = std::thread::spawn(move || {
+                (0..).take_while(|at| fs::write(into.join(format!("{at}")), "").is_ok()).count()
+            });
+            while fs::read_dir(&path).unwrap().count() == 0 {}
+            remove(&path);
+            assert!(!path.exists(), "{round}");
+            assert!(writes.join().unwrap() > 0);
+        }
+    }
 
     #[test]
     fn what_a_kill_left_is_removed_and_what_is_held_stays() {
