@@ -1,5 +1,6 @@
 //! Long work beside the interpreter: without the GIL, ended by Ctrl-C, and no panic crosses.
 
+use std::io::{self, Write};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::process;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
@@ -229,4 +230,39 @@ pub(crate) fn writing_job<T: Send + 'static>(
     run: impl FnOnce(&mut dyn Watch) -> Result<T, JobError> + Send + 'static,
 ) -> PyResult<T> {
     writing(py, move |mut heard| run(&mut heard))?.map_err(failed)
+}
+
+/// A text that is put together piece by piece; Ctrl-C is heard in between.
+pub(crate) struct LongText<'py> {
+    py: Python<'py>,
+    bytes: Vec<u8>,
+    heard: usize,
+}
+
+impl<'py> LongText<'py> {
+    /// What `write` writes.
+    pub(crate) fn of(py: Python<'py>, write: impl FnOnce(&mut Self) -> io::Result<()>) -> PyResult<String> {
+        let (bytes, heard) = (Vec::new(), 0);
+        let mut text = Self { py, bytes, heard };
+        // The exception of a signal is what an error of writing brings.
+        write(&mut text)?;
+        Ok(String::from_utf8(text.bytes)?)
+    }
+}
+
+impl Write for LongText<'_> {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        /// Bytes that are written in some milliseconds.
+        const AT_ONCE: usize = 1 << 20;
+        if self.bytes.len() >= self.heard + AT_ONCE {
+            self.heard = self.bytes.len();
+            self.py.check_signals().map_err(io::Error::other)?;
+        }
+        self.bytes.extend_from_slice(bytes);
+        Ok(bytes.len())
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        Ok(())
+    }
 }

@@ -13,7 +13,7 @@ use serde::{Deserialize, Serialize};
 use crate::errors::{ModelError, of_mapping, refused_plainly, undescribed};
 use crate::shown::shown;
 use crate::table::{Column, Table};
-use crate::work::at_length;
+use crate::work::{LongText, at_length};
 
 /// A simulated contact over time, in SI, compression positive: arrays of one length, and a table for polars, pandas and pyarrow.
 #[pyclass(name = "Trajectory", module = "palpate", frozen, eq)]
@@ -75,10 +75,8 @@ shown! {
     }
 
     /// All series as the CSV that ``palpate simulate`` prints.
-    fn to_csv(&self) -> PyResult<String> {
-        let mut out = Vec::new();
-        write_trajectory(&mut out, &self.series)?;
-        Ok(String::from_utf8(out)?)
+    fn to_csv(&self, py: Python<'_>) -> PyResult<String> {
+        LongText::of(py, |out| write_trajectory(out, &self.series))
     }
 
     /// All series as a table.

@@ -10,6 +10,7 @@ use crate::errors::{PalpateError, refused_plainly, warn};
 use crate::html::framed;
 use crate::shown::shown;
 use crate::table::Table;
+use crate::work::LongText;
 
 /// What a calibrated body does over time, with two intervals of the force: of its mean (what the calibration leaves open), and of one
 /// reading (noise besides). Arrays of one length, and a table for polars, pandas and pyarrow; a figure in a notebook.
@@ -82,10 +83,8 @@ shown! {
     }
 
     /// All series as the CSV that ``palpate predict`` prints.
-    fn to_csv(&self) -> PyResult<String> {
-        let mut out = Vec::new();
-        write_prediction(&mut out, &self.predicted)?;
-        Ok(String::from_utf8(out)?)
+    fn to_csv(&self, py: Python<'_>) -> PyResult<String> {
+        LongText::of(py, |out| write_prediction(out, &self.predicted))
     }
 
     /// All series as a table.
