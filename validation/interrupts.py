@@ -494,7 +494,8 @@ def main():
 Jobs of palpate {version} interrupted at random times. Commands hear SIGINT and SIGTERM, calls of Python SIGINT. Required: the process has ended, or
 KeyboardInterrupt is raised, within {1e3 * requested.limit_s:.0f} ms; one second later the process uses no processor and has changed no file; no temporary file is left.
 After parallel work a fork of the process does the same work again with the same result within {FORK_S:.0f} s. Jobs that are not as required:
-{failed} of {len(rows)}. One command writes this page:
+{failed} of {len(rows)}. Pickles, lists of rows, columns and arrays taken from Python are copies of hundreds of megabytes here: a signal is heard when
+one has been made. One command writes this page:
 
 ```sh
 python validation/interrupts.py PALPATE --times {requested.times} --seed {requested.seed} --write
