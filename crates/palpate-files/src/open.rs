@@ -106,7 +106,7 @@ impl Contents {
     /// let contents = Contents::open(&path, &ReadOptions::default())?;
     /// assert_eq!(contents.format, Format::Text);
     /// assert_eq!(contents.parts[0].columns[1].unit.as_deref(), Some("N"));
-    /// let read = contents.read(0, &[2], &mut |_done, _total| {})?;
+    /// let read = contents.read(0, &[2], &mut |_done, _total| Ok(()))?;
     /// assert_eq!(read.values, [vec![0.01, 0.52]]);
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
@@ -153,7 +153,7 @@ impl Contents {
     /// Reads columns (numbers from 1, in any order) of the part with index `part`, as they are written.
     ///
     /// Where the part has several [clocks](Part::clocks), only columns of the same clock have the same length.
-    /// `progress` is given the bytes done and the bytes there are.
+    /// `progress` is given the bytes done and the bytes there are, and ends the reading where it returns an error.
     ///
     /// # Errors
     /// [`FileError`] where the part or a column does not exist, or a cell holds no finite number.

@@ -60,14 +60,14 @@ pub struct RecordFile {
 /// names it; a unit is never guessed. Commands and limits (`GoalForce`, `Force max`) are not measurements, and
 /// stress is used only where there is no force or the description requests it.
 ///
-/// `progress` receives the bytes read and the total.
+/// `progress` receives the bytes read and the total, and ends the reading where it returns an error.
 ///
 /// ```
 /// use palpate_files::record::read_record;
 /// # let folder = tempfile::tempdir()?;
 /// # let path = folder.path().join("press.csv");
 /// std::fs::write(&path, "Time (s),Weg (mm),Kraft (N)\n0,0,0\n1,5,12\n2,5,9\n")?;
-/// let file = read_record(&path, None, &mut |_done, _total| {})?;
+/// let file = read_record(&path, None, &mut |_done, _total| Ok(()))?;
 /// assert_eq!(file.record.displacement(), Some([0.0, 0.005, 0.005].as_slice()));
 /// assert_eq!(file.columns[1].name.as_deref(), Some("Weg"));
 /// # Ok::<(), Box<dyn std::error::Error>>(())

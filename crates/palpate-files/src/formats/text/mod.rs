@@ -21,7 +21,7 @@
 //! assert_eq!(layout.columns[1].name.as_deref(), Some("Force"));
 //! assert_eq!(layout.columns[1].unit.as_deref(), Some("N"));
 //!
-//! let read = read_columns(&input, &layout, &[1, 2], &mut |_done, _total| {})?;
+//! let read = read_columns(&input, &layout, &[1, 2], &mut |_done, _total| Ok(()))?;
 //! assert_eq!(read.values, [vec![0.0, 0.1], vec![0.01, 0.52]]);
 //! assert_eq!(read.line_of(1), Some(3));
 //! # Ok::<(), Box<dyn std::error::Error>>(())
