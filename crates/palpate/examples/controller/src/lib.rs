@@ -9,16 +9,25 @@ use palpate::contact::{Layers, Shape, Sides, Specimen};
 use palpate::latency::LatencyLaw;
 use palpate::simulate::{ContactModel, ContactState, Separation};
 
+/// A contact between two ticks.
+pub type State = [u8; ContactState::BYTES];
+
+/// Writes a body at rest at first touch to `state`.
+#[unsafe(no_mangle)]
+pub extern "C" fn contact_start(state: &mut State) {
+    *state = ContactState::default().to_bytes();
+}
+
 /// Moves the jaw to `displacement` (m, since first touch) within `dt` (s) and returns the contact force (N).
 ///
-/// `state` is the contact between two ticks; zeros are a body at rest at first touch. A step that cannot be taken gives NaN and
-/// leaves the state as it was.
+/// `state` was written by `contact_start` or by the tick before. Bytes that are no contact, and a step that cannot be taken, give NaN and
+/// leave the state as it was.
 #[unsafe(no_mangle)]
-pub extern "C" fn contact_step(state: &mut [u8; 16], dt: f64, displacement: f64) -> f64 {
+pub extern "C" fn contact_step(state: &mut State, dt: f64, displacement: f64) -> f64 {
     step(state, dt, displacement).unwrap_or(f64::NAN)
 }
 
-fn step(state: &mut [u8; 16], dt: f64, displacement: f64) -> Option<f64> {
+fn step(state: &mut State, dt: f64, displacement: f64) -> Option<f64> {
     let model = fingertip()?;
     let mut contact = ContactState::from_bytes(*state).ok()?;
     let force = contact.step(&model, dt, displacement).ok()?;
