@@ -55,9 +55,20 @@ pub fn abandon() {
 fn remove(folder: &Path) {
     const TRIES: usize = 1000;
     for _ in 0..TRIES {
+        empty(folder);
         match fs::remove_dir_all(folder) {
             Err(error) if error.kind() != io::ErrorKind::NotFound => std::thread::yield_now(),
             _ => return,
+        }
+    }
+}
+
+/// Removes everything in a temporary folder but its lock: of a removal that is killed the lock is left, by which the next run knows the rest.
+fn empty(folder: &Path) {
+    for entry in fs::read_dir(folder).into_iter().flatten().flatten() {
+        if entry.file_name() != LOCK {
+            let path = entry.path();
+            let _ = if path.is_dir() && !path.is_symlink() { fs::remove_dir_all(path) } else { fs::remove_file(path) };
         }
     }
 }
@@ -146,7 +157,7 @@ impl Temporary {
 
 impl Drop for Temporary {
     fn drop(&mut self) {
-        let _ = fs::remove_dir_all(&self.path);
+        remove(&self.path);
         forget(std::slice::from_ref(&self.path));
     }
 }
@@ -176,9 +187,7 @@ fn remove_stale(folder: &Path) {
             continue;
         }
         match File::open(path.join(LOCK)) {
-            Ok(lock) if lock.try_lock().is_ok() => {
-                let _ = fs::remove_dir_all(&path);
-            }
+            Ok(lock) if lock.try_lock().is_ok() => remove(&path),
             // Only an empty one goes.
             Err(error) if error.kind() == io::ErrorKind::NotFound => {
                 let _ = fs::remove_dir(&path);
@@ -208,6 +217,21 @@ mod tests {
             assert!(!path.exists(), "{round}");
             assert!(writes.join().unwrap() > 0);
         }
+    }
+
+    /// A removal that was killed behind the lock left files that no next run took away.
+    #[test]
+    fn a_removal_that_was_killed_goes_on() {
+        let folder = tempfile::tempdir().unwrap();
+        let left = folder.path().join(".palpate-left");
+        fs::create_dir_all(left.join("before")).unwrap();
+        for name in [LOCK, "before/1", "2"] {
+            fs::write(left.join(name), "").unwrap();
+        }
+        empty(&left);
+        assert_eq!(fs::read_dir(&left).unwrap().map(|entry| entry.unwrap().file_name()).collect::<Vec<_>>(), [LOCK]);
+        drop(Temporary::make(folder.path()).unwrap());
+        assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 0);
     }
 
     #[test]
