@@ -48,6 +48,11 @@ pub(crate) struct Found {
 /// Hears of the bytes done and of those there are while a file is read, and may end it.
 pub type Heard<'a> = dyn FnMut(u64, u64) -> Result<(), Cancelled> + 'a;
 
+/// The share `done` of `total` in the bytes of a file of this size.
+pub(crate) fn share(done: u64, total: u64, size: u64) -> u64 {
+    (done as f64 / total.max(1) as f64 * size as f64) as u64
+}
+
 /// What a format can do once it has looked into a file.
 pub(crate) trait ReadPart: Send + Sync {
     /// Reads the columns with these numbers (from 1, in any order, perhaps one twice) of the part with this index.

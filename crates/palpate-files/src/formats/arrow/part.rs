@@ -20,7 +20,7 @@ use crate::{
     error::{FileError, FileProblem, few, shorten, shown},
     faults::admits,
     input::Input,
-    table::{ColumnInfo, ColumnKind, Columns, Found, Heard, Part, ReadOptions, ReadPart, SkippedPart},
+    table::{ColumnInfo, ColumnKind, Columns, Found, Heard, Part, ReadOptions, ReadPart, SkippedPart, share},
 };
 
 /// Most columns of all tests together: each test describes its own.
@@ -184,14 +184,14 @@ impl ReadPart for Table {
             while let Some(stretch) = taking.stretches.first() {
                 row = row.max(stretch.start);
                 let Some((first, batch)) = kept.batch(row) else { break };
-                progress(row.saturating_sub(span.start) * size / (span.end - span.start).max(1), size)?;
+                progress(share(row.saturating_sub(span.start), span.end - span.start, size), size)?;
                 taking.take(first, batch)?;
                 row = first.saturating_add(batch.num_rows() as u64);
             }
         } else {
             self.source.visit(&indices, span.clone(), &mut |first, batch, (done, total)| {
                 taking.take(first, batch)?;
-                progress((done as f64 / total.max(1) as f64 * size as f64) as u64, size)?;
+                progress(share(done, total, size), size)?;
                 let end = first.saturating_add(batch.num_rows() as u64);
                 Ok(if end >= span.end { ControlFlow::Break(()) } else { ControlFlow::Continue(()) })
             })?;

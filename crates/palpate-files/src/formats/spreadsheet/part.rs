@@ -18,7 +18,7 @@ use super::{
 use crate::{
     error::FileError,
     input::Input,
-    table::{ColumnKind, Columns, Found, Heard, Part, ReadOptions, ReadPart, SkippedPart},
+    table::{ColumnKind, Columns, Found, Heard, Part, ReadOptions, ReadPart, SkippedPart, share},
 };
 
 /// How a workbook is written.
@@ -177,13 +177,10 @@ impl ReadPart for Workbook {
         let name = self.book.sheets().get(*sheet).map_or("", |sheet| sheet.name.as_str());
         // The bytes of the sheet as a share of those of the file.
         let size = self.input.size;
-        let mut share = |done: u64, total: u64| {
-            let share = done as f64 / total.max(1) as f64;
-            progress((share * size as f64) as u64, size)
-        };
+        let mut of_file = |done: u64, total: u64| progress(share(done, total, size), size);
         let days_to_epoch = self.book.days_to_epoch();
         let visit = |each: &mut Visitor<'_>| self.visit(part, *sheet, each);
-        read::read(&self.input, (name, table, days_to_epoch), &visit, columns, &mut share)
+        read::read(&self.input, (name, table, days_to_epoch), &visit, columns, &mut of_file)
     }
 }
 
