@@ -47,8 +47,12 @@ macro_rules! shown {
 
             #[classmethod]
             #[pyo3(signature = (json, format=0))]
-            fn _from_json(_class: &Bound<'_, pyo3::types::PyType>, json: &str, format: u32) -> PyResult<Self> {
-                $crate::work::unpickled(json, format)
+            fn _from_json(
+                class: &Bound<'_, pyo3::types::PyType>,
+                json: pyo3::pybacked::PyBackedStr,
+                format: u32,
+            ) -> PyResult<Self> {
+                $crate::work::unpickled(class.py(), json, format)
             }
 
             fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<$crate::work::Made<'py, (String, u32)>> {

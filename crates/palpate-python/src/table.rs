@@ -9,17 +9,20 @@ use arrow_array::{Array, ArrayRef, BooleanArray, Float64Array, Int64Array, Recor
 use arrow_ipc::reader::StreamReader;
 use arrow_ipc::writer::StreamWriter;
 use arrow_schema::{ArrowError, DataType};
-use numpy::{PyArray1, PyArrayMethods};
+use numpy::PyArrayMethods;
 use palpate::number::significant;
 use palpate_jobs::output::sha256;
 use palpate_report::result::{PARAMETER_COLUMNS, ParameterColumn, ParameterRow};
+use pyo3::IntoPyObjectExt;
 use pyo3::exceptions::{PyKeyError, PyRuntimeError, PyTypeError};
 use pyo3::prelude::*;
+use pyo3::pybacked::PyBackedBytes;
 use pyo3::types::{PyBytes, PyDict, PyList, PyString, PyType};
 use pyo3_arrow::PyTable;
 
+use crate::arrays::array;
 use crate::errors::{PalpateError, refused, refused_plainly};
-use crate::work::{Made, PICKLE, check_pickle};
+use crate::work::{Made, PICKLE, at_length, check_pickle};
 
 /// Columns of results, each named with its unit.
 ///
@@ -104,7 +107,7 @@ pub(crate) fn parameter_columns(rows: &[ParameterRow]) -> Vec<(&'static str, Arr
 /// Rows that a notebook shows of each end of a table.
 const ENDS: usize = 5;
 
-/// Rows that become dicts in some milliseconds.
+/// Rows that become objects of Python in some milliseconds.
 const AT_ONCE: usize = 1 << 12;
 
 /// A cell as a notebook shows it.
@@ -146,27 +149,15 @@ impl Table {
 
     /// The rows, a dict each: ``pandas.DataFrame(table)`` is a table of them.
     pub(crate) fn __iter__<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
-        let names = self.column_names();
-        let cells = |name: &String| -> PyResult<Bound<'py, PyAny>> {
-            let column = self.__getitem__(py, PyString::new(py, name).as_any())?;
-            // A row of several values stays an array.
-            let single = column.getattr("ndim").is_ok_and(|ndim| ndim.eq(1).unwrap_or(false));
-            if single { column.call_method0("tolist") } else { Ok(column) }
+        let names = self.column_names().iter().map(|name| PyString::new(py, name).unbind()).collect();
+        let (batch, next, columns) = (self.batch.clone(), 0, Vec::new());
+        let rows = Rows {
+            batch,
+            names,
+            next,
+            columns,
         };
-        let columns: Vec<Bound<'py, PyAny>> = names.iter().map(cells).collect::<PyResult<_>>()?;
-        let row = |index: usize| -> PyResult<Bound<'py, PyDict>> {
-            if index.is_multiple_of(AT_ONCE) {
-                py.check_signals()?;
-            }
-            let row = PyDict::new(py);
-            names
-                .iter()
-                .zip(&columns)
-                .try_for_each(|(name, column)| row.set_item(name, column.get_item(index)?))?;
-            Ok(row)
-        };
-        let rows: Vec<Bound<'py, PyDict>> = (0..self.__len__()).map(row).collect::<PyResult<_>>()?;
-        Ok(PyList::new(py, rows)?.try_iter()?.into_any())
+        Ok(Bound::new(py, rows)?.into_any())
     }
 
     fn __contains__(&self, name: &Bound<'_, PyAny>) -> bool {
@@ -180,29 +171,7 @@ impl Table {
         let name: String = name.extract().map_err(found)?;
         let missing = || PyKeyError::new_err(format!("no column is called {name:?}; columns are {names}"));
         let column = self.batch.column_by_name(&name).ok_or_else(missing)?;
-        Ok(match column.data_type() {
-            DataType::Float64 => {
-                let values = column.as_primitive::<Float64Type>().iter().map(|value| value.unwrap_or(f64::NAN));
-                PyArray1::from_iter(py, values).into_any()
-            }
-            DataType::Int64 if column.null_count() == 0 => {
-                PyArray1::from_slice(py, column.as_primitive::<Int64Type>().values()).into_any()
-            }
-            DataType::Int64 => {
-                let number = |value: Option<i64>| value.map_or(f64::NAN, |value| value as f64);
-                PyArray1::from_iter(py, column.as_primitive::<Int64Type>().iter().map(number)).into_any()
-            }
-            DataType::FixedSizeList(_, width) => {
-                let rows = column.as_fixed_size_list();
-                let numbers = rows.values().as_primitive::<Float64Type>();
-                let number =
-                    |index: usize| if rows.is_valid(index / *width as usize) { numbers.value(index) } else { f64::NAN };
-                let all = PyArray1::from_iter(py, (0..rows.len() * *width as usize).map(number));
-                all.reshape([rows.len(), *width as usize])?.into_any()
-            }
-            DataType::Boolean => PyList::new(py, column.as_boolean().iter())?.into_any(),
-            _ => PyList::new(py, column.as_string::<i32>().iter())?.into_any(),
-        })
+        of_python(py, column)
     }
 
     /// The Arrow PyCapsule interface: `polars.DataFrame(table)`, `pyarrow.table(table)`.
@@ -218,31 +187,40 @@ impl Table {
 
     #[classmethod]
     #[pyo3(signature = (bytes, digest="", format=0))]
-    fn _from_ipc(_class: &Bound<'_, PyType>, bytes: &[u8], digest: &str, format: u32) -> PyResult<Self> {
+    fn _from_ipc(class: &Bound<'_, PyType>, bytes: PyBackedBytes, digest: &str, format: u32) -> PyResult<Self> {
         check_pickle(format)?;
-        let damaged = |what: &str| refused::<PalpateError>(format!("the pickle is damaged: {what}"), None::<&str>);
-        // Lengths in the bytes are taken at their word by their reader.
-        if sha256(bytes) != digest {
-            return Err(damaged("expected bytes of its digest, found others"));
-        }
-        let unread = |error: ArrowError| damaged(&error.to_string());
-        let mut reader = StreamReader::try_new(Cursor::new(bytes), None).map_err(unread)?;
-        let schema = reader.schema();
-        let batch = reader.next().transpose().map_err(unread)?;
-        let batch = batch.unwrap_or_else(|| RecordBatch::new_empty(schema));
-        match batch.columns().iter().find(|column| !is_column_of_ours(column.data_type())) {
-            Some(column) => Err(damaged(&format!("a column of {}", column.data_type()))),
-            None => Ok(Self { batch }),
-        }
+        let digest = digest.to_owned();
+        let read = move |_| -> Result<_, String> {
+            // Lengths in the bytes are taken at their word by their reader.
+            if sha256(&bytes) != digest {
+                return Err("expected bytes of its digest, found others".to_owned());
+            }
+            let unread = |error: ArrowError| error.to_string();
+            let mut reader = StreamReader::try_new(Cursor::new(&bytes), None).map_err(unread)?;
+            let schema = reader.schema();
+            let batch = reader.next().transpose().map_err(unread)?;
+            let batch = batch.unwrap_or_else(|| RecordBatch::new_empty(schema));
+            match batch.columns().iter().find(|column| !is_column_of_ours(column.data_type())) {
+                Some(column) => Err(format!("a column of {}", column.data_type())),
+                None => Ok(Self { batch }),
+            }
+        };
+        let damaged = |what| refused::<PalpateError>(format!("the pickle is damaged: {what}"), None::<&str>);
+        at_length(class.py(), read)?.map_err(damaged)
     }
 
     fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Made<'py, (Bound<'py, PyBytes>, String, u32)>> {
-        let mut writer =
-            StreamWriter::try_new(Vec::new(), &self.batch.schema()).map_err(refused_plainly::<PyRuntimeError>)?;
-        writer.write(&self.batch).map_err(refused_plainly::<PyRuntimeError>)?;
-        let bytes = writer.into_inner().map_err(refused_plainly::<PyRuntimeError>)?;
+        let batch = self.batch.clone();
+        let write = move |_| -> Result<_, ArrowError> {
+            let mut writer = StreamWriter::try_new(Vec::new(), &batch.schema())?;
+            writer.write(&batch)?;
+            let bytes = writer.into_inner()?;
+            let digest = sha256(&bytes);
+            Ok((bytes, digest))
+        };
+        let (bytes, digest) = at_length(py, write)?.map_err(refused_plainly::<PyRuntimeError>)?;
         let make = py.get_type::<Self>().getattr("_from_ipc")?;
-        Ok((make, (PyBytes::new(py, &bytes), sha256(&bytes), PICKLE)))
+        Ok((make, (PyBytes::new(py, &bytes), digest, PICKLE)))
     }
 
     /// The first and the last rows as a notebook shows them.
@@ -263,6 +241,108 @@ impl Table {
     fn __repr__(&self) -> String {
         let names = self.column_names().join(", ");
         format!("<palpate.Table of {} rows: {names}>", self.batch.num_rows())
+    }
+}
+
+/// A column as Python has it: an array of numbers, or a list.
+fn of_python<'py>(py: Python<'py>, column: &ArrayRef) -> PyResult<Bound<'py, PyAny>> {
+    Ok(match column.data_type() {
+        DataType::Float64 => {
+            array(py, column.as_primitive::<Float64Type>().iter().map(|value| value.unwrap_or(f64::NAN)))?.into_any()
+        }
+        DataType::Int64 if column.null_count() == 0 => {
+            array(py, column.as_primitive::<Int64Type>().values().iter().copied())?.into_any()
+        }
+        DataType::Int64 => {
+            let number = |value: Option<i64>| value.map_or(f64::NAN, |value| value as f64);
+            array(py, column.as_primitive::<Int64Type>().iter().map(number))?.into_any()
+        }
+        DataType::FixedSizeList(_, width) => {
+            let (rows, width) = (column.as_fixed_size_list(), *width as usize);
+            let numbers = rows.values().as_primitive::<Float64Type>();
+            let number = |index: usize| if rows.is_valid(index / width) { numbers.value(index) } else { f64::NAN };
+            array(py, (0..rows.len() * width).map(number))?.reshape([rows.len(), width])?.into_any()
+        }
+        DataType::Boolean => listed(py, column.as_boolean().iter().map(|truth| truth.into_bound_py_any(py)))?,
+        _ => {
+            // A word that stands in many rows is one object.
+            let mut last: Option<(&str, Bound<'py, PyAny>)> = None;
+            listed(
+                py,
+                column.as_string::<i32>().iter().map(|text| {
+                    let Some(text) = text else {
+                        return Ok(py.None().into_bound(py));
+                    };
+                    if let Some((_, word)) = last.as_ref().filter(|(word, _)| *word == text) {
+                        return Ok(word.clone());
+                    }
+                    let word = PyString::new(py, text).into_any();
+                    last = Some((text, word.clone()));
+                    Ok(word)
+                }),
+            )?
+        }
+    })
+}
+
+/// A list of values.
+fn listed<'py>(
+    py: Python<'py>,
+    values: impl Iterator<Item = PyResult<Bound<'py, PyAny>>>,
+) -> PyResult<Bound<'py, PyAny>> {
+    let list = PyList::empty(py);
+    for (index, value) in values.enumerate() {
+        if index.is_multiple_of(AT_ONCE) {
+            py.check_signals()?;
+        }
+        list.append(value?)?;
+    }
+    Ok(list.into_any())
+}
+
+/// The rows of a table, which become dicts when they are asked for.
+#[pyclass(module = "palpate")]
+struct Rows {
+    batch: RecordBatch,
+    names: Vec<Py<PyString>>,
+    next: usize,
+    /// The columns of the rows from the last multiple of [`AT_ONCE`] on.
+    columns: Vec<Py<PyAny>>,
+}
+
+#[pymethods]
+impl Rows {
+    fn __iter__(slf: PyRef<'_, Self>) -> PyRef<'_, Self> {
+        slf
+    }
+
+    fn __length_hint__(&self) -> usize {
+        self.batch.num_rows() - self.next
+    }
+
+    fn __next__<'py>(&mut self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyDict>>> {
+        let (begin, count) = (self.next, self.batch.num_rows());
+        if begin == count {
+            return Ok(None);
+        }
+        let within = begin % AT_ONCE;
+        if within == 0 {
+            py.check_signals()?;
+            let some = self.batch.slice(begin, AT_ONCE.min(count - begin));
+            let cells = |column: &ArrayRef| -> PyResult<Py<PyAny>> {
+                let values = of_python(py, column)?;
+                // A row of several values stays an array.
+                let single = values.getattr("ndim").is_ok_and(|ndim| ndim.eq(1).unwrap_or(false));
+                Ok(if single { values.call_method0("tolist")? } else { values }.unbind())
+            };
+            self.columns = some.columns().iter().map(cells).collect::<PyResult<_>>()?;
+        }
+        let row = PyDict::new(py);
+        for (name, column) in self.names.iter().zip(&self.columns) {
+            row.set_item(name, column.bind(py).get_item(within)?)?;
+        }
+        self.next += 1;
+        Ok(Some(row))
     }
 }
 

@@ -13,6 +13,7 @@ use palpate::watch::{Cancelled, Progress, Watch};
 use palpate_jobs::JobError;
 use pyo3::PyTypeInfo;
 use pyo3::prelude::*;
+use pyo3::pybacked::PyBackedStr;
 use rayon::{ThreadPool, ThreadPoolBuildError, ThreadPoolBuilder};
 use serde::Serialize;
 use serde::de::DeserializeOwned;
@@ -20,11 +21,11 @@ use serde::de::DeserializeOwned;
 use crate::errors::{PalpateError, failed, refused, refused_plainly};
 
 /// How often signals are looked for.
-const LOOK: Duration = Duration::from_millis(50);
+const LOOK: Duration = Duration::from_millis(20);
 
 /// How long an interrupted call waits for work that has no effect but its result: it looks up between steps, and one of them over
 /// millions of samples takes longer.
-const PATIENCE: Duration = Duration::from_millis(100);
+const PATIENCE: Duration = Duration::from_millis(50);
 
 /// What work does beside computing its result.
 #[derive(Clone, Copy, PartialEq, Eq)]
@@ -63,10 +64,19 @@ pub(crate) fn check_pickle(format: u32) -> PyResult<()> {
 }
 
 /// What an object was made of, from its pickle.
-pub(crate) fn unpickled<T: DeserializeOwned>(json: &str, format: u32) -> PyResult<T> {
+pub(crate) fn unpickled<T: DeserializeOwned + Send + 'static>(
+    py: Python<'_>,
+    json: PyBackedStr,
+    format: u32,
+) -> PyResult<T> {
+    /// Bytes that are read in some milliseconds.
+    const BRIEF: usize = 1 << 18;
     check_pickle(format)?;
-    let damaged = |error| refused::<PalpateError>(format!("the pickle is damaged: {error}"), None::<&str>);
-    serde_json::from_str(json).map_err(damaged)
+    let read = match json.len() <= BRIEF {
+        true => serde_json::from_str(&json),
+        false => at_length(py, move |_| serde_json::from_str(&json))?,
+    };
+    read.map_err(|error| refused::<PalpateError>(format!("the pickle is damaged: {error}"), None::<&str>))
 }
 
 /// What makes an object again from its parts as JSON: `_from_json` of its class.
@@ -74,7 +84,7 @@ pub(crate) fn made_again<'py, T: PyTypeInfo>(
     py: Python<'py>,
     parts: &impl Serialize,
 ) -> PyResult<Made<'py, (String, u32)>> {
-    let json = serde_json::to_string(parts).map_err(refused_plainly::<PalpateError>)?;
+    let json = Long::text(py, |out| Ok(serde_json::to_writer(out, parts)?))?;
     Ok((py.get_type::<T>().getattr("_from_json")?, (json, PICKLE)))
 }
 
@@ -232,25 +242,30 @@ pub(crate) fn writing_job<T: Send + 'static>(
     writing(py, move |mut heard| run(&mut heard))?.map_err(failed)
 }
 
-/// A text that is put together piece by piece; Ctrl-C is heard in between.
-pub(crate) struct LongText<'py> {
+/// Bytes that are put together piece by piece; Ctrl-C is heard in between.
+pub(crate) struct Long<'py> {
     py: Python<'py>,
     bytes: Vec<u8>,
     heard: usize,
 }
 
-impl<'py> LongText<'py> {
+impl<'py> Long<'py> {
     /// What `write` writes.
-    pub(crate) fn of(py: Python<'py>, write: impl FnOnce(&mut Self) -> io::Result<()>) -> PyResult<String> {
+    pub(crate) fn bytes(py: Python<'py>, write: impl FnOnce(&mut Self) -> io::Result<()>) -> PyResult<Vec<u8>> {
         let (bytes, heard) = (Vec::new(), 0);
-        let mut text = Self { py, bytes, heard };
+        let mut long = Self { py, bytes, heard };
         // The exception of a signal is what an error of writing brings.
-        write(&mut text)?;
-        Ok(String::from_utf8(text.bytes)?)
+        write(&mut long)?;
+        Ok(long.bytes)
+    }
+
+    /// The text that `write` writes.
+    pub(crate) fn text(py: Python<'py>, write: impl FnOnce(&mut Self) -> io::Result<()>) -> PyResult<String> {
+        Ok(String::from_utf8(Self::bytes(py, write)?)?)
     }
 }
 
-impl Write for LongText<'_> {
+impl Write for Long<'_> {
     fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
         /// Bytes that are written in some milliseconds.
         const AT_ONCE: usize = 1 << 20;

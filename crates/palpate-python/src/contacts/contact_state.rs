@@ -1,5 +1,6 @@
 //! Contacts that a controller moves one step at a time: one, or many side by side.
 
+use std::io::Write;
 use std::path::{Path, PathBuf};
 
 use numpy::{Element, PyArray1};
@@ -9,11 +10,11 @@ use palpate_files::description::{DescriptionError, parse_scene, read_protocol_te
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyList, PyTuple, PyType};
 
-use crate::arrays::doubles;
+use crate::arrays::{AT_ONCE, array, doubles};
 use crate::errors::{ModelError, OptionError, of_mapping, refused_plainly, undescribed};
 use crate::files::stated;
 use crate::shown::shown;
-use crate::work::{Made, PICKLE, briefly, check_pickle};
+use crate::work::{Long, Made, PICKLE, briefly, check_pickle};
 
 /// A body and its law as a description has them: path of a file or mapping; and a text that makes them again anywhere.
 fn described(model: &Bound<'_, PyAny>) -> PyResult<(ContactModel, String)> {
@@ -232,17 +233,23 @@ impl ContactStates {
     ) -> PyResult<Bound<'py, PyArray1<f64>>> {
         let count = self.states.len();
         let (dt, to) = (for_each(dt_s, "dt_s", count)?, for_each(to, name, count)?);
-        let moved = briefly(py, || {
-            let mut states = self.states.clone();
-            let mut results = Vec::with_capacity(states.len());
-            for (index, state) in states.iter_mut().enumerate() {
-                results.push(step(state, self.model(index), dt[index], to[index]).map_err(|error| (index, error))?);
-            }
-            Ok((states, results))
-        })?;
-        let (states, results) = moved.map_err(|(index, error): (usize, StepError)| {
-            refused_plainly::<ModelError>(format!("contact {index}: {error}"))
-        })?;
+        let (mut states, mut results) = (Vec::with_capacity(count), Vec::with_capacity(count));
+        while states.len() < count {
+            py.check_signals()?;
+            let moved = briefly(py, || {
+                for index in states.len()..count.min(states.len() + AT_ONCE) {
+                    let mut state = self.states[index];
+                    results.push(
+                        step(&mut state, self.model(index), dt[index], to[index]).map_err(|error| (index, error))?,
+                    );
+                    states.push(state);
+                }
+                Ok(())
+            })?;
+            moved.map_err(|(index, error): (usize, StepError)| {
+                refused_plainly::<ModelError>(format!("contact {index}: {error}"))
+            })?;
+        }
         self.states = states;
         Ok(PyArray1::from_vec(py, results))
     }
@@ -255,8 +262,8 @@ impl ContactStates {
         &self,
         py: Python<'py>,
         of: impl Fn(&State, &ContactModel) -> T,
-    ) -> Bound<'py, PyArray1<T>> {
-        PyArray1::from_iter(py, self.states.iter().enumerate().map(|(index, state)| of(state, self.model(index))))
+    ) -> PyResult<Bound<'py, PyArray1<T>>> {
+        array(py, self.states.iter().enumerate().map(|(index, state)| of(state, self.model(index))))
     }
 }
 
@@ -264,11 +271,11 @@ shown! {
     ContactStates: self
     copied getters {
         /// Forces now, N.
-        force_n<'py>(py): Bound<'py, PyArray1<f64>> = self.of_each(py, State::force),
+        force_n<'py>(py): PyResult<Bound<'py, PyArray1<f64>>> = self.of_each(py, State::force),
         /// Displacements of the surfaces at one contact each, m.
-        surface_m<'py>(py): Bound<'py, PyArray1<f64>> = self.of_each(py, State::surface),
+        surface_m<'py>(py): PyResult<Bound<'py, PyArray1<f64>>> = self.of_each(py, State::surface),
         /// Whether the jaws touch their bodies.
-        is_touching<'py>(py): Bound<'py, PyArray1<bool>> = self.of_each(py, State::is_touching),
+        is_touching<'py>(py): PyResult<Bound<'py, PyArray1<bool>>> = self.of_each(py, State::is_touching),
     }
 
     #[new]
@@ -351,29 +358,41 @@ shown! {
     fn _from_parts(
         _class: &Bound<'_, PyType>,
         texts: Vec<String>,
-        states: Vec<[u8; State::BYTES]>,
+        states: &Bound<'_, PyBytes>,
         format: u32,
     ) -> PyResult<Self> {
         check_pickle(format)?;
-        let (models, count) = (texts.len(), states.len());
+        let (parts, rest) = states.as_bytes().as_chunks::<{ State::BYTES }>();
+        if !rest.is_empty() {
+            let message = format!("expected states of {} bytes, found {} more", State::BYTES, rest.len());
+            return Err(refused_plainly::<ModelError>(message));
+        }
+        let (models, count) = (texts.len(), parts.len());
         if models == 0 || !(1..=MOST).contains(&count) || (models > 1 && models != count) {
             let message = format!("expected one model, or one for each contact, found {models} for {count} contacts");
             return Err(refused_plainly::<ModelError>(message));
         }
         let model = |text: &String| latency(parse_scene(text, Path::new("model")));
         let models: Vec<ContactModel> = texts.iter().map(model).collect::<PyResult<_>>()?;
-        let of_each = models.iter().cycle().zip(states);
+        let mut kept = Vec::with_capacity(count);
+        for (model, state) in models.iter().cycle().zip(parts) {
+            if kept.len().is_multiple_of(AT_ONCE) {
+                states.py().check_signals()?;
+            }
+            kept.push(state_of(model, *state)?);
+        }
         Ok(Self {
-            states: of_each.map(|(model, state)| state_of(model, state)).collect::<PyResult<_>>()?,
             models,
+            states: kept,
             texts,
         })
     }
 
     #[expect(clippy::type_complexity, reason = "what pickle asks for")]
-    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Made<'py, (Vec<String>, Vec<Bound<'py, PyBytes>>, u32)>> {
-        let states = self.states.iter().map(|state| PyBytes::new(py, &state.to_bytes())).collect();
-        Ok((py.get_type::<Self>().getattr("_from_parts")?, (self.texts.clone(), states, PICKLE)))
+    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Made<'py, (Vec<String>, Bound<'py, PyBytes>, u32)>> {
+        let states = Long::bytes(py, |out| self.states.iter().try_for_each(|state| out.write_all(&state.to_bytes())))?;
+        let make = py.get_type::<Self>().getattr("_from_parts")?;
+        Ok((make, (self.texts.clone(), PyBytes::new(py, &states), PICKLE)))
     }
 
     fn __repr__(&self) -> String {

@@ -13,7 +13,7 @@ use serde::{Deserialize, Serialize};
 use crate::errors::{ModelError, of_mapping, refused_plainly, undescribed};
 use crate::shown::shown;
 use crate::table::{Column, Table};
-use crate::work::{LongText, at_length};
+use crate::work::{Heard, Long, at_length};
 
 /// A simulated contact over time, in SI, compression positive: arrays of one length, and a table for polars, pandas and pyarrow.
 #[pyclass(name = "Trajectory", module = "palpate", frozen, eq)]
@@ -25,18 +25,19 @@ pub(crate) struct Trajectory {
 
 /// Simulates a protocol in a file, or in a text.
 #[pyfunction]
-pub(crate) fn simulate(py: Python<'_>, path: Option<PathBuf>, text: Option<&str>) -> PyResult<Trajectory> {
-    let protocol = match path {
-        Some(path) => read_protocol(&path),
-        None => parse_protocol(text.unwrap_or_default(), Path::new("protocol")).map_err(of_mapping),
+pub(crate) fn simulate(py: Python<'_>, path: Option<PathBuf>, text: Option<String>) -> PyResult<Trajectory> {
+    let run = move |mut heard: Heard| {
+        let protocol = match path {
+            Some(path) => read_protocol(&path),
+            None => parse_protocol(&text.unwrap_or_default(), Path::new("protocol")).map_err(of_mapping),
+        };
+        let protocol = protocol.map_err(undescribed)?;
+        let series = simulate_watched(protocol.drive(), &protocol.contact, &protocol.sampling, &mut heard);
+        Ok(Trajectory {
+            series: series.map_err(refused_plainly::<ModelError>)?,
+        })
     };
-    let protocol = protocol.map_err(undescribed)?;
-    let series = at_length(py, move |mut heard| {
-        simulate_watched(protocol.drive(), &protocol.contact, &protocol.sampling, &mut heard)
-    })?;
-    Ok(Trajectory {
-        series: series.map_err(refused_plainly::<ModelError>)?,
-    })
+    at_length(py, run)?
 }
 
 fn reported(event: &ContactEvent) -> (String, f64, f64) {
@@ -76,7 +77,7 @@ shown! {
 
     /// All series as the CSV that ``palpate simulate`` prints.
     fn to_csv(&self, py: Python<'_>) -> PyResult<String> {
-        LongText::of(py, |out| write_trajectory(out, &self.series))
+        Long::text(py, |out| write_trajectory(out, &self.series))
     }
 
     /// All series as a table.

@@ -1,13 +1,13 @@
 //! One protocol with many numbers.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use arrow_array::{ArrayRef, FixedSizeListArray, Float64Array, Int64Array, StringArray};
 use arrow_schema::{DataType, Field};
 use palpate::simulate::{Sampling, simulate};
 use palpate::watch::{Cancelled, Progress};
-use palpate_files::description::{parse_runs, read_protocol_text};
+use palpate_files::description::{Sweep, parse_runs, read_protocol_text};
 use palpate_files::parquet_table::{Rows, Values};
 use palpate_jobs::{sweep_fields, sweep_rows};
 use pyo3::exceptions::PyRuntimeError;
@@ -41,40 +41,42 @@ pub(crate) fn simulate_many(
         }
         None => (PathBuf::from("protocol"), text.unwrap_or_default()),
     };
-    let columns = numbers.iter().map(|(name, values)| Ok((name.as_str(), doubles(values, name)?)));
-    let columns: Vec<(&str, Vec<f64>)> = columns.collect::<PyResult<_>>()?;
-    let lines = |error| if of_text { of_mapping(error) } else { error };
-    let sweep = parse_runs(&text, &path, &columns).map_err(lines).map_err(undescribed)?;
+    let numbers = numbers.iter().map(|(name, values)| Ok((name.clone(), doubles(values, name)?)));
+    let numbers: Vec<(String, Vec<f64>)> = numbers.collect::<PyResult<_>>()?;
     let times = times_s.map(|times| doubles(times, "times_s")).transpose()?;
-    if let Some(times) = &times {
+    let run = move |heard: Heard| {
+        let sweep = parse_runs(&text, &path, &numbers).map_err(|error| if of_text { of_mapping(error) } else { error });
+        simulated(&sweep.map_err(undescribed)?, &path, times.as_deref(), &heard)
+    };
+    at_length_reported(py, progress.as_ref(), run)?
+}
+
+/// A row for each run; with `times` the forces then.
+fn simulated(sweep: &Sweep, path: &Path, times: Option<&[f64]>, heard: &Heard) -> PyResult<Table> {
+    if let Some(times) = times {
         // Times outside the motion are wrong for all runs alike, but for those whose holds are swept.
         let base = &sweep.base;
-        simulate(base.drive(), &base.contact, &Sampling::Times(times.clone()))
+        simulate(base.drive(), &base.contact, &Sampling::Times(times.to_vec()))
             .map_err(refused_plainly::<ModelError>)?;
     }
-    let fields = sweep_fields(&sweep);
-    let samples = times.as_ref().map_or(0, Vec::len);
-    let work = move |heard: Heard| {
-        let share = |share: u64| {
-            let runs = share * SHARE..((share + 1) * SHARE).min(sweep.runs);
-            let times = times.as_deref().unwrap_or_default();
-            let (Rows { columns }, forces) =
-                sweep_rows(&sweep, &path, runs, times, &mut |_: Progress<'_>| heard.step())?;
-            Ok((columns, forces))
-        };
-        let shares = (0..sweep.runs.div_ceil(SHARE)).into_par_iter().map(share);
-        in_parallel(|| shares.collect::<Result<Vec<_>, Cancelled>>())
+    let times = times.unwrap_or_default();
+    let share = |share: u64| {
+        let runs = share * SHARE..((share + 1) * SHARE).min(sweep.runs);
+        let (Rows { columns }, forces) = sweep_rows(sweep, path, runs, times, &mut |_: Progress<'_>| heard.step())?;
+        Ok((columns, forces))
     };
-    let shares = at_length_reported(py, progress.as_ref(), work)?.map_err(refused_plainly::<PalpateError>)?;
-    let shares = shares.map_err(refused_plainly::<PalpateError>)?;
+    let shares = (0..sweep.runs.div_ceil(SHARE)).into_par_iter().map(share);
+    let shares = in_parallel(|| shares.collect::<Result<Vec<_>, Cancelled>>());
+    let shares = shares.map_err(refused_plainly::<PalpateError>)?.map_err(refused_plainly::<PalpateError>)?;
+    let fields = sweep_fields(sweep);
     let columns = fields.iter().enumerate().map(|(index, field)| {
         let parts = shares.iter().filter_map(|(columns, _)| columns.get(index));
         (field.name.as_str(), joined(parts))
     });
     let mut columns: Vec<(&str, ArrayRef)> = columns.collect();
-    if samples > 0 {
+    if !times.is_empty() {
         let all = shares.iter().flat_map(|(_, forces)| forces);
-        columns.push(("force_n", lists(all, samples)?));
+        columns.push(("force_n", lists(all, times.len())?));
     }
     Table::of(columns)
 }

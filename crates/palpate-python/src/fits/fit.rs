@@ -15,7 +15,7 @@ use pyo3::prelude::*;
 use pyo3::types::{IntoPyDict, PyDict};
 use serde::{Deserialize, Serialize};
 
-use crate::arrays::doubles;
+use crate::arrays::{array, doubles};
 use crate::errors::{FitError, OptionError, choice, one_of, refused_plainly, unfitted};
 use crate::shown::shown;
 use crate::work::{at_length, briefly, plain};
@@ -188,9 +188,9 @@ shown! {
         interval: Option<f64>,
         of: &str,
     ) -> PyResult<Bound<'py, PyAny>> {
-        let elapsed = match (time_s, elapsed_s) {
-            (Some(times), None) => doubles(times, "time_s")?.iter().map(|time| time - self.fit.start).collect(),
-            (None, Some(elapsed)) => doubles(elapsed, "elapsed_s")?,
+        let (mut elapsed, start) = match (time_s, elapsed_s) {
+            (Some(times), None) => (doubles(times, "time_s")?, self.fit.start),
+            (None, Some(elapsed)) => (doubles(elapsed, "elapsed_s")?, 0.0),
             _ => {
                 let message = "predict takes either time_s, on the clock of the record, or elapsed_s, since its first sample";
                 return Err(refused_plainly::<OptionError>(message));
@@ -204,6 +204,10 @@ shown! {
                 return Err(refused_plainly::<OptionError>(message));
             }
         };
+        for some in elapsed.chunks_mut(AT_ONCE) {
+            py.check_signals()?;
+            some.iter_mut().for_each(|time| *time -= start);
+        }
         let Some(confidence) = interval else {
             let mut values = Vec::with_capacity(elapsed.len());
             for some in elapsed.chunks(AT_ONCE) {
@@ -220,10 +224,10 @@ shown! {
             py.check_signals()?;
             briefly(py, || estimates.extend(some.iter().map(estimate)))?;
         }
-        let column = |pick: fn(&Estimate) -> f64| PyArray1::from_iter(py, estimates.iter().map(pick));
-        let value = column(|estimate| estimate.value);
-        let low = column(|estimate| estimate.interval.map_or(f64::NAN, |interval| interval.0));
-        let high = column(|estimate| estimate.interval.map_or(f64::NAN, |interval| interval.1));
+        let column = |pick: fn(&Estimate) -> f64| array(py, estimates.iter().map(pick));
+        let value = column(|estimate| estimate.value)?;
+        let low = column(|estimate| estimate.interval.map_or(f64::NAN, |interval| interval.0))?;
+        let high = column(|estimate| estimate.interval.map_or(f64::NAN, |interval| interval.1))?;
         Ok((value, low, high).into_pyobject(py)?.into_any())
     }
 

@@ -5,11 +5,8 @@ use palpate::latency::decay_many;
 use palpate::laws::Law;
 use pyo3::prelude::*;
 
-use crate::arrays::doubles;
+use crate::arrays::{AT_ONCE, doubles};
 use crate::errors::{ModelError, refused_plainly};
-
-/// Times whose values are computed in some milliseconds.
-const AT_ONCE: usize = 1 << 16;
 
 /// y_e + Δ φ(t; λ, n) with φ = (1 + (n − 1) λ t)^(−1/(n − 1)).
 #[pyfunction]
@@ -28,19 +25,19 @@ pub(crate) fn latency<'py>(
         let message = format!("the relative rate must be 0 or more, found {relative_rate_per_s}");
         return Err(refused_plainly::<ModelError>(message));
     }
-    let mut times = doubles(elapsed_s, "elapsed_s")?;
-    // Before the hold the excess is that at its start; a time that is none has no value.
-    let missing: Vec<usize> = (0..times.len()).filter(|index| times[*index].is_nan()).collect();
-    times.iter_mut().for_each(|time| *time = time.max(0.0));
+    let times = doubles(elapsed_s, "elapsed_s")?;
     let mut values = vec![0.0; times.len()];
     for (times, values) in times.chunks(AT_ONCE).zip(values.chunks_mut(AT_ONCE)) {
         py.check_signals()?;
         py.detach(|| {
-            decay_many(times, relative_rate_per_s, exponent, values);
-            values.iter_mut().for_each(|value| *value = equilibrium + amplitude * *value);
+            // Before the hold the excess is that at its start; a time that is none has no value.
+            let held: Vec<f64> = times.iter().map(|time| time.max(0.0)).collect();
+            decay_many(&held, relative_rate_per_s, exponent, values);
+            for (time, value) in times.iter().zip(values) {
+                *value = if time.is_nan() { f64::NAN } else { equilibrium + amplitude * *value };
+            }
         });
     }
-    missing.into_iter().for_each(|index| values[index] = f64::NAN);
     Ok(PyArray1::from_vec(py, values))
 }
 

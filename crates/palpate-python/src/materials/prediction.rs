@@ -10,7 +10,7 @@ use crate::errors::{PalpateError, refused_plainly, warn};
 use crate::html::framed;
 use crate::shown::shown;
 use crate::table::Table;
-use crate::work::LongText;
+use crate::work::{Long, at_length};
 
 /// What a calibrated body does over time, with two intervals of the force: of its mean (what the calibration leaves open), and of one
 /// reading (noise besides). Arrays of one length, and a table for polars, pandas and pyarrow; a figure in a notebook.
@@ -84,7 +84,7 @@ shown! {
 
     /// All series as the CSV that ``palpate predict`` prints.
     fn to_csv(&self, py: Python<'_>) -> PyResult<String> {
-        LongText::of(py, |out| write_prediction(out, &self.predicted))
+        Long::text(py, |out| write_prediction(out, &self.predicted))
     }
 
     /// All series as a table.
@@ -98,8 +98,11 @@ shown! {
     }
 
     /// Force with its bands over time, for notebooks.
-    fn _repr_html_(&self) -> PyResult<String> {
-        let figure = prediction_figure(&self.predicted, "prediction", "What the body does, by its calibrated law.");
-        Ok(framed(&figure.to_svg().map_err(refused_plainly::<PalpateError>)?))
+    fn _repr_html_(slf: Py<Self>, py: Python<'_>) -> PyResult<String> {
+        let drawn = at_length(py, move |_| {
+            let caption = "What the body does, by its calibrated law.";
+            prediction_figure(&slf.get().predicted, "prediction", caption).to_svg()
+        })?;
+        Ok(framed(&drawn.map_err(refused_plainly::<PalpateError>)?))
     }
 }

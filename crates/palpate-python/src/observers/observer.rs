@@ -3,6 +3,7 @@
 use palpate::observe::{ObserveError, Observer as Watcher, ObserverOptions};
 use palpate::watch::{Cancelled, Progress, Watch};
 use pyo3::prelude::*;
+use pyo3::pybacked::PyBackedStr;
 use pyo3::types::{PyBytes, PyType};
 
 use crate::arrays::doubles;
@@ -251,11 +252,16 @@ shown! {
     }
 
     #[classmethod]
-    fn _from_parts(_class: &Bound<'_, PyType>, options: &str, material: Option<&str>, state: &[u8]) -> PyResult<Self> {
+    fn _from_parts(
+        class: &Bound<'_, PyType>,
+        options: PyBackedStr,
+        material: Option<&str>,
+        state: &[u8],
+    ) -> PyResult<Self> {
         let material = material.map(Material::parsed).transpose()?;
         let options = ObserverOptions {
             material: material.as_ref().map(Material::body),
-            ..unpickled(options, PICKLE)?
+            ..unpickled(class.py(), options, PICKLE)?
         };
         let watcher = Watcher::from_bytes(options, state).map_err(|error| refused_at("", &error))?;
         Ok(Self { watcher, material })

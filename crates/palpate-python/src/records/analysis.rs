@@ -16,6 +16,7 @@ use palpate_report::result::{Input, word};
 use palpate_report::spelling::{spelled, with_flags};
 use palpate_report::study::Pictures;
 use pyo3::prelude::*;
+use pyo3::pybacked::PyBackedStr;
 use pyo3::types::PyType;
 use serde::{Deserialize, Serialize};
 
@@ -98,8 +99,8 @@ struct Requested {
 
 /// What an analysis is made of again.
 #[derive(Serialize, Deserialize)]
-struct Parts {
-    measured: Kept,
+struct Parts<'a> {
+    measured: Kept<'a>,
     options: AnalysisOptions,
     input: Input,
     job: Analyze,
@@ -250,14 +251,14 @@ shown! {
 
     #[classmethod]
     #[pyo3(signature = (json, format=0))]
-    fn _from_json(class: &Bound<'_, PyType>, json: &str, format: u32) -> PyResult<Self> {
+    fn _from_json(class: &Bound<'_, PyType>, json: PyBackedStr, format: u32) -> PyResult<Self> {
         let Parts {
             measured,
             options,
             input,
             job,
             document,
-        } = unpickled(json, format)?;
+        } = unpickled(class.py(), json, format)?;
         let measured = Measurement {
             record: measured.record()?,
             input,

@@ -1,5 +1,7 @@
 //! A record as pickles keep it.
 
+use std::borrow::Cow;
+
 use palpate::record::{Correction, Record};
 use pyo3::prelude::*;
 use serde::{Deserialize, Serialize};
@@ -8,26 +10,27 @@ use crate::errors::{RecordError, refused};
 
 /// The columns of a record and what was done to them.
 #[derive(Serialize, Deserialize)]
-pub(crate) struct Kept {
-    time: Vec<f64>,
-    displacement: Option<Vec<f64>>,
-    force: Vec<f64>,
-    corrections: Vec<Correction>,
+pub(crate) struct Kept<'a> {
+    time: Cow<'a, [f64]>,
+    displacement: Option<Cow<'a, [f64]>>,
+    force: Cow<'a, [f64]>,
+    corrections: Cow<'a, [Correction]>,
 }
 
-impl Kept {
-    pub(crate) fn of(record: &Record) -> Self {
+impl<'a> Kept<'a> {
+    pub(crate) fn of(record: &'a Record) -> Self {
         Self {
-            time: record.time().to_vec(),
-            displacement: record.displacement().map(<[f64]>::to_vec),
-            force: record.force().to_vec(),
-            corrections: record.corrections().to_vec(),
+            time: record.time().into(),
+            displacement: record.displacement().map(Cow::from),
+            force: record.force().into(),
+            corrections: record.corrections().into(),
         }
     }
 
     pub(crate) fn record(self) -> PyResult<Record> {
-        let record = Record::new(self.time, self.displacement, self.force);
+        let displacement = self.displacement.map(Cow::into_owned);
+        let record = Record::new(self.time.into_owned(), displacement, self.force.into_owned());
         let record = record.map_err(|error| refused::<RecordError>(&error, Some(error.hint())))?;
-        Ok(record.corrected_before(self.corrections))
+        Ok(record.corrected_before(self.corrections.into_owned()))
     }
 }

@@ -17,11 +17,12 @@ use palpate_jobs::input::{Described, Measurement, OpenedFile, record_sha256};
 use palpate_jobs::{Analyze, Calibrate, Compare, ErrorKind, JobError};
 use palpate_report::result::{Input, word};
 use pyo3::prelude::*;
+use pyo3::pybacked::PyBackedStr;
 use pyo3::types::PyType;
 use pyo3_arrow::PyTable;
 use serde::{Deserialize, Serialize};
 
-use crate::arrays::doubles;
+use crate::arrays::{array, doubles};
 use crate::errors::{OptionError, PalpateError, RecordError, choice, refused, refused_plainly};
 use crate::files::{self, Given, all_laws, described, described_with, read_or_parsed};
 use crate::fits::fit;
@@ -56,8 +57,8 @@ pub(crate) struct Record {
 
 /// What a record is made of again.
 #[derive(Serialize, Deserialize)]
-struct Parts {
-    measured: Kept,
+struct Parts<'a> {
+    measured: Kept<'a>,
     input: Input,
     test: Option<String>,
     part: Option<String>,
@@ -251,12 +252,12 @@ shown! {
         /// Title of the record, for reports.
         title: &str = &self.input.title,
         /// Time, s.
-        time_s<'py>(py): Bound<'py, PyArray1<f64>> = PyArray1::from_slice(py, self.record.time()),
+        time_s<'py>(py): PyResult<Bound<'py, PyArray1<f64>>> = array(py, self.record.time().iter().copied()),
         /// Displacement of the jaw, m; None where it was not recorded.
-        displacement_m<'py>(py): Option<Bound<'py, PyArray1<f64>>> =
-            self.record.displacement().map(|values| PyArray1::from_slice(py, values)),
+        displacement_m<'py>(py): PyResult<Option<Bound<'py, PyArray1<f64>>>> =
+            self.record.displacement().map(|values| array(py, values.iter().copied())).transpose(),
         /// Force, N.
-        force_n<'py>(py): Bound<'py, PyArray1<f64>> = PyArray1::from_slice(py, self.record.force()),
+        force_n<'py>(py): PyResult<Bound<'py, PyArray1<f64>>> = array(py, self.record.force().iter().copied()),
         /// What was done to the record, in words and in order.
         corrections: Vec<String> = self.record.corrections().iter().map(ToString::to_string).collect(),
     }
@@ -327,8 +328,8 @@ shown! {
 
     #[classmethod]
     #[pyo3(signature = (json, format=0))]
-    fn _from_json(_class: &Bound<'_, PyType>, json: &str, format: u32) -> PyResult<Self> {
-        let parts: Parts = unpickled(json, format)?;
+    fn _from_json(class: &Bound<'_, PyType>, json: PyBackedStr, format: u32) -> PyResult<Self> {
+        let parts: Parts<'_> = unpickled(class.py(), json, format)?;
         Ok(Self {
             record: parts.measured.record()?,
             input: parts.input,

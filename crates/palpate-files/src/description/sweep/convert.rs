@@ -232,17 +232,22 @@ pub fn parse_sweep(text: &str, path: &Path) -> Result<Sweep, DescriptionError> {
 ///
 /// # Errors
 /// As for [`parse_sweep`], and for columns of different lengths.
-pub fn parse_runs(text: &str, path: &Path, columns: &[(&str, Vec<f64>)]) -> Result<Sweep, DescriptionError> {
+pub fn parse_runs<N: AsRef<str>>(
+    text: &str,
+    path: &Path,
+    columns: &[(N, Vec<f64>)],
+) -> Result<Sweep, DescriptionError> {
     sweep(text, path, "runs", |source, known| {
         let runs = columns.first().map_or(0, |(_, values)| values.len());
-        let number = |(name, values): &(&str, Vec<f64>)| {
-            let path = &table::path(&[(*name).to_owned()]);
+        let number = |(name, values): &(N, Vec<f64>)| {
+            let name = name.as_ref();
+            let path = &table::path(&[name.to_owned()]);
             let Some((_, dimension)) = known.iter().find(|(known, _)| known == path) else {
                 return Err(unknown(source, name, path, known));
             };
             if values.len() != runs {
                 let expected = format!("{runs} values, as the other parameters have");
-                return Err(source.value(*name, expected, &values.len()));
+                return Err(source.value(name, expected, &values.len()));
             }
             let value = |si: &f64| Value::of(*si, format!("{si} {}", si_unit(*dimension)));
             let values = Values::List(values.iter().map(value).collect());
@@ -251,7 +256,7 @@ pub fn parse_runs(text: &str, path: &Path, columns: &[(&str, Vec<f64>)]) -> Resu
         let numbers: Vec<SweptParameter> = columns.iter().map(number).collect::<Result<_, _>>()?;
         for (index, number) in numbers.iter().enumerate() {
             if let Some(before) = numbers[..index].iter().position(|before| before.path == number.path) {
-                return Err(source.both(columns[index].0, columns[before].0));
+                return Err(source.both(columns[index].0.as_ref(), columns[before].0.as_ref()));
             }
         }
         Ok((numbers, Plan::Together { runs: runs as u64 }))
