@@ -12,6 +12,7 @@
 //! | `idle.rs` | bytes of a packed file that hold nothing |
 //! | `binary.rs` | numbers as bytes |
 //! | `contained.rs` | readers of other crates that panic on damaged files |
+//! | `parquet_pages.rs` | what the pages of a Parquet file state |
 //! | `encoding.rs` | bytes as letters ([`Encoding`]) |
 //! | `feed.rs`, `lines.rs` | a file line by line, in UTF-8 |
 
@@ -23,6 +24,8 @@ mod feed;
 mod idle;
 pub(crate) mod lines;
 mod packing;
+#[cfg(feature = "arrow")]
+mod parquet_pages;
 mod regular;
 mod source;
 
@@ -36,6 +39,8 @@ pub(crate) use idle::Idle;
 pub(crate) use lines::{LONGEST_LINE, LineReader};
 pub(crate) use packing::is_zip;
 pub use packing::{MOST_UNPACKED, Packing};
+#[cfg(feature = "arrow")]
+pub(crate) use parquet_pages::{PageProblem, check_pages};
 pub use regular::{is_standard_input, kind, read_whole};
 #[cfg(feature = "arrow")]
 pub(crate) use source::InputReader;

@@ -9,13 +9,14 @@ use parquet::{
         arrow_reader::{ArrowReaderMetadata, ArrowReaderOptions, ParquetRecordBatchReaderBuilder},
     },
     errors::ParquetError,
+    file::reader::Length,
 };
 
 use super::{
     error::TableError,
     rows::{Field, Kind, Rows, Values},
 };
-use crate::input::caught;
+use crate::input::{ALWAYS_UNPACKED, MOST_TIMES, PageProblem, caught, check_pages};
 
 /// A table that [`TableWriter`](super::write::TableWriter) wrote.
 pub struct TableReader {
@@ -97,6 +98,9 @@ impl TableReader {
 
     fn decoded(&self, group: usize, column: usize) -> Result<Values, TableError> {
         let builder = ParquetRecordBatchReaderBuilder::new_with_metadata(self.file.try_clone()?, self.about.clone());
+        // Any file may be given; what its pages state is checked before room is made for it.
+        let most = self.file.len().saturating_mul(MOST_TIMES).max(ALWAYS_UNPACKED);
+        check_pages(&self.file, self.about.metadata().row_group(group).column(column), most)?;
         let mask = ProjectionMask::leaves(builder.parquet_schema(), [column]);
         let mut values = Values::empty(self.fields[column].kind);
         for batch in builder.with_row_groups(vec![group]).with_projection(mask).build()? {
@@ -109,4 +113,16 @@ impl TableReader {
 /// The reader of the format takes some places in a file at their word and then panics.
 fn out_of_bounds() -> TableError {
     TableError::Parquet("file offsets that are out of bounds".to_owned())
+}
+
+impl From<PageProblem> for TableError {
+    fn from(problem: PageProblem) -> Self {
+        match problem {
+            PageProblem::Beyond => Self::Parquet(format!("a page unpacks to more than {MOST_TIMES} times the file")),
+            PageProblem::Damaged { at, expected, found } => {
+                Self::Parquet(format!("page at byte {at}: expected {expected}, found {found}"))
+            }
+            PageProblem::Unread(error) => error.into(),
+        }
+    }
 }

@@ -1,8 +1,9 @@
 //! What files cost: each in proportion to its size, and four times as many tests, columns or topics about four times as much.
 
-use std::time::Duration;
+use std::{io::Write, time::Duration};
 
-use palpate_files::{input::Input, open::Contents, table::ReadOptions};
+use palpate_files::{input::Input, open::Contents, parquet_table::TableReader, table::ReadOptions};
+use parquet::basic::{Compression, ZstdLevel};
 
 use crate::{
     any_file::{self, Kind},
@@ -102,6 +103,49 @@ fn tests_of_a_table_cost_in_proportion() {
     in_proportion("tests of an Arrow stream", 250, made::tests_of_arrow, all(250));
     in_proportion("tests of Parquet", 250, |count| made::tests_of_parquet(count, false), all(250));
     in_proportion("tests in one batch", 250, |count| made::tests_of_parquet(count, true), all(250));
+}
+
+#[test]
+fn many_rows_of_one_value_are_read_from_a_small_file() {
+    for (packing, dictionary) in [
+        (Compression::UNCOMPRESSED, true),
+        (Compression::SNAPPY, true),
+        (Compression::ZSTD(ZstdLevel::default()), false),
+    ] {
+        let file = made::rows_of_one_value(1_000_000, packing, dictionary);
+        let input = Input::from_bytes("many", &file[..]).expect("bytes");
+        let contents = Contents::of(input, &ReadOptions::default()).expect("a test");
+        let (read, taken) = measured(|| contents.read(0, &[1, 2], &mut |_, _| Ok(())).expect("numbers"));
+        assert_eq!(read.rows(), 1_000_000);
+        // Beside the numbers: two, and the number of its line, for every row.
+        let most = MEMORY_AT_LEAST + MEMORY_A_BYTE * file.len() + 24 * read.rows();
+        assert!(taken.memory <= most, "{packing}: {taken:?} for {} bytes", file.len());
+        println!("{packing}: {} bytes, {taken:?}", file.len());
+    }
+}
+
+#[test]
+fn pages_of_a_table_of_results_are_checked_before_they_are_unpacked() {
+    let all = corpus::all();
+    for (name, expected) in [
+        (
+            "lying_length_of_a_page_of_a_sweep.parquet",
+            "page at byte 4: expected the head of a page, found other bytes",
+        ),
+        ("lying_length_of_a_packed_page.parquet", "a page unpacks to more than 256 times the file"),
+        (
+            "lying_count_of_a_dictionary.parquet",
+            "page at byte 4: expected a dictionary of 8 bytes, found one of",
+        ),
+    ] {
+        let example = all.iter().find(|example| example.name() == name).expect("a file");
+        let mut file = tempfile::tempfile().expect("a file");
+        file.write_all(&example.bytes).expect("a file");
+        let (found, taken) = measured(|| TableReader::new(file).and_then(|table| table.read(0)));
+        let message = found.expect_err("damage").to_string();
+        assert!(message.contains(expected) && taken.memory < MEMORY_AT_LEAST, "{name}: {message}, {taken:?}");
+        println!("{name}: {message}, {taken:?}");
+    }
 }
 
 #[test]

@@ -13,7 +13,6 @@
 //! | `batches.rs` | who looks at batches of rows |
 //! | `source.rs` | batches of rows, whatever the format |
 //! | `parquet.rs` | batches of a Parquet file |
-//! | `pages.rs` | what the pages of a Parquet file say they unpack to |
 //! | `ipc.rs` | batches of an Arrow file or stream |
 //! | `values.rs` | columns of a type as numbers or texts |
 
@@ -25,8 +24,6 @@ mod batches;
 mod ipc;
 #[cfg(feature = "arrow")]
 mod kept;
-#[cfg(feature = "arrow")]
-mod pages;
 #[cfg(feature = "arrow")]
 mod parquet;
 #[cfg(feature = "arrow")]

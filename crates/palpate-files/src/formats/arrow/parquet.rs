@@ -13,28 +13,19 @@ use parquet::{
         ProjectionMask,
         arrow_reader::{ArrowReaderMetadata, ArrowReaderOptions, ParquetRecordBatchReaderBuilder},
     },
-    basic::Compression,
     errors::ParquetError,
     file::reader::{ChunkReader, Length},
 };
 
-use super::{
-    batches::{Visitor, damaged},
-    pages::page,
-};
+use super::batches::{Visitor, damaged};
 use crate::{
     error::{FileError, FileProblem},
     faults::admits,
-    input::{Input, Seekable},
+    input::{Input, PageProblem, Seekable, check_pages},
 };
 
 /// Last bytes of a file whose footer is encrypted.
 const ENCRYPTED: &[u8] = b"PARE";
-
-/// Bytes that the head of a page mostly has, and most that it may have (16 MiB).
-const USUAL_HEAD: u64 = 4096;
-/// See [`USUAL_HEAD`].
-const MOST_OF_HEAD: u64 = 16 << 20;
 
 /// Rows of a batch.
 const BATCH: usize = 8192;
@@ -97,7 +88,7 @@ fn metadata(input: &Input, chunks: &Chunks) -> Result<ArrowReaderMetadata, FileE
     metadata.map_err(|error| damaged(input, "footer", &error.to_string()))
 }
 
-/// What the pages of the chosen columns of some groups say they unpack to must be within reason before room is made for it.
+/// What the pages of the chosen columns of some groups state must be within reason before room is made for it.
 fn check(
     input: &Input,
     Parquet { chunks, metadata }: &Parquet,
@@ -107,32 +98,16 @@ fn check(
     let schema = metadata.parquet_schema();
     for group in groups.iter().map(|group| metadata.metadata().row_group(*group)) {
         for (leaf, column) in group.columns().iter().enumerate() {
-            if column.compression() == Compression::UNCOMPRESSED || !columns.contains(&schema.get_column_root_idx(leaf))
-            {
-                continue;
+            if columns.contains(&schema.get_column_root_idx(leaf)) {
+                check_pages(chunks, column, input.warranted()).map_err(|problem| match problem {
+                    PageProblem::Beyond => input.beyond_limit(),
+                    PageProblem::Damaged { at, expected, found } => {
+                        input.damaged(format!("page at byte {at}"), expected, found)
+                    }
+                    PageProblem::Unread(error) => damaged(input, "rows", &error.to_string()),
+                })?;
             }
-            let start = column.dictionary_page_offset().unwrap_or(i64::MAX).min(column.data_page_offset());
-            let (Ok(start), Ok(length)) = (u64::try_from(start), u64::try_from(column.compressed_size())) else {
-                continue;
-            };
-            check_pages(input, chunks, start, start.saturating_add(length).min(chunks.size))?;
         }
-    }
-    Ok(())
-}
-
-fn check_pages(input: &Input, chunks: &Chunks, mut start: u64, end: u64) -> Result<(), FileError> {
-    while start < end {
-        let in_next =
-            |most: u64| chunks.get_bytes(start, (end - start).min(most) as usize).ok().and_then(|head| page(&head));
-        // The least and greatest value of a page of texts stand in its head.
-        let Some(page) = in_next(USUAL_HEAD).or_else(|| in_next(MOST_OF_HEAD)) else {
-            return Ok(());
-        };
-        if page.unpacked > input.warranted() {
-            return Err(input.beyond_limit());
-        }
-        start = start.saturating_add(page.head).saturating_add(page.packed);
     }
     Ok(())
 }

@@ -11,6 +11,7 @@ mod xls;
 mod xls_book;
 
 pub(crate) use many::{curves, log, sheets, tables_side_by_side, tables_stacked, tests_of_arrow, tests_of_parquet};
+pub(crate) use tables::rows_of_one_value;
 
 /// Name of a file of the corpus, and its bytes.
 type Made = (&'static str, Vec<u8>);

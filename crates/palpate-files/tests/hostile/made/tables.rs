@@ -86,6 +86,8 @@ pub(super) fn parquet() -> Vec<Made> {
         ("footer_overwritten.parquet", with(&whole, footer, &[0xFF; 24])),
         ("rows_overwritten.parquet", with(&whole, 4, &[0xFF; 40])),
         ("lying_length_of_a_packed_page.parquet", page_lying_about_unpacking()),
+        ("lying_length_of_a_page_with_a_text_for_its_checksum.parquet", page_with_a_text_for_its_checksum()),
+        ("lying_count_of_a_dictionary.parquet", dictionary_lying_about_its_values()),
         ("footer_of_words.footer", b"this is no footer at all".to_vec()),
         ("footer_of_a_lying_list.footer", vec![0x15, 2, 0x19, 0xFC, 0xFF, 0xFF, 0xFF, 0xFF, 0x0F, 0, 0]),
         (
@@ -94,6 +96,15 @@ pub(super) fn parquet() -> Vec<Made> {
         ),
     ]);
     files
+}
+
+/// A Parquet file of so many rows that are all the same, with or without dictionaries.
+pub(crate) fn rows_of_one_value(rows: usize, packing: Compression, dictionary: bool) -> Vec<u8> {
+    let batch = table(vec![("time_s", numbers(&vec![Some(0.5); rows])), ("force_N", numbers(&vec![Some(1.5); rows]))]);
+    let properties = WriterProperties::builder().set_compression(packing).set_dictionary_enabled(dictionary).build();
+    let mut writer = ArrowWriter::try_new(Vec::new(), batch.schema(), Some(properties)).expect("a writer");
+    writer.write(&batch).expect("rows");
+    writer.into_inner().expect("a file")
 }
 
 fn file_of(batch: &RecordBatch) -> Vec<u8> {
@@ -125,6 +136,27 @@ fn page_lying_about_unpacking() -> Vec<u8> {
     file.splice(7..=end, [0xFE, 0xFF, 0xFF, 0xFF, 0x0F]);
     // The page takes its room from the one behind it.
     file.drain(4 + 200..4 + 200 + more);
+    file
+}
+
+/// The same file, whose first page has a text where its checksum belongs: one reader passes over it, another takes its length for the checksum.
+fn page_with_a_text_for_its_checksum() -> Vec<u8> {
+    let mut file = page_lying_about_unpacking();
+    // Behind the unpacked size: the packed size, then the structure two fields on.
+    let next = 13 + place(&file[13..], &[0x2C, 0x15]);
+    file.splice(next..=next, [0x18, 0x7F, 0x1C]);
+    file.drain(4 + 200..4 + 202);
+    file
+}
+
+/// A file whose first column has a dictionary that says that it has 2³¹ − 1 values.
+fn dictionary_lying_about_its_values() -> Vec<u8> {
+    let mut file =
+        parquet_of(&table(vec![("time_s", numbers(&[Some(0.5); 400])), ("force_N", numbers(&[Some(1.5); 400]))]));
+    // The kind of the page, its sizes, and the structure of a dictionary four fields on, whose first field is the count.
+    let count = place(&file, &[0x15, 4, 0x15, 16, 0x15, 16, 0x4C, 0x15, 2]) + 8;
+    file.splice(count..=count, [0xFE, 0xFF, 0xFF, 0xFF, 0x0F]);
+    // The pages behind it are as long as before, and four bytes further on.
     file
 }
 

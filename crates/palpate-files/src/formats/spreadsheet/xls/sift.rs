@@ -14,6 +14,9 @@ use crate::formats::spreadsheet::book::Sheet;
 
 /// Most cells from the first to the last of every sheet, all sheets together: some 0.5 GB while they are read.
 const MOST_CELLS: u64 = 8 << 20;
+/// So many of them, some 50 MB, may be empty in any file, and as many more for each that is not.
+const MOST_EMPTY: u64 = 800_000;
+const EMPTY_A_CELL: u64 = 8;
 /// Most records that the texts of the sheets go on in: `calamine` shifts all that are left for each.
 const MOST_CONTINUED: usize = 1 << 14;
 /// Most letters of shared texts in all cells: each cell has its own copy.
@@ -52,7 +55,7 @@ pub(super) type Wrong = (String, &'static str);
 pub(super) fn sift(stream: &[u8]) -> Result<Sifted, Wrong> {
     let mut sifted = Sifted::default();
     let starts = sifted.globals(stream).map_err(|expected| (String::from("workbook"), expected))?;
-    let (mut room, mut gone_over) = (MOST_CELLS, 0);
+    let (mut spanned, mut filled, mut gone_over) = (0, 0, 0);
     for (index, (start, written)) in starts.into_iter().enumerate() {
         let place = format!("sheet {}", sifted.sheets[index].name);
         // A stream of 4 GiB is refused before it is read.
@@ -66,10 +69,17 @@ pub(super) fn sift(stream: &[u8]) -> Result<Sifted, Wrong> {
             if gone_over > stream.len() {
                 return Err((place, "sheets that do not overlap"));
             }
-            let Some(left) = room.checked_sub(cells.span()) else {
+            spanned += cells.span();
+            filled += cells.places.len() as u64;
+            if spanned > MOST_CELLS {
                 return Err((place, "at most 8388608 cells from first to last of all sheets"));
-            };
-            room = left;
+            }
+            if spanned > MOST_EMPTY + EMPTY_A_CELL * filled {
+                return Err((
+                    place,
+                    "at most 800000 empty cells, and 8 for each other, from first to last of all sheets",
+                ));
+            }
             if sifted.letters > MOST_LETTERS {
                 return Err((place, "at most 33554432 letters of shared texts in all cells"));
             }
