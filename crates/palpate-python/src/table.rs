@@ -300,7 +300,7 @@ fn listed<'py>(
     Ok(list.into_any())
 }
 
-/// The rows of a table, which become dicts when they are asked for.
+/// The rows of a table, which become dicts when they are requested.
 #[pyclass(module = "palpate")]
 struct Rows {
     batch: RecordBatch,
