@@ -3,7 +3,7 @@
 use palpate::calibrate::{
     CalibrateError, Calibration, CalibrationData, Candidate, Material, ParameterProfile, RateLaw,
 };
-use palpate::fit::{NoiseModel, Termination};
+use palpate::fit::Termination;
 use palpate::number::significant;
 use palpate::units::quantity;
 
@@ -133,11 +133,7 @@ fn remarks_of(made: &Calibration) -> Vec<String> {
         let how = how.replace("{}", name);
         remarks.push(format!("The record {how}. Holds of different excess strain would determine it."));
     }
-    let correlation = match made.noise {
-        NoiseModel::White => 0.0,
-        NoiseModel::Autoregressive { correlation } => correlation,
-        NoiseModel::WhiteAndAutoregressive { correlation, share } => correlation * share.sqrt(),
-    };
+    let correlation = made.noise.correlations(1).first().copied().unwrap_or(0.0);
     if correlation > 0.9 && made.relative > 5e-3 {
         remarks.push(format!(
             "The residuals ({} % of the peak) are systematic: the law does not describe all of the record. Standard errors and intervals account for their correlation, not for a law of another form; --fit-until reports a held-out error.",

@@ -125,7 +125,10 @@ pub struct Fit {
 checked_when_read!(Fit, "a value and a row of every covariance for each parameter that was searched", |fit: &Fit| {
     let count = fit.searched.len();
     let is_square = |matrix: &Vec<Vec<f64>>| matrix.len() == count && matrix.iter().all(|row| row.len() == count);
-    let of_noise = fit.uncertainty.iter().flat_map(|found| found.beside.iter().chain([&found.covariance]));
+    let of_noise = fit
+        .uncertainty
+        .iter()
+        .flat_map(|found| found.models.iter().map(|model| &model.covariance).chain([&found.covariance]));
     fit.values.len() == count && fit.white_covariance.iter().chain(of_noise).all(is_square)
 });
 

@@ -129,16 +129,14 @@ fn compass<V: Level>(evaluate: &impl Fn(&[f64]) -> Option<V>, from: Minimum<V>) 
 }
 
 impl<V: Level> Minimum<V> {
-    /// Vectors d with Σ d dᵀ = 2 (∂²level)⁻¹; half a unit an axis where the curvature says nothing.
-    pub(crate) fn directions(&self) -> Vec<Vec<f64>> {
+    /// Vectors d with Σ d dᵀ = 2 (∂²level)⁻¹; none at an edge, where the curvature says nothing.
+    pub(crate) fn directions(&self) -> Option<Vec<Vec<f64>>> {
         let size = self.at.len();
         let half: Option<Square> =
             self.curvature.as_ref().map(|matrix| matrix.iter().map(|entry| 0.5 * entry).collect());
         let covariance = half.and_then(|matrix| Cholesky::new(&matrix, size)).map(|factor| factor.inverse());
-        match covariance.and_then(|covariance| Cholesky::new(&covariance, size)) {
-            Some(factor) => (0..size).map(|j| factor.column(j)).collect(),
-            None => (0..size).map(|i| (0..size).map(|j| if i == j { 0.5 } else { 0.0 }).collect()).collect(),
-        }
+        let factor = covariance.and_then(|covariance| Cholesky::new(&covariance, size))?;
+        Some((0..size).map(|j| factor.column(j)).collect())
     }
 }
 

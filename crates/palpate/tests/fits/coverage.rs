@@ -2,9 +2,14 @@
 
 #![allow(clippy::expect_used, reason = "in a test a panic is the verdict")]
 
+#[path = "../common/noises.rs"]
+mod noises;
 #[path = "../common/coverage.rs"]
 mod study;
 
+use noises::{KINDS, laws, truth_at};
+use palpate::fit::{LawOptions, Samples, fit_law};
+use palpate::test_problems::Rng;
 use study::{Method, cases, tally};
 
 /// Holds a case.
@@ -45,5 +50,37 @@ fn intervals_contain_the_truth() {
         }
         let white = share(by_white_error);
         assert_eq!(white < 0.5, correlated, "value ± 1.96 standard errors for white noise cover {white}");
+    }
+}
+
+/// The short form of `validation/noise_kinds.py`, over the parameters of four laws together.
+#[test]
+fn intervals_follow_noise_of_other_kinds() {
+    const FEW: u64 = 30;
+    // What the whole study finds, less three standard errors of this one.
+    for (name, least, most) in [
+        ("AR(1) -0.8", 0.89, 1.0),
+        ("ARMA(2, 1)", 0.87, 1.0),
+        ("MA(5)", 0.84, 0.99),
+        ("hum", 0.84, 0.99),
+        ("1/f", 0.81, 0.99),
+    ] {
+        let noise = KINDS.iter().find(|(kind, _)| *kind == name).expect("a kind").1;
+        let (mut covered, mut all) = (0, 0);
+        for known in laws() {
+            let (times, clean) = truth_at(&known, noise, 400);
+            for hold in 0..FEW {
+                let values = noise.added(&times, &clean, 3e-3, &mut Rng::new(5 + (hold << 20)));
+                let fit = fit_law(&Samples::new(&times, &values), known.law, &LawOptions::default());
+                let fit = fit.unwrap_or_else(|error| panic!("{name}, {}: {error}", known.name));
+                for (parameter, truth) in &known.truth {
+                    let (low, high) = fit.estimate(parameter).and_then(|found| found.interval).expect("an interval");
+                    covered += usize::from(low <= *truth && *truth <= high);
+                    all += 1;
+                }
+            }
+        }
+        let share = covered as f64 / all as f64;
+        assert!((least..=most).contains(&share), "{name}: {share}");
     }
 }

@@ -37,7 +37,8 @@ impl Fitted {
         let mut draws: Vec<Vec<f64>> = vec![Vec::new(); fit.parameters.len()];
         if let Some(uncertainty) = &fit.uncertainty {
             let noise = (uncertainty.deviation / self.scaled.range).powi(2);
-            let inflation = noise * count as f64 / self.solution.residual_square * fit.noise.cut_by_blocks(block);
+            let inflation =
+                noise * count as f64 / self.solution.residual_square * fit.noise.cut_by_blocks(block, count);
             let urn = Urn {
                 residuals: self.solution.residuals.iter().map(|r| r * inflation.sqrt()).collect(),
                 values: self.scaled.values.iter().zip(&self.solution.residuals).map(|(y, r)| y - r).collect(),
@@ -141,19 +142,18 @@ impl Fitted {
 impl NoiseModel {
     /// Samples a block of the bootstrap, by the rule above.
     fn block(self, samples: usize) -> usize {
-        let (correlation, share) = self.parameters();
-        let spread =
-            share * correlation / (1.0 - correlation).powi(2) * self.effective_samples(samples) / samples as f64;
+        let correlations = self.correlations(samples);
+        let of_lags: f64 = (1..).zip(&correlations).map(|(lag, r)| f64::from(lag) * r).sum();
+        let spread = (of_lags / (1.0 + 2.0 * correlations.iter().sum::<f64>())).max(0.0);
         ((6.0 * spread * spread * samples as f64).cbrt().round() as usize).clamp(1, samples.div_ceil(4))
     }
 
     /// Variance of long sums of this noise over that of sums of independent blocks of it: what blocks cut off.
-    fn cut_by_blocks(self, block: usize) -> f64 {
-        let (correlation, share) = self.parameters();
-        let within: f64 = (1..block)
-            .map(|lag| 2.0 * (1.0 - lag as f64 / block as f64) * share * correlation.powi(lag as i32))
-            .sum();
-        (1.0 + 2.0 * share * correlation / (1.0 - correlation)) / (1.0 + within)
+    fn cut_by_blocks(self, block: usize, samples: usize) -> f64 {
+        let correlations = self.correlations(samples);
+        let within: f64 =
+            (1..block).zip(&correlations).map(|(lag, r)| 2.0 * (1.0 - lag as f64 / block as f64) * r).sum();
+        (1.0 + 2.0 * correlations.iter().sum::<f64>()) / (1.0 + within)
     }
 }
 
@@ -170,8 +170,8 @@ mod tests {
         let noise = NoiseModel::Autoregressive { correlation: 0.9 };
         assert_eq!(noise.block(1000), 51);
         // 19/(1 + 2 Σ (1 − k/2) 0.9^k) with one lag: 19/1.9
-        assert!((noise.cut_by_blocks(2) - 10.0).abs() < 1e-12);
-        assert!((noise.cut_by_blocks(100_000) - 1.0).abs() < 1e-3);
+        assert!((noise.cut_by_blocks(2, 1000) - 10.0).abs() < 1e-9);
+        assert!((noise.cut_by_blocks(100_000, 100_000) - 1.0).abs() < 1e-3);
     }
 
     #[test]

@@ -41,17 +41,8 @@ impl Fit {
             return Estimate::fixed(value);
         };
         let gradient = self.gradient(elapsed);
-        let of_curve = variance_of(&gradient, &uncertainty.covariance);
-        let freedom = match deviation {
-            0.0 => uncertainty.freedom_of(&gradient),
-            // Variances that add up share their degrees of freedom by their squares (Welch and Satterthwaite).
-            _ => {
-                let (noise, fit) = (deviation.powi(4) / uncertainty.deviation_freedom, of_curve.powi(2));
-                (of_curve + deviation * deviation).powi(2) / (noise + fit / uncertainty.freedom_of(&gradient))
-            }
-        };
-        let error = (variance_of(&gradient, white) + deviation * deviation).sqrt();
-        uncertainty.interval(value, error, of_curve + deviation * deviation, freedom, Scale::Linear)
+        let white = variance_of(&gradient, white);
+        uncertainty.estimate_beside(value, &gradient, white, deviation * deviation, Scale::Linear)
     }
 
     /// Derivatives of the curve by the searched parameters, in the order of `searched`.

@@ -14,7 +14,6 @@ use crate::fit::noise::uncertainty::variance_of;
 use crate::fit::{Estimate, Fit, FitError, Fitted, Interval, LawOptions, Model, Samples, condense};
 use crate::laws::{Law, ShapeParameterKind};
 use crate::optimise::{Effort, Ending, Shapes, Target, Work, refine};
-use crate::statistics::coverage_factor;
 use crate::watch::{Cancelled, Progress};
 
 /// Standard errors from the best value beyond which an end counts as open.
@@ -100,7 +99,7 @@ impl Fitted {
             fitted: self,
             parameter,
             error: (inverse[place * size + place] * self.solution.residual_square / uncertainty.freedom).sqrt(),
-            target: coverage_factor(options.confidence, uncertainty.freedom_of(&gradient)) * widening,
+            target: uncertainty.factor(&gradient, 0.0) * widening,
             freedom: uncertainty.freedom,
             most_iterations: options.most_iterations,
         };
@@ -341,6 +340,7 @@ mod tests {
     use crate::fit::law::fit_law::fit_law;
     use crate::fit::options::{ConstantChoice, NoiseChoice};
     use crate::laws::ExponentChoice;
+    use crate::statistics::coverage_factor;
     use crate::test_problems::noisy_hold;
 
     const FREE: Law = Law::Latency {

@@ -1,10 +1,9 @@
-//! The restricted likelihood of a noise: of AR(1) at every ρ, and of white noise with AR(1).
+//! The restricted likelihood of a noise, and where it is greatest for noise with slow parts.
 
-use super::model::{Noise, NoiseModel};
-use super::rows::{Filter, Rows, whitened_squares};
+use super::model::{Likely, NoiseModel};
+use super::rows::{Filter, Rows};
 use crate::optimise::{Cholesky, Few, Level, Minimum, Square, minimise};
 use crate::statistics::dot;
-use crate::vector::cross_products;
 
 /// Value of the restricted likelihood: −2 ln L up to a constant, and the variance that belongs to it.
 #[derive(Clone, Copy)]
@@ -39,102 +38,81 @@ impl Likelihood {
     }
 }
 
-/// The deviance at a minimum and the noise there, with that beside it along the columns of the Cholesky factor of its covariance,
-/// 2 (∂²deviance)⁻¹.
-pub(crate) fn noise_at(
-    minimum: &Minimum<Likelihood>,
-    evaluate: &impl Fn(&[f64]) -> Option<Likelihood>,
-    model: impl Fn(&[f64]) -> NoiseModel,
-) -> (f64, Noise) {
-    let mut beside = Vec::new();
-    for spread in minimum.directions() {
-        // At an edge the other side has to do.
-        for side in [1.0, -1.0, 0.5, -0.5] {
-            let at: Few = minimum.at.iter().zip(&spread).map(|(x, d)| x + side * d).collect();
-            if let Some(found) = evaluate(&at) {
-                beside.push((model(&at), found.variance));
-                break;
+/// A kind of noise: the model of the least deviance, and models about it that stand for all of its kind.
+pub(crate) struct Kind {
+    pub(crate) deviance: f64,
+    pub(crate) model: NoiseModel,
+    /// With a probability each, as if noise were of no other kind.
+    pub(crate) likely: Vec<Likely>,
+}
+
+impl Kind {
+    /// By points of a cubature of the posterior of one parameter or two, which is about normal with covariance 2 (∂²deviance)⁻¹: the middle, and
+    /// two points √3 standard deviations away along each axis, with weights 1 − K/3 and 1/6, and each times what the posterior is there over
+    /// the normal one.
+    pub(crate) fn about(
+        minimum: &Minimum<Likelihood>,
+        evaluate: &impl Fn(&[f64]) -> Option<Likelihood>,
+        model: impl Fn(&[f64]) -> Option<NoiseModel>,
+    ) -> Option<Self> {
+        /// Farther from normal the points say little.
+        const MOST: f64 = 8.0;
+        /// From one point at an edge to the next.
+        const PACE: f64 = 0.75;
+        let deviance = minimum.value.deviance;
+        let mut likely = vec![Likely {
+            model: model(&minimum.at)?,
+            variance: minimum.value.variance,
+            probability: 1.0,
+        }];
+        let mut take = |at: Few, weight: &dyn Fn(f64) -> f64| {
+            let found = evaluate(&at).zip(model(&at)).map(|(found, model)| Likely {
+                model,
+                variance: found.variance,
+                probability: weight(found.deviance - deviance),
+            });
+            likely.extend(found);
+            found.is_some()
+        };
+        match minimum.directions() {
+            // Many parameters together say what one of them leaves open, at a price of many points.
+            _ if minimum.at.len() > 2 => {}
+            Some(directions) => {
+                let (size, square) = (directions.len() as f64, 3.0_f64);
+                for direction in &directions {
+                    for side in [1.0, -1.0] {
+                        // Beyond an edge is nothing: half as far may be inside.
+                        for far in [square, 0.25 * square] {
+                            let at = minimum.at.iter().zip(direction).map(|(x, d)| x + side * far.sqrt() * d).collect();
+                            let weight =
+                                |rise: f64| (0.5 * (far - rise)).exp().clamp(1.0 / MOST, MOST) / (2.0 * square);
+                            if take(at, &weight) {
+                                break;
+                            }
+                        }
+                    }
+                }
+                likely[0].probability = 1.0 - size / square;
+            }
+            // At an edge no normal distribution helps: a walk along each axis, each point by its own likelihood.
+            None => {
+                for axis in 0..minimum.at.len() {
+                    for by in [1.0, 2.0, 3.0, 4.0, -1.0, -2.0, -3.0, -4.0] {
+                        let mut at = minimum.at.clone();
+                        at[axis] += PACE * by;
+                        take(at, &|rise| (-0.5 * rise).exp());
+                    }
+                }
             }
         }
-    }
-    let noise = Noise {
-        model: model(&minimum.at),
-        variance: minimum.value.variance,
-        beside,
-    };
-    (minimum.value.deviance, noise)
-}
-
-/// ρ from ln of how many samples count as one, κ = ln((1 + ρ)/(1 − ρ)): the scale on which ρ is searched.
-pub(crate) fn correlation_of(kappa: f64) -> f64 {
-    (0.5 * kappa).tanh()
-}
-
-/// AR(1): its R⁻¹ has three diagonals, so products of neighbours, formed once, give the likelihood at every ρ.
-pub(crate) struct Neighbours {
-    samples: usize,
-    /// Samples of each of the series, which are independent of each other.
-    length: usize,
-    size: usize,
-    /// ZᵀZ.
-    same: Vec<f64>,
-    /// Σ z_i z_{i+1}ᵀ, made symmetric.
-    next: Vec<f64>,
-    /// Products of the first and of the last row of each series.
-    ends: Vec<f64>,
-}
-
-impl Neighbours {
-    pub(crate) fn new(jacobian: &[&[f64]], residuals: &[f64], length: usize) -> Self {
-        let all: Vec<&[f64]> = jacobian.iter().copied().chain([residuals]).collect();
-        let (samples, size) = (residuals.len(), all.len());
-        let mut same = vec![0.0; size * size];
-        cross_products(&all, &all, &mut same);
-        let (mut shifted, mut own) = (vec![0.0; size * size], vec![0.0; size * size]);
-        let starts = || (0..samples).step_by(length);
-        for start in starts() {
-            let last = start + length - 1;
-            let early: Vec<&[f64]> = all.iter().map(|column| &column[start..last]).collect();
-            let late: Vec<&[f64]> = all.iter().map(|column| &column[start + 1..=last]).collect();
-            cross_products(&early, &late, &mut own);
-            shifted.iter_mut().zip(&own).for_each(|(sum, own)| *sum += own);
-        }
-        let pairs = || (0..size).flat_map(|i| (0..size).map(move |j| (i, j)));
-        let at_ends = |i: usize, j: usize| -> f64 {
-            starts().flat_map(|start| [start, start + length - 1]).map(|end| all[i][end] * all[j][end]).sum()
-        };
-        Self {
-            samples,
-            length,
-            size,
-            same,
-            next: pairs().map(|(i, j)| shifted[i * size + j] + shifted[j * size + i]).collect(),
-            ends: pairs().map(|(i, j)| at_ends(i, j)).collect(),
-        }
-    }
-
-    /// R⁻¹ has 1 + ρ² on its diagonal (1 at the ends) and −ρ beside it, over 1 − ρ²; |R| = (1 − ρ²)^(N−1) for each series.
-    pub(crate) fn likelihood(&self, kappa: f64) -> Option<Likelihood> {
-        let rho = correlation_of(kappa);
-        let square = rho * rho;
-        let entry =
-            |i: usize| ((1.0 + square) * self.same[i] - square * self.ends[i] - rho * self.next[i]) / (1.0 - square);
-        let product: Square = (0..self.size * self.size).map(entry).collect();
-        let steps = self.samples - self.samples / self.length;
-        Likelihood::of(&product, steps as f64 * (1.0 - square).ln(), self.samples)
-    }
-
-    /// The best ρ, between white noise and noise of which a series is one sample in all.
-    pub(crate) fn noise(&self) -> Option<(f64, Noise)> {
-        let model = |kappa: f64| NoiseModel::Autoregressive {
-            correlation: correlation_of(kappa),
-        };
-        let most = (self.length as f64).ln();
-        let evaluate = |x: &[f64]| if x[0] < 0.0 || x[0] > most { None } else { self.likelihood(x[0]) };
-        let last = self.same.len() - 1;
-        let start = 2.0 * (0.5 * self.next[last] / self.same[last]).clamp(-0.999, 0.999).atanh();
-        let found = minimise(&evaluate, &[start.clamp(0.1, most - 0.1)])?;
-        Some(noise_at(&found, &evaluate, |x| model(x[0])))
+        let all: f64 = likely.iter().map(|likely| likely.probability).sum();
+        likely.iter_mut().for_each(|likely| likely.probability /= all);
+        likely.retain(|likely| likely.probability > 0.0);
+        Some(Self {
+            deviance,
+            model: model(&minimum.at)?,
+            likely,
+        })
     }
 }
 
@@ -142,43 +120,59 @@ impl Neighbours {
 /// look slow, two of three are done with here.
 const PROMISE: f64 = 2.0;
 
-/// White noise and AR(1): Kalman's filter whitens all columns alike, sample by sample.
-pub(crate) struct Mixture<'a> {
+/// Noise with slow parts: Kalman's filter whitens all columns alike, sample by sample.
+pub(crate) struct Slow<'a> {
     rows: Rows,
     residuals: &'a [f64],
     /// Samples of each of the series, which are independent of each other.
     length: usize,
+    /// The longest correlation time of a power law, in samples.
+    longest: f64,
 }
 
-impl<'a> Mixture<'a> {
-    pub(crate) fn new(jacobian: &[&'a [f64]], residuals: &'a [f64], length: usize) -> Self {
+/// The largest κ = ln((1 + ρ)/(1 − ρ)), ln of how many samples count as one, for a series of this length: a random walk is as good as that.
+pub(crate) fn slowest(length: usize) -> f64 {
+    (length as f64).ln() + 2.5
+}
+
+/// ρ and s from κ and ln(s/(1 − s)).
+pub(crate) fn mixture(x: &[f64], length: usize) -> Option<NoiseModel> {
+    (x[0] >= 0.05 && x[0] <= slowest(length) && x[1].abs() <= 8.0).then(|| NoiseModel::WhiteAndAutoregressive {
+        correlation: (0.5 * x[0]).tanh(),
+        share: share(x[1]),
+    })
+}
+
+/// ln(s/(1 − s)) of a share of all but rounding.
+const ALONE: f64 = 30.0;
+
+/// a from its double, and the share as above.
+pub(crate) fn power_law(x: &[f64], longest: f64) -> Option<NoiseModel> {
+    ((0.6..=4.4).contains(&x[0]) && (x[1].abs() <= 8.0 || x[1] == ALONE)).then(|| NoiseModel::PowerLaw {
+        exponent: 0.5 * x[0],
+        share: share(x[1]),
+        longest,
+    })
+}
+
+fn share(x: f64) -> f64 {
+    1.0 / (1.0 + (-x).exp())
+}
+
+impl<'a> Slow<'a> {
+    /// Residuals beside the columns of a fit of `samples`, in series of `length` samples.
+    pub(crate) fn new(jacobian: &[&'a [f64]], residuals: &'a [f64], length: usize, samples: usize) -> Self {
         let columns: Vec<&[f64]> = jacobian.iter().copied().chain([residuals]).collect();
         Self {
             rows: Rows::new(&columns),
             residuals,
             length,
+            longest: OUTLASTS * samples as f64,
         }
     }
 
-    /// ρ and s from κ and ln(s/(1 − s)).
-    pub(crate) fn model(x: &[f64]) -> NoiseModel {
-        NoiseModel::WhiteAndAutoregressive {
-            correlation: correlation_of(x[0]),
-            share: 1.0 / (1.0 + (-x[1]).exp()),
-        }
-    }
-
-    fn filter(&self, x: &[f64]) -> Filter {
-        let (rho, share) = Self::model(x).parameters();
-        Filter::new(rho, share, self.length)
-    }
-
-    /// The likelihood, between white noise and noise that is one sample in all.
-    pub(crate) fn likelihood(&self, x: &[f64]) -> Option<Likelihood> {
-        if x[0] < 0.05 || x[0] > self.longest() || x[1].abs() > 8.0 {
-            return None;
-        }
-        let filter = self.filter(x);
+    pub(crate) fn likelihood(&self, model: NoiseModel) -> Option<Likelihood> {
+        let filter = Filter::new(&model.parts(), self.length);
         let log_determinant = self.series() * filter.log_determinant;
         Likelihood::of(&self.rows.whitened(&filter, self.length), log_determinant, self.rows.samples)
     }
@@ -188,37 +182,59 @@ impl<'a> Mixture<'a> {
         (self.rows.samples / self.length) as f64
     }
 
-    /// κ of noise of which a series is one sample in all.
-    fn longest(&self) -> f64 {
-        (self.length as f64).ln()
+    /// The best white noise with AR(1), if a first look finds a deviance that promises to fall below this one.
+    pub(crate) fn mixture(&self, deviance: f64) -> Option<Kind> {
+        let kappas = (1..).map(|i| 1.2 * f64::from(i)).take_while(|kappa| *kappa < slowest(self.length));
+        let places: Vec<[f64; 2]> = kappas.flat_map(|kappa| [-2.5, 0.0, 2.5].map(|share| [kappa, share])).collect();
+        self.best(&places, deviance, |x| mixture(x, self.length))
     }
 
-    /// The best ρ and s, if a first look finds a deviance that promises to fall below this one.
-    pub(crate) fn noise(&self, deviance: f64) -> Option<(f64, Noise)> {
-        let evaluate = |x: &[f64]| self.likelihood(x);
-        let start = self.start()?;
+    /// The best power law without white noise, likewise.
+    pub(crate) fn power_alone(&self, deviance: f64) -> Option<Kind> {
+        let places = [1.0, 2.0, 3.0, 4.0].map(|twice| [twice]);
+        self.best(&places, deviance, |x| power_law(&[x[0], ALONE], self.longest))
+    }
+
+    /// The best power law with white noise, likewise.
+    pub(crate) fn power_law(&self, deviance: f64) -> Option<Kind> {
+        let places: Vec<[f64; 2]> = [1.4, 2.4, 3.6]
+            .into_iter()
+            .flat_map(|twice| [-3.0, -1.0, 1.0, 4.0].map(|share| [twice, share]))
+            .collect();
+        self.best(&places, deviance, |x| power_law(x, self.longest))
+    }
+
+    fn best<const K: usize>(
+        &self,
+        places: &[[f64; K]],
+        deviance: f64,
+        model: impl Fn(&[f64]) -> Option<NoiseModel>,
+    ) -> Option<Kind> {
+        // Where to begin: means of neighbouring residuals can tell, as if nothing had been fitted.
+        let together = self.length.div_ceil(GLANCE);
+        let length = self.length / together;
+        let mean = |some: &[f64]| some.iter().sum::<f64>() / together as f64;
+        let series = self.residuals.chunks_exact(self.length);
+        let means: Vec<f64> = series.flat_map(|series| series.chunks_exact(together).map(mean)).collect();
+        let count = means.len() as f64;
+        let alone = |place: &[f64; K]| {
+            let filter = Filter::new(&model(place)?.of_means(together), length);
+            let square: f64 = means.chunks_exact(length).map(|series| filter.square(series)).sum();
+            let found = count * (square / count).ln() + self.series() * filter.log_determinant;
+            found.is_finite().then_some((found, *place))
+        };
+        let (_, start) = places.iter().filter_map(alone).min_by(|a, b| a.0.total_cmp(&b.0))?;
+        let evaluate = |x: &[f64]| self.likelihood(model(x)?);
         if evaluate(&start)?.deviance > deviance - PROMISE {
             return None;
         }
         let found = minimise(&evaluate, &start)?;
-        Some(noise_at(&found, &evaluate, Self::model))
-    }
-
-    /// Where to begin: the residuals alone can tell, as if nothing had been fitted.
-    fn start(&self) -> Option<[f64; 2]> {
-        let kappas = (1..).map(|i| 1.2 * f64::from(i)).take_while(|kappa| *kappa < self.longest());
-        let places: Vec<[f64; 2]> = kappas.flat_map(|kappa| [-2.5, 0.0, 2.5].map(|share| [kappa, share])).collect();
-        let filters: Vec<Filter> = places.iter().map(|place| self.filter(place)).collect();
-        let mut squares = vec![0.0; filters.len()];
-        for series in self.residuals.chunks_exact(self.length) {
-            squares.iter_mut().zip(whitened_squares(series, &filters)).for_each(|(sum, square)| *sum += square);
-        }
-        let samples = self.rows.samples as f64;
-        let deviances = squares
-            .iter()
-            .zip(&filters)
-            .map(|(square, filter)| samples * (square / samples).ln() + self.series() * filter.log_determinant);
-        let reported = deviances.zip(places).filter(|(deviance, _)| deviance.is_finite());
-        reported.min_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, place)| place)
+        Kind::about(&found, &evaluate, &model)
     }
 }
+
+/// Most means of neighbours of a series that a first look takes.
+const GLANCE: usize = 200;
+
+/// The longest correlation time of a power law over the length of the hold: what is slower still looks like a constant.
+const OUTLASTS: f64 = 4.0;

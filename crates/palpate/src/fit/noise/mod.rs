@@ -1,29 +1,39 @@
 //! How the residuals of a fit correlate with their neighbours.
 //!
-//! The noise of a hold is taken as white, as autoregressive of first order, or as a sum of both:
+//! The noise of a hold is of one of these kinds, by sample, not by time: an instrument's filter acts that way, and for samples spaced unevenly
+//! it is an approximation.
 //!
-//! ```text
-//! e_i = σ (√s a_i + √(1 − s) w_i),   a_i = ρ a_{i−1} + √(1 − ρ²) v_i,   corr(e_i, e_{i+k}) = s ρ^k
-//! ```
+//! | kind | correlation r_k at k samples |
+//! |---|---|
+//! | white | 0 |
+//! | autoregression of order p, 1 to 6 | by Yule and Walker from p partial autocorrelations |
+//! | white with AR(1) | s ρ^k |
+//! | power law 1/f^a, alone and with white | Σ_j s_j exp(−k/τ_j), τ_j evenly spaced in ln τ, s_j as τ_j^(a − 1) |
 //!
-//! by sample, not by time: an instrument's filter acts that way, and for samples spaced unevenly it is an approximation.
-//! ρ and s are those of the largest *restricted* likelihood (Patterson and Thompson 1971): residuals are flatter than
-//! noise by what the fitted parameters took up, and a plain estimate of ρ from them is too small by some p (1 + ρ)/N.
+//! Parameters of a kind are those of the largest *restricted* likelihood (Patterson and Thompson 1971): residuals are flatter than noise by what
+//! the fitted parameters took up, and a plain estimate of ρ from them is too small by some p (1 + ρ)/N. A kind counts by
+//! exp(−½ (deviance + 4 K)) with its K parameters, and stands for models about its best: intervals are those of the mixture of all models that
+//! count ([`Uncertainty`]). White residuals cost next to nothing: other kinds are tried where neighbours correlate, or where sums over blocks
+//! drift.
 //!
 //! | file | what |
 //! |---|---|
 //! | `model.rs` | how noise correlates; a noise that was found, lags of residuals |
-//! | `rows.rs` | sums over residuals and columns |
-//! | `likelihood.rs` | the restricted likelihood of AR(1), and of white noise with AR(1) |
+//! | `autoregression.rs` | autoregressions: coefficients, predictions, products |
+//! | `rows.rs` | sums over residuals and columns; Kalman's filter |
+//! | `likelihood.rs` | the restricted likelihood, and noise with slow parts |
+//! | `lagged.rs` | that of autoregressions |
 //! | `estimation.rs` | which noise left the residuals |
 //! | `uncertainty.rs` | errors and intervals that follow |
 
+mod autoregression;
 mod estimation;
+mod lagged;
 mod likelihood;
 pub(crate) mod model;
 mod rows;
 pub(crate) mod uncertainty;
 
 pub use model::NoiseModel;
-pub use uncertainty::Uncertainty;
 pub(crate) use uncertainty::{Assessed, Scale};
+pub use uncertainty::{ModelCovariance, Uncertainty};

@@ -1,8 +1,16 @@
 //! How noise correlates, by sample; a noise that was found.
 
 use serde::{Deserialize, Serialize};
+use smallvec::SmallVec;
 
+use super::autoregression::{Autoregression, MOST_ORDER};
 use crate::statistics::dot;
+
+/// Most parts of a noise.
+pub(crate) const MOST_PARTS: usize = 8;
+
+/// The least correlation time of a part of a power law, in samples.
+const SHORTEST: f64 = 0.5;
 
 /// How residuals correlate with their neighbours, by sample.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
@@ -13,8 +21,15 @@ pub enum NoiseModel {
     White,
     /// AR(1): ρ^k at k samples.
     Autoregressive {
-        /// ρ, 0 to 1.
+        /// ρ, −1 to 1.
         correlation: f64,
+    },
+    /// AR(p): each sample depends on the p before it.
+    AutoregressiveOfOrder {
+        /// p, 2 to 6.
+        order: usize,
+        /// Partial autocorrelations at 1 to p samples, −1 to 1; zeros behind.
+        partial: [f64; MOST_ORDER],
     },
     /// White noise and AR(1): s ρ^k at k samples.
     WhiteAndAutoregressive {
@@ -23,40 +38,108 @@ pub enum NoiseModel {
         /// s, the share of the correlated part in the variance, 0 to 1.
         share: f64,
     },
+    /// White noise and noise whose power goes as 1/f^a down to a lowest frequency: a sum of eight AR(1) whose correlation times τ are evenly
+    /// spaced in ln τ, from half a sample to the longest, with variances as τ^(a − 1).
+    PowerLaw {
+        /// a: 1 for pink noise, 2 for a random walk.
+        exponent: f64,
+        /// Share of this part in the variance, 0 to 1.
+        share: f64,
+        /// The longest correlation time, in samples.
+        longest: f64,
+    },
 }
 
 impl NoiseModel {
-    /// ρ and s.
-    pub(crate) fn parameters(self) -> (f64, f64) {
+    /// What correlates, as AR(1) of which each has a share in the variance and a ρ; none for an autoregression of higher order.
+    pub(crate) fn parts(self) -> Parts {
         match self {
-            Self::White => (0.0, 0.0),
-            Self::Autoregressive { correlation } => (correlation, 1.0),
-            Self::WhiteAndAutoregressive { correlation, share } => (correlation, share),
+            Self::White | Self::AutoregressiveOfOrder { .. } => Parts::new(),
+            Self::Autoregressive { correlation } => Parts::from_iter([(1.0, correlation)]),
+            Self::WhiteAndAutoregressive { correlation, share } => Parts::from_iter([(share, correlation)]),
+            Self::PowerLaw {
+                exponent,
+                share,
+                longest,
+            } => {
+                let ratio = (longest / SHORTEST).powf(1.0 / (MOST_PARTS as f64 - 1.0));
+                let times = || (0..MOST_PARTS as i32).map(|power| SHORTEST * ratio.powi(power));
+                let sizes = times().map(|time: f64| time.powf(exponent - 1.0));
+                let unit = share / sizes.clone().sum::<f64>();
+                sizes.zip(times()).map(|(size, time)| (unit * size, (-1.0 / time).exp())).collect()
+            }
         }
     }
 
-    /// Equivalent number of independent samples among `samples` of this noise: N / (1 + 2 s ρ/(1 − ρ)), at least two.
+    /// The parts of the means of so many neighbours, as if each part were the same in all of them or changed from one to the next.
+    pub(crate) fn of_means(self, together: usize) -> Parts {
+        let count = together as f64;
+        let mut parts = self.parts();
+        let mut rest = (1.0 - parts.iter().map(|(share, _)| share).sum::<f64>()).max(0.0) / count;
+        parts.retain(|(share, correlation)| {
+            let lasts = correlation.powf(count);
+            let slow = lasts > 0.2;
+            if !slow {
+                rest += *share * (1.0 + *correlation) / (1.0 - *correlation) / count;
+            }
+            *correlation = lasts;
+            slow
+        });
+        let all = rest + parts.iter().map(|(share, _)| share).sum::<f64>();
+        parts.iter_mut().for_each(|(share, _)| *share /= all);
+        parts
+    }
+
+    /// Correlations at 1 to `lags` samples, up to where they have faded.
+    pub fn correlations(self, lags: usize) -> Vec<f64> {
+        const FADED: f64 = 1e-12;
+        let mut all: Vec<f64> = Vec::new();
+        match self {
+            Self::AutoregressiveOfOrder { order, partial } => {
+                let kept = Autoregression::new(&partial[..order]);
+                while all.len() < lags && (all.len() < order || all.iter().rev().take(order).any(|r| r.abs() > FADED)) {
+                    // Yule and Walker: the coefficients of the order that looks back to the first sample.
+                    let before = all.iter().rev().chain([&1.0]);
+                    all.push(kept.at(all.len() + 1).iter().zip(before).map(|(by, before)| by * before).sum());
+                }
+            }
+            _ => {
+                let mut parts = self.parts();
+                while all.len() < lags && all.last().is_none_or(|r: &f64| r.abs() > FADED) {
+                    parts.iter_mut().for_each(|(share, correlation)| *share *= *correlation);
+                    all.push(parts.iter().map(|(share, _)| share).sum());
+                }
+            }
+        }
+        all
+    }
+
+    /// Equivalent number of independent samples among `samples` of this noise: N / (1 + 2 Σ (1 − k/N) r_k) with the correlations r_k at k
+    /// samples, at least two and at most N.
     ///
     /// ```
     /// use palpate::fit::NoiseModel;
     /// let noise = NoiseModel::Autoregressive { correlation: 0.5 };
-    /// assert_eq!(noise.effective_samples(300), 100.0);
+    /// assert!((noise.effective_samples(300) - 100.4).abs() < 0.1);
     /// ```
     #[must_use]
     pub fn effective_samples(self, samples: usize) -> f64 {
-        let (correlation, share) = self.parameters();
-        (samples as f64 / (1.0 + 2.0 * share * correlation / (1.0 - correlation))).max(2.0)
+        let count = samples as f64;
+        let correlations = self.correlations(samples.saturating_sub(1));
+        let sum: f64 = (1..).zip(&correlations).map(|(lag, r)| (1.0 - f64::from(lag) / count) * r).sum();
+        (count / (1.0 + 2.0 * sum)).clamp(count.min(2.0), count)
     }
 }
+
+/// Shares in the variance and correlations of neighbours.
+pub(crate) type Parts = SmallVec<[(f64, f64); MOST_PARTS]>;
 
 /// Sums of products of residuals with those after them.
 pub(crate) struct Lags {
     /// Σ rᵢ².
     pub(crate) square: f64,
-    /// Σ rᵢ rᵢ₊₁ over it.
-    pub(crate) first: f64,
-    /// Σ rᵢ rᵢ₊₂ over it.
-    pub(crate) second: f64,
+    /// Σ rᵢ rᵢ₊ₖ over it, for k from 1.
+    pub(crate) correlations: [f64; MOST_ORDER],
 }
 
 impl Lags {
@@ -68,29 +151,46 @@ impl Lags {
         };
         Self {
             square,
-            first: correlation(1),
-            second: correlation(2),
+            correlations: std::array::from_fn(|index| correlation(index + 1)),
         }
     }
 }
 
-/// The noise of a fit: a model, its variance, and how sure both are.
+/// The noise of a fit: models of it, and how likely each is.
 #[derive(Debug, Clone)]
 pub(crate) struct Noise {
+    /// The most likely model.
+    pub(crate) model: NoiseModel,
+    /// Models with their variance and their probability; those add up to 1.
+    pub(crate) likely: Vec<Likely>,
+}
+
+/// A model that may have left the residuals.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Likely {
     pub(crate) model: NoiseModel,
     /// σ².
     pub(crate) variance: f64,
-    /// The model with its variance one standard error away, in each direction in which it is uncertain.
-    pub(crate) beside: Vec<(NoiseModel, f64)>,
+    pub(crate) probability: f64,
 }
 
 impl Noise {
     /// White noise that left these residuals.
     pub(crate) fn white(lags: &Lags, freedom: f64) -> Self {
+        let model = NoiseModel::White;
+        let (variance, probability) = (lags.square / freedom, 1.0);
         Self {
-            model: NoiseModel::White,
-            variance: lags.square / freedom,
-            beside: Vec::new(),
+            model,
+            likely: vec![Likely {
+                model,
+                variance,
+                probability,
+            }],
         }
+    }
+
+    /// Mean of σ².
+    pub(crate) fn variance(&self) -> f64 {
+        self.likely.iter().map(|likely| likely.probability * likely.variance).sum()
     }
 }

@@ -3,7 +3,8 @@
 
 use fearless_simd::{Simd, SimdBase, dispatch, f64x8};
 
-use super::model::NoiseModel;
+use super::autoregression::quadratic;
+use super::model::{MOST_PARTS, NoiseModel};
 use crate::vector::{accelerated, cross_products, level};
 
 /// Columns in one vector.
@@ -55,17 +56,24 @@ impl Rows {
         let last = filter.steps.len() - 1;
         self.tiled(|left, right| {
             dispatch!(level(), simd => {
-                let nothing = [f64x8::splat(simd, 0.0); 2];
-                let (mut expected, mut at) = (nothing, 0);
+                let nothing = f64x8::splat(simd, 0.0);
+                let (mut states, mut expected, mut at) = ([[nothing; 2]; MOST_PARTS], [nothing; 2], 0);
+                let count = filter.kept.len();
                 products(simd, left, right, #[inline(always)] |left, right| {
                     if at == length {
-                        (expected, at) = (nothing, 0);
+                        (states, expected, at) = ([[nothing; 2]; MOST_PARTS], [nothing; 2], 0);
                     }
-                    let [kept, taken, root] = filter.steps[at.min(last)].map(|parameter| f64x8::splat(simd, parameter));
+                    let Step { root, gains } = &filter.steps[at.min(last)];
                     at += 1;
-                    let [of_left, of_right] = expected;
-                    expected = [kept * of_left + taken * left, kept * of_right + taken * right];
-                    [(left - of_left) * root, (right - of_right) * root]
+                    let new = [left - expected[0], right - expected[1]];
+                    expected = [nothing; 2];
+                    for ((state, kept), gain) in states[..count].iter_mut().zip(&filter.kept).zip(gains) {
+                        for side in 0..2 {
+                            state[side] = (state[side] + new[side] * *gain) * *kept;
+                            expected[side] += state[side];
+                        }
+                    }
+                    new.map(|new| new * *root)
                 })
             })
         })
@@ -108,98 +116,127 @@ fn products<S: Simd>(
     sums.map(Into::into)
 }
 
-/// Kalman's filter of white noise with AR(1), as it takes a column: what it expects of the next sample is `kept` of what it expected
-/// and `taken` of what came; the difference counts times `root`.
+/// Kalman's filter of white noise with AR(1) parts, as it takes a column: each part is expected to be what it was, and its gain of what
+/// came beyond expectation, times its correlation; what came beyond counts times `root`.
 pub(crate) struct Filter {
-    /// kept, taken and root of the first samples; the last of them for all that follow.
-    pub(crate) steps: Vec<[f64; 3]>,
+    /// The correlation of each part with itself a sample later.
+    pub(crate) kept: Vec<f64>,
+    /// Of the first samples; the last of them for all that follow.
+    pub(crate) steps: Vec<Step>,
     /// ln |R|.
     pub(crate) log_determinant: f64,
 }
 
+/// What a filter does with one sample.
+pub(crate) struct Step {
+    pub(crate) root: f64,
+    pub(crate) gains: [f64; MOST_PARTS],
+}
+
 impl Filter {
-    /// The filter for this correlation of neighbours and this share of the correlated part.
-    pub(crate) fn new(rho: f64, share: f64, samples: usize) -> Self {
-        let mut steps = Vec::new();
-        let (mut ahead, mut log_determinant) = (share, 0.0);
+    /// The filter for parts, each with its share in the variance and its correlation a sample later; the rest is white.
+    pub(crate) fn new(parts: &[(f64, f64)], samples: usize) -> Self {
+        accelerated(
+            #[inline(always)]
+            || Self::settled(parts, samples),
+        )
+    }
+
+    #[inline(always)]
+    fn settled(parts: &[(f64, f64)], samples: usize) -> Self {
+        let white = (1.0 - parts.iter().map(|(share, _)| share).sum::<f64>()).max(0.0);
+        let of = |part: fn(&(f64, f64)) -> f64| -> [f64; MOST_PARTS] {
+            std::array::from_fn(|index| parts.get(index).map_or(0.0, part))
+        };
+        let (shares, kept) = (of(|part| part.0), of(|part| part.1));
+        // Covariance of the parts before each sample.
+        let mut ahead = [[0.0; MOST_PARTS]; MOST_PARTS];
+        (0..MOST_PARTS).for_each(|i| ahead[i][i] = shares[i]);
+        let (mut steps, mut log_determinant): (Vec<Step>, f64) = (Vec::with_capacity(samples), 0.0);
         for index in 0..samples {
-            let innovation = ahead + 1.0 - share;
-            let gain = ahead / innovation;
-            steps.push([rho * (1.0 - gain), rho * gain, 1.0 / innovation.sqrt()]);
-            log_determinant += innovation.ln();
-            let next = rho * rho * ahead * (1.0 - gain) + share * (1.0 - rho * rho);
-            // Gains and variances settle soon.
-            if (next - ahead).abs() <= 1e-14 * ahead {
-                log_determinant += (samples - index - 1) as f64 * innovation.ln();
+            let mut with_sum = [0.0; MOST_PARTS];
+            for row in &ahead {
+                (0..MOST_PARTS).for_each(|j| with_sum[j] += row[j]);
+            }
+            let innovation = white + with_sum.iter().sum::<f64>();
+            let root = 1.0 / innovation.sqrt();
+            let gains = with_sum.map(|with_sum| with_sum / innovation);
+            // Gains and variances settle soon, where no part outlasts the series.
+            let is_settled = steps.last().is_some_and(|last| {
+                (root - last.root).abs() <= 1e-14 * root
+                    && (0..MOST_PARTS).all(|i| (gains[i] - last.gains[i]).abs() <= 1e-14 * gains[i])
+            });
+            if is_settled {
+                log_determinant += (samples - index) as f64 * innovation.ln();
                 break;
             }
-            ahead = next;
+            log_determinant += innovation.ln();
+            for i in 0..MOST_PARTS {
+                let (gain, kept_here) = (gains[i], kept[i]);
+                for j in 0..MOST_PARTS {
+                    ahead[i][j] = kept_here * kept[j] * (ahead[i][j] - gain * with_sum[j]);
+                }
+                ahead[i][i] += shares[i] * (1.0 - kept_here * kept_here);
+            }
+            steps.push(Step { root, gains });
         }
-        Self { steps, log_determinant }
+        Self {
+            kept: parts.iter().map(|(_, correlation)| *correlation).collect(),
+            steps,
+            log_determinant,
+        }
+    }
+
+    /// Σ of the squares of a column whitened.
+    pub(crate) fn square(&self, column: &[f64]) -> f64 {
+        let (mut states, mut expected, mut square) = ([0.0; MOST_PARTS], 0.0, 0.0);
+        let (count, last) = (self.kept.len(), self.steps.len() - 1);
+        for (index, entry) in column.iter().enumerate() {
+            let Step { root, gains } = &self.steps[index.min(last)];
+            let new = entry - expected;
+            square += (new * root).powi(2);
+            for i in 0..count {
+                states[i] = (states[i] + gains[i] * new) * self.kept[i];
+            }
+            expected = states[..count].iter().sum();
+        }
+        square
     }
 }
 
-/// Σ of the squares of one column whitened by each of several filters, side by side.
-pub(crate) fn whitened_squares(column: &[f64], filters: &[Filter]) -> Vec<f64> {
-    let many = |filters: &[Filter]| {
-        let longest = filters.iter().map(|filter| filter.steps.len()).max().unwrap_or(0);
-        let step = |index: usize, what: usize| -> [f64; LANES] {
-            std::array::from_fn(|lane| {
-                let steps = &filters[lane.min(filters.len() - 1)].steps;
-                steps[index.min(steps.len() - 1)][what]
-            })
-        };
-        let steps: Vec<[[f64; LANES]; 3]> = (0..longest).map(|index| [0, 1, 2].map(|what| step(index, what))).collect();
-        let mut squares = [0.0; LANES];
-        accelerated(
-            #[inline(always)]
-            || {
-                let mut expected = [0.0; LANES];
-                for (index, entry) in column.iter().enumerate() {
-                    let [kept, taken, root] = &steps[index.min(longest - 1)];
-                    for lane in 0..LANES {
-                        let white = (entry - expected[lane]) * root[lane];
-                        squares[lane] += white * white;
-                        expected[lane] = kept[lane] * expected[lane] + taken[lane] * entry;
-                    }
-                }
-            },
-        );
-        squares.into_iter().take(filters.len())
-    };
-    filters.chunks(LANES).flat_map(many).collect()
-}
-
 /// The columns of a Jacobian J, ready for products with correlations between them.
-pub(crate) struct Columns {
-    size: usize,
+pub(crate) struct Columns<'a> {
+    columns: &'a [&'a [f64]],
     /// JᵀJ.
     product: Vec<f64>,
     rows: Rows,
 }
 
-impl Columns {
-    pub(crate) fn new(columns: &[&[f64]]) -> Self {
-        let size = columns.len();
-        let mut product = vec![0.0; size * size];
+impl<'a> Columns<'a> {
+    pub(crate) fn new(columns: &'a [&'a [f64]]) -> Self {
+        let mut product = vec![0.0; columns.len() * columns.len()];
         cross_products(columns, columns, &mut product);
         Self {
-            size,
+            columns,
             product,
             rows: Rows::new(columns),
         }
     }
 
-    /// JᵀRJ, row-major, with R the correlations of this noise, in one pass over the columns.
+    /// JᵀRJ, row-major, with R the correlations of this noise.
     ///
-    /// F_i = ρ (F_{i−1} + J_{i−1}) sums all that came before, so that JᵀRJ = JᵀJ + s (JᵀF + FᵀJ).
+    /// With F_i = ρ (F_{i−1} + J_{i−1}), the sums of all that came before, it is JᵀJ + Σ s (JᵀF + FᵀJ) over the parts of the noise.
     pub(crate) fn quadratic(&self, model: NoiseModel) -> Vec<f64> {
-        let (correlation, share) = model.parameters();
-        let mut product = self.product.clone();
-        let across = self.rows.with_sums_before(correlation);
-        for i in 0..self.size {
-            for j in 0..self.size {
-                product[i * self.size + j] += share * (across[i * self.size + j] + across[j * self.size + i]);
+        if let NoiseModel::AutoregressiveOfOrder { order, partial } = model {
+            return quadratic(self.columns, &partial[..order]);
+        }
+        let (mut product, size) = (self.product.clone(), self.columns.len());
+        for (share, correlation) in model.parts() {
+            let across = self.rows.with_sums_before(correlation);
+            for i in 0..size {
+                for j in 0..size {
+                    product[i * size + j] += share * (across[i * size + j] + across[j * size + i]);
+                }
             }
         }
         product
@@ -219,19 +256,21 @@ mod tests {
     }
 
     fn whitened(column: &[f64], filter: &Filter) -> Vec<f64> {
-        let mut expected = 0.0;
+        let mut states = vec![0.0; filter.kept.len()];
         let white = |(i, entry): (usize, &f64)| {
-            let [kept, taken, root] = filter.steps[i.min(filter.steps.len() - 1)];
-            let white = (entry - expected) * root;
-            expected = kept * expected + taken * entry;
-            white
+            let Step { root, gains } = &filter.steps[i.min(filter.steps.len() - 1)];
+            let new = entry - states.iter().sum::<f64>();
+            for ((state, kept), gain) in states.iter_mut().zip(&filter.kept).zip(gains) {
+                *state = kept * (*state + gain * new);
+            }
+            new * root
         };
         column.iter().enumerate().map(white).collect()
     }
 
     #[test]
     fn side_by_side_is_one_after_the_other() {
-        let filter = Filter::new(0.8, 0.6, COUNT);
+        let filter = Filter::new(&[(0.6, 0.8), (0.2, 0.99)], COUNT);
         for count in [1, 3, 8, 9, 17, 30] {
             let all = columns(count);
             let slices: Vec<&[f64]> = all.iter().map(Vec::as_slice).collect();
@@ -253,20 +292,9 @@ mod tests {
                     assert!((products[i * count + j] - dot(&white[i], &white[j])).abs() < 1e-12);
                     assert!((across[i * count + j] - dot(&all[i], &sums[j])).abs() < 1e-12);
                 }
+                assert!((filter.square(&all[i]) / dot(&white[i], &white[i]) - 1.0).abs() < 1e-13);
             }
         }
         assert!(Rows::new(&[]).whitened(&filter, COUNT).is_empty());
-    }
-
-    #[test]
-    fn many_filters_of_one_column() {
-        let filters: Vec<Filter> = (0..19).map(|i| Filter::new(0.05 * f64::from(i), 0.5, COUNT)).collect();
-        let column = &columns(1)[0];
-        let squares = whitened_squares(column, &filters);
-        assert_eq!(squares.len(), 19);
-        for (square, filter) in squares.iter().zip(&filters) {
-            let white = whitened(column, filter);
-            assert!((square / dot(&white, &white) - 1.0).abs() < 1e-13);
-        }
     }
 }

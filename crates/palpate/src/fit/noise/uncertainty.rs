@@ -1,12 +1,13 @@
 //! From the noise of a fit to the covariance of its parameters, their errors and intervals.
 
 use serde::{Deserialize, Serialize};
+use smallvec::SmallVec;
 
-use super::model::{Lags, Noise};
+use super::model::{Lags, Likely, Noise};
 use super::rows::Columns;
 use crate::fit::{Estimate, NoiseChoice, NoiseModel};
 use crate::optimise::{Cholesky, Few, Solution, Termination};
-use crate::statistics::{coverage_factor, dot};
+use crate::statistics::{coverage_factor, dot, normal_factor, two_sided_p};
 use crate::vector::cross_products;
 
 /// How a parameter is brought to its interval.
@@ -30,14 +31,14 @@ pub(crate) fn variance_of(gradient: &[f64], covariance: &[Vec<f64>]) -> f64 {
 /// What intervals are made of: covariances of the searched parameters for noise that correlates.
 ///
 /// The fit is by least squares whatever the noise, so with J the Jacobian and V = σ² R the covariance of the noise that of
-/// the parameters is the sandwich (JᵀJ)⁻¹ JᵀVJ (JᵀJ)⁻¹. V is itself an estimate: half the relative variance of a parameter's
-/// variance gives the degrees of freedom of its t-quantile (Satterthwaite 1946),
+/// the parameters is the sandwich (JᵀJ)⁻¹ JᵀVJ (JᵀJ)⁻¹. V is itself an estimate: models m that may have left the residuals have
+/// probabilities w_m, and an interval of coverage c is ±h with
 ///
 /// ```text
-/// ν = 2/[2/(N − p) + Σ_d (ln v_d − ln v)²]
+/// Σ_m w_m T(h/√v_m) = (1 + c)/2
 /// ```
 ///
-/// where v_d is the parameter's variance for a noise model one standard error off in direction d.
+/// where v_m is the parameter's variance for model m, and T the distribution of Student's t of N − p degrees of freedom.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Uncertainty {
     /// Coverage of the intervals.
@@ -46,12 +47,19 @@ pub struct Uncertainty {
     pub freedom: f64,
     /// Standard deviation of the noise in the unit of the signal; of a sample of mean weight if they have weights.
     pub deviation: f64,
-    /// Degrees of freedom of its square.
-    pub deviation_freedom: f64,
-    /// Covariance in the order of `parameters`.
+    /// Covariance in the order of `parameters`: the mean over the models.
     pub covariance: Vec<Vec<f64>>,
-    /// The same for noise models one standard error off.
-    pub beside: Vec<Vec<Vec<f64>>>,
+    /// Models of the noise, if there are several.
+    pub models: Vec<ModelCovariance>,
+}
+
+/// What follows from one model of the noise.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct ModelCovariance {
+    /// w_m.
+    pub probability: f64,
+    /// Covariance of the parameters if this is the noise.
+    pub covariance: Vec<Vec<f64>>,
 }
 
 impl Uncertainty {
@@ -60,14 +68,21 @@ impl Uncertainty {
         if white == 0.0 {
             return Estimate::fixed(value);
         }
-        let variance = variance_of(gradient, &self.covariance);
-        self.interval(value, white.sqrt(), variance, self.freedom_of(gradient), scale)
+        self.estimate_beside(value, gradient, white, 0.0, scale)
     }
 
-    /// The same from the standard error for white noise, a variance and its degrees of freedom.
-    pub(crate) fn interval(&self, value: f64, white: f64, variance: f64, freedom: f64, scale: Scale) -> Estimate {
-        let error = variance.sqrt();
-        let half = error * coverage_factor(self.confidence, freedom);
+    /// The same of a sum with something of this variance.
+    pub(crate) fn estimate_beside(
+        &self,
+        value: f64,
+        gradient: &[f64],
+        white: f64,
+        added: f64,
+        scale: Scale,
+    ) -> Estimate {
+        let error = (variance_of(gradient, &self.covariance) + added).sqrt();
+        let white = (white + added).sqrt();
+        let half = error * self.factor(gradient, added);
         if scale == Scale::Log && half > OPEN {
             return Estimate {
                 interval: Some((0.0, f64::INFINITY)),
@@ -88,15 +103,54 @@ impl Uncertainty {
         }
     }
 
-    /// Degrees of freedom of the variance of a parameter with this gradient.
-    pub(crate) fn freedom_of(&self, gradient: &[f64]) -> f64 {
-        if self.beside.is_empty() {
-            return self.freedom;
+    /// Half an interval over the standard error, of a number with this gradient and of what has the variance `added`.
+    pub(crate) fn factor(&self, gradient: &[f64], added: f64) -> f64 {
+        let factor = coverage_factor(self.confidence, self.freedom);
+        if self.models.is_empty() {
+            return factor;
         }
-        let variance = variance_of(gradient, &self.covariance);
-        let changes = self.beside.iter().map(|covariance| (variance_of(gradient, covariance) / variance).ln().powi(2));
-        2.0 / (2.0 / self.freedom + changes.sum::<f64>())
+        let variance = variance_of(gradient, &self.covariance) + added;
+        let relative = |model: &ModelCovariance| {
+            let own = variance_of(gradient, &model.covariance) + added;
+            (model.probability, (own / variance).sqrt())
+        };
+        mixed_factor(&self.models.iter().map(relative).collect(), factor, self.confidence, self.freedom)
     }
+}
+
+/// h with Σ w T(h/s) = (1 + c)/2, where one T alone gives `factor`.
+fn mixed_factor(models: &SmallVec<[(f64, f64); 16]>, factor: f64, confidence: f64, freedom: f64) -> f64 {
+    // Wallace's transform of Student's t to a normal number, of which T takes the ratio to that of its quantile: exact for one model.
+    let normal = |t: f64| (8.0 * freedom + 1.0) / (8.0 * freedom + 3.0) * (freedom * (t * t / freedom).ln_1p()).sqrt();
+    let unit = normal_factor(confidence) / normal(factor);
+    let target = 0.5 * (1.0 - confidence);
+    let beyond = |h: f64| models.iter().map(|(w, s)| w * 0.5 * two_sided_p(unit * normal(h / s))).sum::<f64>();
+    let scales = || models.iter().map(|(_, scale)| *scale);
+    let (mut low, mut high) = (factor * scales().fold(f64::INFINITY, f64::min), factor * scales().fold(0.0, f64::max));
+    if !(low > 0.0 && high.is_finite()) {
+        return f64::NAN;
+    }
+    // The logarithm of a tail is about straight in that of h.
+    let rest = |h: f64| (beyond(h) / target).ln();
+    let (mut at_low, mut at_high) = (rest(low), rest(high));
+    for _ in 0..40 {
+        if high / low - 1.0 < 1e-9 || at_low <= 0.0 || at_high >= 0.0 {
+            break;
+        }
+        let secant = low * (high / low).powf(at_low / (at_low - at_high));
+        let middle = if secant > low && secant < high { secant } else { 0.5 * (low + high) };
+        let at = rest(middle);
+        if at.abs() < 1e-9 {
+            return middle;
+        }
+        // The end that stays counts half (Illinois).
+        if at > 0.0 {
+            (low, at_low, at_high) = (middle, at, 0.5 * at_high);
+        } else {
+            (high, at_high, at_low) = (middle, at, 0.5 * at_low);
+        }
+    }
+    if at_low <= 0.0 { low } else { high }
 }
 
 /// The uncertainty of a fit, with what rests on white noise beside it.
@@ -145,20 +199,34 @@ impl Assessed {
                 ratio * variance,
             ),
         };
-        let off = noise.beside.iter().map(|(_, variance)| (variance / noise.variance).ln().powi(2));
-        let uncertainty = inverse.filter(|_| white.is_some()).map(|inverse| Uncertainty {
-            confidence,
-            freedom,
-            deviation: noise.variance.sqrt() * unit,
-            deviation_freedom: 2.0 / (2.0 / freedom + off.sum::<f64>()),
-            covariance: sandwich(inverse, noise.model, noise.variance),
-            beside: noise.beside.iter().map(|(model, variance)| sandwich(inverse, *model, *variance)).collect(),
+        let uncertainty = inverse.filter(|_| white.is_some()).map(|inverse| {
+            let of_model = |likely: &Likely| ModelCovariance {
+                probability: likely.probability,
+                covariance: sandwich(inverse, likely.model, likely.variance),
+            };
+            let mut models: Vec<ModelCovariance> = noise.likely.iter().map(of_model).collect();
+            let mut covariance = vec![vec![0.0; size]; size];
+            for model in &models {
+                for (sums, row) in covariance.iter_mut().zip(&model.covariance) {
+                    sums.iter_mut().zip(row).for_each(|(sum, entry)| *sum += model.probability * entry);
+                }
+            }
+            if models.len() == 1 {
+                models.clear();
+            }
+            Uncertainty {
+                confidence,
+                freedom,
+                deviation: noise.variance().sqrt() * unit,
+                covariance,
+                models,
+            }
         });
         Self {
             white,
             uncertainty: uncertainty.filter(|found| finite(&found.covariance)),
             noise: noise.model,
-            correlation: lags.first,
+            correlation: lags.correlations[0],
         }
     }
 
@@ -199,9 +267,8 @@ impl Assessed {
             confidence,
             freedom,
             deviation,
-            deviation_freedom: freedom,
             covariance: wide(white),
-            beside: Vec::new(),
+            models: Vec::new(),
         });
         let noise = if correlation > 0.0 { NoiseModel::Autoregressive { correlation } } else { NoiseModel::White };
         Self {

@@ -1,0 +1,153 @@
+//! The restricted likelihood of autoregressions.
+
+use super::autoregression::{Autoregression, MOST_ORDER};
+use super::likelihood::{Kind, Likelihood, slowest};
+use super::model::{Lags, NoiseModel};
+use crate::optimise::{Few, Square, minimise};
+use crate::vector::cross_products;
+
+/// Fall of N ln σ² that a sample to look back at has to bring before it is tried: the last one, and each before it.
+const EVIDENCE: [f64; 2] = [4.0, 7.0];
+
+/// The partial autocorrelations of residuals, as many as speak for themselves; and whether those behind are above 0 together, by two standard
+/// deviations: then noise lasts longer than such an autoregression would.
+///
+/// Each fitted parameter pulls the correlations of residuals down by some 1/N.
+pub(crate) fn partial(lags: &Lags, samples: usize, parameters: usize) -> (Few, bool) {
+    /// Partial autocorrelations behind the first that are looked at together.
+    const BEHIND: usize = 3;
+    let taken = parameters as f64 / samples as f64;
+    let lags = lags.correlations.map(|correlation| correlation + taken);
+    let (mut kept, mut variance) = (Few::new(), 1.0);
+    let (mut all, mut best) = (Few::new(), (0.0, 0));
+    for (index, correlation) in lags.iter().enumerate() {
+        let predicted: f64 = kept.iter().zip(lags[..index].iter().rev()).map(|(by, r)| by * r).sum();
+        let by = (correlation - predicted) / variance;
+        if by.is_nan() || by.abs() >= 1.0 || samples <= 4 * (index + 1) {
+            break;
+        }
+        kept = kept.iter().zip(kept.iter().rev()).map(|(ahead, back)| ahead - by * back).chain([by]).collect();
+        variance *= 1.0 - by * by;
+        all.push(by);
+        let price = samples as f64 * variance.ln() + EVIDENCE[0] + EVIDENCE[1] * index as f64;
+        if price < best.0 {
+            best = (price, all.len());
+        }
+    }
+    let behind = all.iter().skip(best.1.max(1)).take(BEHIND);
+    let lasts = behind.clone().sum::<f64>() > 2.0 * (behind.len() as f64 / samples as f64).sqrt();
+    all.truncate(best.1);
+    (all, lasts)
+}
+
+/// The model of these partial autocorrelations.
+fn model(partial: &[f64]) -> NoiseModel {
+    match partial {
+        [] => NoiseModel::White,
+        [correlation] => NoiseModel::Autoregressive {
+            correlation: *correlation,
+        },
+        several => {
+            let mut partial = [0.0; MOST_ORDER];
+            partial[..several.len()].copy_from_slice(several);
+            NoiseModel::AutoregressiveOfOrder {
+                order: several.len(),
+                partial,
+            }
+        }
+    }
+}
+
+/// Products of columns with those some samples later, formed once, give the likelihood of every AR(p): with a = (1, −φ) and v the variance
+/// of the error of its predictions, zᵀR⁻¹z = Σ_ij a_i a_j Σ_t z_{t+i} z_{t+j} / v, t = 0 to N − 1 − i − j (Box and Jenkins 1970, A7.4).
+pub(crate) struct Lagged {
+    samples: usize,
+    /// Samples of each of the series, which are independent of each other.
+    length: usize,
+    order: usize,
+    /// For every i ≤ j ≤ p Σ_t z_{t+i} z_{t+j}ᵀ, those of i < j made symmetric.
+    products: Vec<Square>,
+}
+
+impl Lagged {
+    pub(crate) fn new(jacobian: &[&[f64]], residuals: &[f64], length: usize, order: usize) -> Self {
+        let all: Vec<&[f64]> = jacobian.iter().copied().chain([residuals]).collect();
+        let (samples, size) = (residuals.len(), all.len());
+        let entries = || (0..size).flat_map(|a| (0..size).map(move |b| (a, b)));
+        let mut products = Vec::new();
+        let mut own = vec![0.0; size * size];
+        for i in 0..=order {
+            for j in i..=order {
+                let mut sum = Square::from_elem(0.0, size * size);
+                for start in (0..samples).step_by(length) {
+                    if i == 0 {
+                        let early: Vec<&[f64]> = all.iter().map(|column| &column[start..start + length - j]).collect();
+                        let late: Vec<&[f64]> = all.iter().map(|column| &column[start + j..start + length]).collect();
+                        cross_products(&early, &late, &mut own);
+                        for (at, (a, b)) in entries().enumerate() {
+                            sum[at] += if j == 0 { own[at] } else { own[a * size + b] + own[b * size + a] };
+                        }
+                    } else {
+                        // As one sample less on both sides, without the first and the last of its terms.
+                        let (first, last) = (start + i - 1, start + length - j);
+                        for (at, (a, b)) in entries().enumerate() {
+                            let term = |of: usize| {
+                                let one = all[a][of] * all[b][of + j - i];
+                                if i == j { one } else { one + all[b][of] * all[a][of + j - i] }
+                            };
+                            sum[at] -= term(first) + term(last);
+                        }
+                    }
+                }
+                if i > 0 {
+                    let before: &Square = &products[place(i - 1, j - 1, order)];
+                    sum.iter_mut().zip(before).for_each(|(sum, before)| *sum += before);
+                }
+                products.push(sum);
+            }
+        }
+        Self {
+            samples,
+            length,
+            order,
+            products,
+        }
+    }
+
+    /// The likelihood of partial autocorrelations.
+    pub(crate) fn likelihood(&self, partial: &[f64]) -> Option<Likelihood> {
+        let found = Autoregression::new(partial);
+        let variance = found.variance_at(self.order);
+        let signs: Few = std::iter::once(1.0).chain(found.at(self.order).iter().map(|by| -by)).collect();
+        let mut product = Square::from_elem(0.0, self.products[0].len());
+        for i in 0..=self.order {
+            for j in i..=self.order {
+                let factor = signs[i] * signs[j] / variance;
+                let part = &self.products[place(i, j, self.order)];
+                product.iter_mut().zip(part).for_each(|(sum, entry)| *sum += factor * entry);
+            }
+        }
+        // |R| = Π_t σ_t², the variances of errors of predictions by the samples before.
+        let begun: f64 = (0..self.order).map(|index| found.variance_at(index).ln()).sum();
+        let series = (self.samples / self.length) as f64;
+        let log_determinant = series * (begun + (self.length - self.order) as f64 * variance.ln());
+        Likelihood::of(&product, log_determinant, self.samples)
+    }
+
+    /// The best near these partial autocorrelations.
+    pub(crate) fn noise(&self, start: &[f64]) -> Option<Kind> {
+        let most = slowest(self.length);
+        let partial = |x: &[f64]| -> Few { x.iter().map(|kappa| (0.5 * kappa).tanh()).collect() };
+        let evaluate = |x: &[f64]| {
+            if x.iter().any(|kappa| kappa.abs() > most) { None } else { self.likelihood(&partial(x)) }
+        };
+        let begin: Few = start.iter().map(|by| (2.0 * by.atanh()).clamp(0.1 - most, most - 0.1)).collect();
+        let found = minimise(&evaluate, &begin)?;
+        Kind::about(&found, &evaluate, |x| Some(model(&partial(x))))
+    }
+}
+
+/// Where the product of i and j stands.
+fn place(i: usize, j: usize, order: usize) -> usize {
+    (0..i).map(|row| order + 1 - row).sum::<usize>() + j - i
+}
