@@ -63,7 +63,7 @@ impl Convert {
                 .record;
             notes.extend(done(&file, before));
         }
-        let origin = origin(&file, opened)?;
+        let origin = origin(&file, opened, watch)?;
         Ok(Outcome::of(Converted { file, origin }).noted(notes))
     }
 }
@@ -134,10 +134,10 @@ impl<W: Write> Write for HeardWriter<'_, W> {
 }
 
 /// Where the numbers come from, as one JSON object.
-fn origin(file: &RecordFile, opened: &OpenedFile<'_>) -> Result<serde_json::Value, JobError> {
+fn origin(file: &RecordFile, opened: &OpenedFile<'_>, watch: &mut dyn Watch) -> Result<serde_json::Value, JobError> {
     Ok(serde_json::json!({
         "schema": "palpate.record/1",
-        "input": opened.input(file, None)?,
+        "input": opened.input(file, None, watch)?,
         "columns": file.columns,
         "corrections": file.record.corrections(),
         "test_toml": opened.described.text,

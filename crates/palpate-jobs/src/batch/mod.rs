@@ -178,10 +178,10 @@ fn file(
     described: &Described,
     options: &AnalysisOptions,
     store: &Store,
-    share: Share<'_>,
+    mut share: Share<'_>,
 ) -> Result<(Range<u64>, bool), JobError> {
     let source = Source::open(path);
-    let digest = source.as_ref().ok().and_then(|source| source.digest.get().ok());
+    let digest = source.as_ref().ok().and_then(|source| source.digest.get(&mut share).ok());
     let key = format!("{} {}", digest.as_deref().unwrap_or("-"), path.display());
     if let Some(place) = store.find(&key).filter(|_| digest.is_some()) {
         return Ok((place, true));

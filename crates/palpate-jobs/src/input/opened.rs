@@ -117,7 +117,7 @@ impl<'d> OpenedFile<'d> {
     pub fn measurement(&self, part: usize, watch: &mut dyn Watch) -> Result<Measurement, JobError> {
         let file = self.read(part, watch)?;
         Ok(Measurement {
-            input: self.input(&file, self.name(part))?,
+            input: self.input(&file, self.name(part), watch)?,
             options: self.described.options(),
             notes: averaged(&file).into_iter().collect(),
             record: file.record,
@@ -127,15 +127,20 @@ impl<'d> OpenedFile<'d> {
     /// What results say of where a record comes from; `part` is what to call it where the file holds several.
     ///
     /// # Errors
-    /// [`JobError`] where the file can no longer be read.
-    pub(crate) fn input(&self, file: &RecordFile, part: Option<&str>) -> Result<Input, JobError> {
+    /// [`JobError`] where the file can no longer be read, or the watch ends it.
+    pub(crate) fn input(
+        &self,
+        file: &RecordFile,
+        part: Option<&str>,
+        watch: &mut dyn Watch,
+    ) -> Result<Input, JobError> {
         let path = file.path.as_path();
         let about = self.described.test.as_ref().and_then(|test| test.about.title.clone());
         let title = about.unwrap_or_else(|| path.file_stem().unwrap_or_default().to_string_lossy().into_owned());
         Ok(Input {
             path: path.display().to_string(),
             part: file.part.name.clone(),
-            sha256: self.digest.get()?,
+            sha256: self.digest.get(watch)?,
             test_sha256: self.described.sha256(),
             air_run_sha256: None,
             depends_on_sha256: None,

@@ -5,7 +5,9 @@ use std::path::Path;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::thread::{self, JoinHandle};
+use std::time::Duration;
 
+use palpate::watch::{Progress, Watch};
 use palpate_files::FileError;
 use palpate_files::input::{Input, is_standard_input};
 use palpate_files::record::ReadError;
@@ -66,14 +68,19 @@ impl FileDigest {
         }
     }
 
-    /// The digest.
+    /// The digest; the watch is heard while it is waited for.
     ///
     /// # Errors
-    /// [`JobError`] where the file can no longer be read, or has changed.
-    pub(crate) fn get(&self) -> Result<String, JobError> {
+    /// [`JobError`] where the file can no longer be read, or has changed, or the watch ends it.
+    pub(crate) fn get(&self, watch: &mut dyn Watch) -> Result<String, JobError> {
+        const LOOK: Duration = Duration::from_millis(5);
         let wait = || {
             let gone = || JobError::new(ErrorKind::Record, "the digest of the file was not computed", None);
             let work = self.work.borrow_mut().take().ok_or_else(gone)?;
+            while !work.is_finished() {
+                watch.report(Progress::open("digesting the file", 0))?;
+                thread::sleep(LOOK);
+            }
             let digest = work.join().map_err(|_| gone())?;
             Ok(digest.map_err(ReadError::File)?)
         };
