@@ -90,7 +90,14 @@ impl NoiseModel {
         parts
     }
 
-    /// Correlations at 1 to `lags` samples, up to where they have faded.
+    /// Correlations r_k at k = 1 to `lags` samples, up to where they have faded to 1e-12.
+    ///
+    /// ```
+    /// use palpate::fit::NoiseModel;
+    /// let noise = NoiseModel::WhiteAndAutoregressive { correlation: 0.5, share: 0.8 };
+    /// assert_eq!(noise.correlations(3), [0.4, 0.2, 0.1]);
+    /// ```
+    #[must_use]
     pub fn correlations(self, lags: usize) -> Vec<f64> {
         const FADED: f64 = 1e-12;
         let mut all: Vec<f64> = Vec::new();
