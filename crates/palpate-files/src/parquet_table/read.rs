@@ -1,6 +1,6 @@
 //! A file to rows.
 
-use std::fs::File;
+use std::{fs::File, sync::Arc};
 
 use arrow_schema::DataType;
 use parquet::{
@@ -20,7 +20,7 @@ use crate::input::{ALWAYS_UNPACKED, MOST_TIMES, PageProblem, caught, check_pages
 
 /// A table that [`TableWriter`](super::write::TableWriter) wrote.
 pub struct TableReader {
-    file: File,
+    file: Arc<File>,
     about: ArrowReaderMetadata,
     fields: Vec<Field>,
 }
@@ -46,7 +46,11 @@ impl TableReader {
             Ok(Field::new(field.name(), kind))
         });
         let fields = fields.collect::<Result<_, _>>()?;
-        Ok(Self { file, about, fields })
+        Ok(Self {
+            file: Arc::new(file),
+            about,
+            fields,
+        })
     }
 
     /// The columns.

@@ -85,7 +85,16 @@ fn metadata(input: &Input, chunks: &Chunks) -> Result<ArrowReaderMetadata, FileE
         return Err(input.wrong(FileProblem::Encrypted));
     }
     let metadata = ArrowReaderMetadata::load(chunks, ArrowReaderOptions::new());
-    metadata.map_err(|error| damaged(input, "footer", &error.to_string()))
+    metadata.map_err(|error| damaged(input, "footer", &found(&error)))
+}
+
+/// What an error of `parquet` found; its errors about the schema of Arrow quote what parsing that did, over many lines.
+fn found(error: &ParquetError) -> String {
+    match error {
+        ParquetError::General(found) | ParquetError::EOF(found) => found.clone(),
+        ParquetError::ArrowError(_) => "a description of the columns (ARROW:schema) that is damaged".to_owned(),
+        error => error.to_string(),
+    }
 }
 
 /// What the pages of the chosen columns of some groups state must be within reason before room is made for it.
@@ -96,15 +105,16 @@ fn check(
     groups: &[usize],
 ) -> Result<(), FileError> {
     let schema = metadata.parquet_schema();
+    let chunks = Arc::new(chunks.clone());
     for group in groups.iter().map(|group| metadata.metadata().row_group(*group)) {
         for (leaf, column) in group.columns().iter().enumerate() {
             if columns.contains(&schema.get_column_root_idx(leaf)) {
-                check_pages(chunks, column, input.warranted()).map_err(|problem| match problem {
+                check_pages(&chunks, column, input.warranted()).map_err(|problem| match problem {
                     PageProblem::Beyond => input.beyond_limit(),
                     PageProblem::Damaged { at, expected, found } => {
                         input.damaged(format!("page at byte {at}"), expected, found)
                     }
-                    PageProblem::Unread(error) => damaged(input, "rows", &error.to_string()),
+                    PageProblem::Unread(error) => damaged(input, "rows", &found(&error)),
                 })?;
             }
         }
@@ -169,7 +179,7 @@ impl Parquet {
             .with_row_groups(groups)
             .with_offset(before)
             .with_batch_size(BATCH);
-        let reader = builder.build().map_err(|error| damaged(input, "rows", &error.to_string()))?;
+        let reader = builder.build().map_err(|error| damaged(input, "rows", &found(&error)))?;
         for batch in reader {
             let batch = batch.map_err(|error| damaged(input, &format!("rows from {}", row + 1), &error.to_string()))?;
             let count = batch.num_rows() as u64;

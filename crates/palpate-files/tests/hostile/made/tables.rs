@@ -7,7 +7,11 @@ use arrow_ipc::{
     CompressionType,
     writer::{FileWriter, IpcWriteOptions, StreamWriter},
 };
-use parquet::{arrow::ArrowWriter, basic::Compression, file::properties::WriterProperties};
+use parquet::{
+    arrow::ArrowWriter,
+    basic::{BrotliLevel, Compression, Encoding, GzipLevel},
+    file::properties::{EnabledStatistics, WriterProperties},
+};
 
 use super::{Made, place, with};
 
@@ -88,6 +92,24 @@ pub(super) fn parquet() -> Vec<Made> {
         ("lying_length_of_a_packed_page.parquet", page_lying_about_unpacking()),
         ("lying_length_of_a_page_with_a_text_for_its_checksum.parquet", page_with_a_text_for_its_checksum()),
         ("lying_count_of_a_dictionary.parquet", dictionary_lying_about_its_values()),
+        (
+            "page_unpacks_to_more_by_brotli.parquet",
+            page_that_unpacks_to_more(Compression::BROTLI(BrotliLevel::try_new(9).expect("a level")), (1 << 24) - 1),
+        ),
+        (
+            "page_unpacks_to_more_by_gzip.parquet",
+            page_that_unpacks_to_more(Compression::GZIP(GzipLevel::default()), 1 << 18),
+        ),
+        (
+            "more_lengths_than_texts.parquet",
+            texts_lying_about_their_lengths(Encoding::DELTA_LENGTH_BYTE_ARRAY),
+        ),
+        (
+            "more_shared_lengths_than_texts.parquet",
+            texts_lying_about_their_lengths(Encoding::DELTA_BYTE_ARRAY),
+        ),
+        ("good_texts_after_their_lengths.parquet", texts_after_lengths(Encoding::DELTA_LENGTH_BYTE_ARRAY)),
+        ("good_texts_after_shared_lengths.parquet", texts_after_lengths(Encoding::DELTA_BYTE_ARRAY)),
         ("footer_of_words.footer", b"this is no footer at all".to_vec()),
         ("footer_of_a_lying_list.footer", vec![0x15, 2, 0x19, 0xFC, 0xFF, 0xFF, 0xFF, 0xFF, 0x0F, 0, 0]),
         (
@@ -160,6 +182,55 @@ fn dictionary_lying_about_its_values() -> Vec<u8> {
     file
 }
 
+/// A file of two columns of so many equal numbers, packed, whose first page says that it unpacks to 8 bytes.
+fn page_that_unpacks_to_more(compression: Compression, rows: usize) -> Vec<u8> {
+    let column = |value: f64| -> ArrayRef { Arc::new(Float64Array::from(vec![value; rows])) };
+    let batch = table(vec![("time_s", column(0.5)), ("force_N", column(1.5))]);
+    let packed = WriterProperties::builder()
+        .set_compression(compression)
+        .set_dictionary_enabled(false)
+        .set_statistics_enabled(EnabledStatistics::None)
+        .set_data_page_size_limit(1 << 30)
+        .set_data_page_row_count_limit(usize::MAX)
+        .set_write_batch_size(rows)
+        .set_max_row_group_row_count(None)
+        .build();
+    let mut writer = ArrowWriter::try_new(Vec::new(), batch.schema(), Some(packed)).expect("a writer");
+    writer.write(&batch).expect("rows");
+    let mut file = writer.into_inner().expect("a file");
+    // Behind the magic word: the kind of the page and its unpacked size, seven bits a byte; 8 may be written with as many.
+    assert_eq!((file[4], file[6]), (0x15, 0x15));
+    let end = 7 + file[7..].iter().position(|byte| byte & 0x80 == 0).expect("the end of a number");
+    file[7..end].fill(0x80);
+    (file[7], file[end]) = (0x90, 0);
+    file
+}
+
+/// Two tests, distinguished by texts that stand behind their lengths.
+fn texts_after_lengths(encoding: Encoding) -> Vec<u8> {
+    let ids = StringArray::from_iter_values((0..400).map(|row| if row < 200 { "first" } else { "second" }));
+    let numbers = |scale: f64| numbers(&(0..400).map(|row| Some(scale * f64::from(row % 200))).collect::<Vec<_>>());
+    let batch = table(vec![("test_id", Arc::new(ids)), ("time_s", numbers(0.1)), ("force_N", numbers(0.5))]);
+    let lengths = WriterProperties::builder()
+        .set_dictionary_enabled(false)
+        .set_column_encoding("test_id".into(), encoding)
+        .build();
+    let mut writer = ArrowWriter::try_new(Vec::new(), batch.schema(), Some(lengths)).expect("a writer");
+    writer.write(&batch).expect("rows");
+    writer.into_inner().expect("a file")
+}
+
+/// The same, where the texts are stated to be 2³⁴ − 1.
+fn texts_lying_about_their_lengths(encoding: Encoding) -> Vec<u8> {
+    let mut file = texts_after_lengths(encoding);
+    // 128 lengths to a block, of four parts; 400 of them.
+    let count = place(&file, &[0x80, 1, 4, 0x90, 3]) + 3;
+    file.splice(count..count + 2, [0xFF, 0xFF, 0xFF, 0xFF, 0x3F]);
+    // The page takes its room from its texts.
+    file.drain(count + 60..count + 63);
+    file
+}
+
 /// A stream of packed columns, of which the first says that it unpacks to 1.5 GiB.
 fn lying_about_unpacking() -> Vec<u8> {
     let numbers = |start: f64| numbers(&(0..200).map(|row| Some(start + f64::from(row / 50))).collect::<Vec<_>>());
@@ -185,7 +256,7 @@ pub(super) fn arrow() -> Vec<Made> {
         ("only_magic.arrow", b"ARROW1".to_vec()),
         ("cut_at_the_end.arrow", file[..file.len() - 3].to_vec()),
         ("cut_in_the_middle.arrow", file[..file.len() / 2].to_vec()),
-        ("lying_length_of_the_schema.arrow", with(&file, 12, &[0xFF, 0xFF, 0xFF, 0x7F])),
+        ("lying_length_of_the_schema.arrow", with(&file, place(&file, &mark) + 4, &[0xFF, 0xFF, 0xFF, 0x7F])),
         ("schema_cut.arrows", stream[..60].to_vec()),
         ("schema_overwritten.arrows", with(&stream, 20, &[0xFF; 16])),
         ("only_schema.arrows", stream[..batch].to_vec()),
