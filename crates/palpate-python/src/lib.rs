@@ -24,6 +24,7 @@ mod fits;
 mod html;
 mod materials;
 mod observers;
+mod pickles;
 mod records;
 mod shown;
 mod table;
@@ -52,6 +53,7 @@ mod _palpate {
         materials::prediction::Prediction,
         observers::observation::Observation,
         observers::observer::Observer,
+        pickles::{_piece, Piece},
         records::analysis::{Analysis, Finding},
         records::compare::{Comparison, RecordComparison, compare},
         records::record::{Record, read, read_all},

@@ -49,14 +49,14 @@ macro_rules! shown {
             #[pyo3(signature = (json, format=0))]
             fn _from_json(
                 class: &Bound<'_, pyo3::types::PyType>,
-                json: pyo3::pybacked::PyBackedStr,
+                json: $crate::pickles::Pieces,
                 format: u32,
             ) -> PyResult<Self> {
-                $crate::work::unpickled(class.py(), json, format)
+                $crate::pickles::unpickled(class.py(), json, format)
             }
 
-            fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<$crate::work::Made<'py, (String, u32)>> {
-                $crate::work::made_again::<Self>(py, self)
+            fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<$crate::pickles::Made<'py, (Vec<$crate::pickles::Piece>, u32)>> {
+                $crate::pickles::made_again::<Self>(py, self)
             }
 
             $($methods)*

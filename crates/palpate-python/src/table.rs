@@ -1,6 +1,5 @@
 //! A table of results: Arrow inside, so that polars, pandas and pyarrow take it without copies.
 
-use std::io::Cursor;
 use std::sync::Arc;
 
 use arrow_array::cast::AsArray;
@@ -16,13 +15,13 @@ use palpate_report::result::{PARAMETER_COLUMNS, ParameterColumn, ParameterRow};
 use pyo3::IntoPyObjectExt;
 use pyo3::exceptions::{PyKeyError, PyRuntimeError, PyTypeError};
 use pyo3::prelude::*;
-use pyo3::pybacked::PyBackedBytes;
-use pyo3::types::{PyBytes, PyDict, PyList, PyString, PyType};
+use pyo3::types::{PyDict, PyList, PyString, PyType};
 use pyo3_arrow::PyTable;
 
 use crate::arrays::array;
-use crate::errors::{PalpateError, refused, refused_plainly};
-use crate::work::{Made, PICKLE, at_length, check_pickle};
+use crate::errors::refused_plainly;
+use crate::pickles::{Made, PICKLE, Piece, Pieces, check_pickle, damaged, in_pieces};
+use crate::work::{Heard, at_length};
 
 /// Columns of results, each named with its unit.
 ///
@@ -187,16 +186,16 @@ impl Table {
 
     #[classmethod]
     #[pyo3(signature = (bytes, digest="", format=0))]
-    fn _from_ipc(class: &Bound<'_, PyType>, bytes: PyBackedBytes, digest: &str, format: u32) -> PyResult<Self> {
+    fn _from_ipc(class: &Bound<'_, PyType>, bytes: Pieces, digest: &str, format: u32) -> PyResult<Self> {
         check_pickle(format)?;
         let digest = digest.to_owned();
-        let read = move |_| -> Result<_, String> {
+        let read = move |heard: Heard| -> Result<_, String> {
             // Lengths in the bytes are taken at their word by their reader.
-            if sha256(&bytes) != digest {
+            if bytes.sha256(&heard).map_err(|ended| ended.to_string())? != digest {
                 return Err("expected bytes of its digest, found others".to_owned());
             }
             let unread = |error: ArrowError| error.to_string();
-            let mut reader = StreamReader::try_new(Cursor::new(&bytes), None).map_err(unread)?;
+            let mut reader = StreamReader::try_new(bytes.reader(heard), None).map_err(unread)?;
             let schema = reader.schema();
             let batch = reader.next().transpose().map_err(unread)?;
             let batch = batch.unwrap_or_else(|| RecordBatch::new_empty(schema));
@@ -205,11 +204,10 @@ impl Table {
                 None => Ok(Self { batch }),
             }
         };
-        let damaged = |what| refused::<PalpateError>(format!("the pickle is damaged: {what}"), None::<&str>);
         at_length(class.py(), read)?.map_err(damaged)
     }
 
-    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Made<'py, (Bound<'py, PyBytes>, String, u32)>> {
+    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Made<'py, (Vec<Piece>, String, u32)>> {
         let batch = self.batch.clone();
         let write = move |_| -> Result<_, ArrowError> {
             let mut writer = StreamWriter::try_new(Vec::new(), &batch.schema())?;
@@ -220,7 +218,7 @@ impl Table {
         };
         let (bytes, digest) = at_length(py, write)?.map_err(refused_plainly::<PyRuntimeError>)?;
         let make = py.get_type::<Self>().getattr("_from_ipc")?;
-        Ok((make, (PyBytes::new(py, &bytes), digest, PICKLE)))
+        Ok((make, (in_pieces(bytes), digest, PICKLE)))
     }
 
     /// The first and the last rows as a notebook shows them.

@@ -11,12 +11,9 @@ use std::time::Duration;
 
 use palpate::watch::{Cancelled, Progress, Watch};
 use palpate_jobs::JobError;
-use pyo3::PyTypeInfo;
 use pyo3::prelude::*;
-use pyo3::pybacked::PyBackedStr;
 use rayon::{ThreadPool, ThreadPoolBuildError, ThreadPoolBuilder};
 use serde::Serialize;
-use serde::de::DeserializeOwned;
 
 use crate::errors::{PalpateError, failed, refused, refused_plainly};
 
@@ -36,9 +33,6 @@ enum Effects {
     Files,
 }
 
-/// What makes an object again: a function and its arguments.
-pub(crate) type Made<'py, T> = (Bound<'py, PyAny>, T);
-
 /// A document as plain objects.
 pub(crate) fn plain<'py>(py: Python<'py>, document: &impl Serialize) -> PyResult<Bound<'py, PyAny>> {
     let json = serde_json::to_string(document).map_err(refused_plainly::<PalpateError>)?;
@@ -49,43 +43,6 @@ pub(crate) fn plain<'py>(py: Python<'py>, document: &impl Serialize) -> PyResult
 pub(crate) fn printed(document: &impl Serialize) -> PyResult<String> {
     let text = serde_json::to_string_pretty(document).map_err(refused_plainly::<PalpateError>)?;
     Ok(text + "\n")
-}
-
-/// The format of pickles: another number where their content has another form.
-pub(crate) const PICKLE: u32 = 1;
-
-/// Refuses a pickle of another format.
-pub(crate) fn check_pickle(format: u32) -> PyResult<()> {
-    if format == PICKLE {
-        return Ok(());
-    }
-    let message = format!("expected a pickle of format {PICKLE}, found format {format}");
-    Err(refused::<PalpateError>(message, Some("make it again with this version of palpate")))
-}
-
-/// What an object was made of, from its pickle.
-pub(crate) fn unpickled<T: DeserializeOwned + Send + 'static>(
-    py: Python<'_>,
-    json: PyBackedStr,
-    format: u32,
-) -> PyResult<T> {
-    /// Bytes that are read in some milliseconds.
-    const BRIEF: usize = 1 << 18;
-    check_pickle(format)?;
-    let read = match json.len() <= BRIEF {
-        true => serde_json::from_str(&json),
-        false => at_length(py, move |_| serde_json::from_str(&json))?,
-    };
-    read.map_err(|error| refused::<PalpateError>(format!("the pickle is damaged: {error}"), None::<&str>))
-}
-
-/// What makes an object again from its parts as JSON: `_from_json` of its class.
-pub(crate) fn made_again<'py, T: PyTypeInfo>(
-    py: Python<'py>,
-    parts: &impl Serialize,
-) -> PyResult<Made<'py, (String, u32)>> {
-    let json = Long::text(py, |out| Ok(serde_json::to_writer(out, parts)?))?;
-    Ok((py.get_type::<T>().getattr("_from_json")?, (json, PICKLE)))
 }
 
 /// The watch of work on a thread of its own: it says how much is done, and hears whether it is to end.

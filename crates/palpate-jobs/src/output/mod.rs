@@ -76,7 +76,15 @@ pub fn write_file(path: &Path, content: &[u8]) -> Result<(), JobError> {
 /// SHA-256 of bytes, hexadecimal.
 #[must_use]
 pub fn sha256(content: &[u8]) -> String {
-    hexadecimal(Sha256::digest(content))
+    sha256_of_parts([content])
+}
+
+/// SHA-256 of the bytes that parts make together, hexadecimal.
+#[must_use]
+pub fn sha256_of_parts<'a>(parts: impl IntoIterator<Item = &'a [u8]>) -> String {
+    let mut digest = Sha256::new();
+    parts.into_iter().for_each(|part| digest.update(part));
+    hexadecimal(digest.finalize())
 }
 
 /// A digest in hexadecimal.

@@ -13,8 +13,9 @@ use pyo3::types::{PyBytes, PyList, PyTuple, PyType};
 use crate::arrays::{AT_ONCE, array, doubles};
 use crate::errors::{ModelError, OptionError, of_mapping, refused_plainly, undescribed};
 use crate::files::stated;
+use crate::pickles::{Made, PICKLE, Piece, Pieces, check_pickle, in_pieces};
 use crate::shown::shown;
-use crate::work::{Long, Made, PICKLE, briefly, check_pickle};
+use crate::work::{Long, briefly};
 
 /// A body and its law as a description has them: path of a file or mapping; and a text that makes them again anywhere.
 fn described(model: &Bound<'_, PyAny>) -> PyResult<(ContactModel, String)> {
@@ -356,13 +357,15 @@ shown! {
     #[classmethod]
     #[pyo3(signature = (texts, states, format=0))]
     fn _from_parts(
-        _class: &Bound<'_, PyType>,
+        class: &Bound<'_, PyType>,
         texts: Vec<String>,
-        states: &Bound<'_, PyBytes>,
+        states: Pieces,
         format: u32,
     ) -> PyResult<Self> {
         check_pickle(format)?;
-        let (parts, rest) = states.as_bytes().as_chunks::<{ State::BYTES }>();
+        let py = class.py();
+        let states = states.joined(py)?;
+        let (parts, rest) = states.as_chunks::<{ State::BYTES }>();
         if !rest.is_empty() {
             let message = format!("expected states of {} bytes, found {} more", State::BYTES, rest.len());
             return Err(refused_plainly::<ModelError>(message));
@@ -377,7 +380,7 @@ shown! {
         let mut kept = Vec::with_capacity(count);
         for (model, state) in models.iter().cycle().zip(parts) {
             if kept.len().is_multiple_of(AT_ONCE) {
-                states.py().check_signals()?;
+                py.check_signals()?;
             }
             kept.push(state_of(model, *state)?);
         }
@@ -389,10 +392,10 @@ shown! {
     }
 
     #[expect(clippy::type_complexity, reason = "what pickle asks for")]
-    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Made<'py, (Vec<String>, Bound<'py, PyBytes>, u32)>> {
+    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Made<'py, (Vec<String>, Vec<Piece>, u32)>> {
         let states = Long::bytes(py, |out| self.states.iter().try_for_each(|state| out.write_all(&state.to_bytes())))?;
         let make = py.get_type::<Self>().getattr("_from_parts")?;
-        Ok((make, (self.texts.clone(), PyBytes::new(py, &states), PICKLE)))
+        Ok((make, (self.texts.clone(), in_pieces(states), PICKLE)))
     }
 
     fn __repr__(&self) -> String {

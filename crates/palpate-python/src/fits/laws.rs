@@ -25,16 +25,18 @@ pub(crate) fn latency<'py>(
         let message = format!("the relative rate must be 0 or more, found {relative_rate_per_s}");
         return Err(refused_plainly::<ModelError>(message));
     }
-    let times = doubles(elapsed_s, "elapsed_s")?;
-    let mut values = vec![0.0; times.len()];
-    for (times, values) in times.chunks(AT_ONCE).zip(values.chunks_mut(AT_ONCE)) {
+    // The values take the place of their times: one array of a gigabyte is enough.
+    let mut values = doubles(elapsed_s, "elapsed_s")?;
+    let mut decayed = vec![0.0; values.len().min(AT_ONCE)];
+    for values in values.chunks_mut(AT_ONCE) {
         py.check_signals()?;
         py.detach(|| {
             // Before the hold the excess is that at its start; a time that is none has no value.
-            let held: Vec<f64> = times.iter().map(|time| time.max(0.0)).collect();
-            decay_many(&held, relative_rate_per_s, exponent, values);
-            for (time, value) in times.iter().zip(values) {
-                *value = if time.is_nan() { f64::NAN } else { equilibrium + amplitude * *value };
+            let held: Vec<f64> = values.iter().map(|time| time.max(0.0)).collect();
+            let decayed = &mut decayed[..held.len()];
+            decay_many(&held, relative_rate_per_s, exponent, decayed);
+            for (value, decayed) in values.iter_mut().zip(decayed) {
+                *value = if value.is_nan() { f64::NAN } else { equilibrium + amplitude * *decayed };
             }
         });
     }

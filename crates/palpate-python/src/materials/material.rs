@@ -21,9 +21,10 @@ use crate::files::stated;
 use crate::fits::fit::{PyEstimate, reported, square};
 use crate::materials::grip::Grip;
 use crate::materials::prediction::Prediction;
+use crate::pickles::Made;
 use crate::shown::shown;
 use crate::table::{Table, columns};
-use crate::work::{Made, job};
+use crate::work::job;
 
 /// Reported where intervals know nothing of the parameters.
 const OPEN: &str = "the calibration left a parameter open: the intervals hold noise alone";

@@ -3,16 +3,16 @@
 use palpate::observe::{ObserveError, Observer as Watcher, ObserverOptions};
 use palpate::watch::{Cancelled, Progress, Watch};
 use pyo3::prelude::*;
-use pyo3::pybacked::PyBackedStr;
 use pyo3::types::{PyBytes, PyType};
 
 use crate::arrays::doubles;
 use crate::errors::{ModelError, OptionError, PalpateError, RecordError, refused, refused_plainly};
 use crate::materials::material::Material;
 use crate::observers::observation::{Observation, columns};
+use crate::pickles::{Made, damaged};
 use crate::shown::shown;
 use crate::table::Table;
-use crate::work::{Made, PICKLE, at_length, unpickled};
+use crate::work::at_length;
 
 /// Ticks between two looks at whether Ctrl-C was pressed.
 const TICKS: usize = 4096;
@@ -253,15 +253,15 @@ shown! {
 
     #[classmethod]
     fn _from_parts(
-        class: &Bound<'_, PyType>,
-        options: PyBackedStr,
+        _class: &Bound<'_, PyType>,
+        options: &str,
         material: Option<&str>,
         state: &[u8],
     ) -> PyResult<Self> {
         let material = material.map(Material::parsed).transpose()?;
         let options = ObserverOptions {
             material: material.as_ref().map(Material::body),
-            ..unpickled(class.py(), options, PICKLE)?
+            ..serde_json::from_str(options).map_err(damaged)?
         };
         let watcher = Watcher::from_bytes(options, state).map_err(|error| refused_at("", &error))?;
         Ok(Self { watcher, material })

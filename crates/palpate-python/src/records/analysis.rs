@@ -16,16 +16,16 @@ use palpate_report::result::{Input, word};
 use palpate_report::spelling::{spelled, with_flags};
 use palpate_report::study::Pictures;
 use pyo3::prelude::*;
-use pyo3::pybacked::PyBackedStr;
 use pyo3::types::PyType;
 use serde::{Deserialize, Serialize};
 
 use crate::errors::{PalpateError, keyword, refused_plainly, unwritten, warn_of};
 use crate::html::framed;
+use crate::pickles::{Made, Piece, Pieces, made_again, unpickled};
 use crate::records::kept::Kept;
 use crate::shown::shown;
 use crate::table::{Column, Table, columns, parameter_columns};
-use crate::work::{Made, at_length, job, made_again, plain, printed, unpickled, writing};
+use crate::work::{at_length, job, plain, printed, writing};
 
 /// Something about a record, or a hold, that its numbers alone do not tell.
 #[pyclass(name = "Finding", module = "palpate", frozen, eq)]
@@ -251,7 +251,7 @@ shown! {
 
     #[classmethod]
     #[pyo3(signature = (json, format=0))]
-    fn _from_json(class: &Bound<'_, PyType>, json: PyBackedStr, format: u32) -> PyResult<Self> {
+    fn _from_json(class: &Bound<'_, PyType>, json: Pieces, format: u32) -> PyResult<Self> {
         let Parts {
             measured,
             options,
@@ -278,7 +278,7 @@ shown! {
         })
     }
 
-    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Made<'py, (String, u32)>> {
+    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Made<'py, (Vec<Piece>, u32)>> {
         let Requested { measured, job } = &*self.requested;
         let parts = Parts {
             measured: Kept::of(&measured.record),

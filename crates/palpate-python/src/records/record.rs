@@ -17,7 +17,6 @@ use palpate_jobs::input::{Described, Measurement, OpenedFile, record_sha256};
 use palpate_jobs::{Analyze, Calibrate, Compare, ErrorKind, JobError};
 use palpate_report::result::{Input, word};
 use pyo3::prelude::*;
-use pyo3::pybacked::PyBackedStr;
 use pyo3::types::PyType;
 use pyo3_arrow::PyTable;
 use serde::{Deserialize, Serialize};
@@ -29,12 +28,13 @@ use crate::fits::fit;
 use crate::materials::calibration::Calibration;
 use crate::materials::material::{Material, rising_times};
 use crate::materials::prediction::Prediction;
+use crate::pickles::{Made, Piece, Pieces, made_again, unpickled};
 use crate::records::analysis::Analysis;
 use crate::records::compare::RecordComparison;
 use crate::records::kept::Kept;
 use crate::shown::shown;
 use crate::table::{Column, Table, columns};
-use crate::work::{Made, at_length, briefly, job, made_again, unpickled};
+use crate::work::{at_length, briefly, job};
 
 /// A record of time, force and, if there is one, displacement, in SI, checked; loading is positive.
 ///
@@ -328,7 +328,7 @@ shown! {
 
     #[classmethod]
     #[pyo3(signature = (json, format=0))]
-    fn _from_json(class: &Bound<'_, PyType>, json: PyBackedStr, format: u32) -> PyResult<Self> {
+    fn _from_json(class: &Bound<'_, PyType>, json: Pieces, format: u32) -> PyResult<Self> {
         let parts: Parts<'_> = unpickled(class.py(), json, format)?;
         Ok(Self {
             record: parts.measured.record()?,
@@ -337,7 +337,7 @@ shown! {
         })
     }
 
-    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Made<'py, (String, u32)>> {
+    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Made<'py, (Vec<Piece>, u32)>> {
         let parts = Parts {
             measured: Kept::of(&self.record),
             input: self.input.clone(),
