@@ -363,7 +363,10 @@ mod tests {
     use super::*;
     use crate::vector::tests::on_every_level;
 
-    const COUNTS: [usize; 8] = [0, 1, 7, 8, 9, 100, CHUNK, 2 * CHUNK + 13];
+    // An interpreter that looks for undefined behaviour needs no more than a few.
+    const COUNTS: &[usize] =
+        if cfg!(miri) { &[0, 9, CHUNK + 13] } else { &[0, 1, 7, 8, 9, 100, CHUNK, 2 * CHUNK + 13] };
+    const SIZES: &[usize] = if cfg!(miri) { &[0, 3, 8] } else { &[0, 1, 2, 3, 4, 5, 6, 7, 8] };
 
     /// Whole numbers from −50 to 50, so that every sum is exact in any order.
     fn column(count: usize, seed: usize) -> Vec<f64> {
@@ -376,7 +379,7 @@ mod tests {
 
     #[test]
     fn scalar_product_is_the_plain_sum() {
-        for count in COUNTS {
+        for &count in COUNTS {
             let (a, b) = (column(count, 1), column(count, 2));
             assert_eq!(on_every_level(|| vec![dot(&a, &b)]), [exact(&a, &b)]);
         }
@@ -385,8 +388,8 @@ mod tests {
 
     #[test]
     fn normal_equations_hold_every_product() {
-        for count in COUNTS {
-            for size in 0..=8 {
+        for &count in COUNTS {
+            for &size in SIZES {
                 let columns: Vec<Vec<f64>> = (0..size).map(|seed| column(count, seed)).collect();
                 let values = column(count, 11);
                 let found = on_every_level(|| {
@@ -407,7 +410,7 @@ mod tests {
 
     #[test]
     fn cross_products_hold_every_pair() {
-        for count in COUNTS {
+        for &count in COUNTS {
             for (down, across) in [(1, 1), (2, 3), (3, 2), (1, 5), (4, 8), (2, 0), (0, 2)] {
                 let rows: Vec<Vec<f64>> = (0..down).map(|seed| column(count, seed)).collect();
                 let columns: Vec<Vec<f64>> = (0..across).map(|seed| column(count, 20 + seed)).collect();
@@ -424,7 +427,7 @@ mod tests {
 
     #[test]
     fn sums_of_columns_side_by_side() {
-        for count in COUNTS {
+        for &count in COUNTS {
             let all = column(LANES * count, 1);
             let (rows, weights) = (all.as_chunks::<LANES>().0, column(count, 2));
             for size in 0..4 {
@@ -449,7 +452,7 @@ mod tests {
     #[test]
     fn residuals_and_their_square() {
         let amplitudes = [2.0, -1.0, 0.5, 3.0, -0.25];
-        for count in COUNTS {
+        for &count in COUNTS {
             for size in 0..=amplitudes.len() {
                 let columns: Vec<Vec<f64>> = (0..size).map(|seed| column(count, seed)).collect();
                 let values = column(count, 11);

@@ -64,9 +64,12 @@ mod tests {
     use super::*;
     use crate::vector::tests::{assert_close, on_every_level};
 
+    /// Of the times one in so many: an interpreter that looks for undefined behaviour needs no more.
+    const STEP: usize = if cfg!(miri) { 12 } else { 1 };
+
     /// Zero, then four numbers a decade, from where nothing has happened to where nothing is left.
     fn times() -> Vec<f64> {
-        let decades = (-48..=24).map(|i| 10f64.powf(f64::from(i) / 4.0));
+        let decades = (-48..=24).step_by(STEP).map(|i| 10f64.powf(f64::from(i) / 4.0));
         std::iter::once(0.0).chain(decades).collect()
     }
 
