@@ -53,7 +53,7 @@ mod _palpate {
         materials::prediction::Prediction,
         observers::observation::Observation,
         observers::observer::Observer,
-        pickles::{_piece, Piece},
+        pickles::Piece,
         records::analysis::{Analysis, Finding},
         records::compare::{Comparison, RecordComparison, compare},
         records::record::{Record, read, read_all},

@@ -8,15 +8,14 @@ use std::io::{self, BufReader, Read};
 use std::ops::Range;
 use std::sync::Arc;
 
-use pyo3::prelude::*;
-use pyo3::pybacked::PyBackedBytes;
-use pyo3::types::PyBytes;
-use pyo3::{PyTypeInfo, wrap_pyfunction};
-use serde::Serialize;
-use serde::de::DeserializeOwned;
-
 use palpate::watch::Cancelled;
 use palpate_jobs::output::sha256_of_parts;
+use pyo3::PyTypeInfo;
+use pyo3::prelude::*;
+use pyo3::pybacked::PyBackedBytes;
+use pyo3::types::{PyBytes, PyType};
+use serde::Serialize;
+use serde::de::DeserializeOwned;
 
 use crate::errors::{PalpateError, refused};
 use crate::work::{Heard, Long, at_length};
@@ -48,18 +47,18 @@ pub(crate) struct Piece {
 
 #[pymethods]
 impl Piece {
+    /// The bytes as they come out of a pickle.
+    #[classmethod]
+    fn _from_bytes<'py>(_class: &Bound<'_, PyType>, bytes: Bound<'py, PyBytes>) -> PyResult<Bound<'py, PyBytes>> {
+        bytes.py().check_signals()?;
+        Ok(bytes)
+    }
+
     fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Made<'py, (Bound<'py, PyBytes>,)>> {
         py.check_signals()?;
-        let make = wrap_pyfunction!(_piece, py)?.into_any();
+        let make = py.get_type::<Self>().getattr("_from_bytes")?;
         Ok((make, (PyBytes::new(py, &self.whole[self.part.clone()]),)))
     }
-}
-
-/// A piece as it comes out of a pickle.
-#[pyfunction]
-pub(crate) fn _piece(bytes: Bound<'_, PyBytes>) -> PyResult<Bound<'_, PyBytes>> {
-    bytes.py().check_signals()?;
-    Ok(bytes)
 }
 
 /// Bytes as pieces, for a pickle.

@@ -37,6 +37,7 @@ __all__ = [
     "Schedule",
     "Table",
     "Trajectory",
+    "_Piece",
     "batch",
     "command",
     "compare",
@@ -92,6 +93,11 @@ class _Moved(_Value):
     # Changed in place.
     def __copy__(self) -> Self: ...
     def __deepcopy__(self, _memo: dict[int, Any], /) -> Self: ...
+
+@final
+class _Piece:
+    # A part of the bytes of a pickle.
+    def __reduce__(self) -> tuple[Any, tuple[bytes]]: ...
 
 @final
 class Table(_Value):
