@@ -41,6 +41,8 @@ SCENE: dict[str, Any] = {
     "law": {"name": "latency", "exponent": 5, "rate_coefficient": "2e4 /s"},
 }
 SQUEEZE = [{"to": "5 mm", "rate": "500 mm/min", "hold": "2 s"}]
+# What pickles keep bytes in.
+PIECE = "palpate._palpate", "_Piece"
 # What a damaged state may be answered with; PalpateError is a ValueError.
 ANSWERS = (ValueError, TypeError, OverflowError, pickle.UnpicklingError, EOFError)
 GIGABYTE = 1 << 30
@@ -199,6 +201,10 @@ def _dumped(make: Callable[[], Any]) -> str:
     return json.dumps(make())
 
 
+def _encoded(make: Callable[[], str]) -> bytes:
+    return make().encode("utf-8", "surrogatepass")
+
+
 def of_value(value: Any, at: str) -> Iterator[Damage]:
     """Damage to a value of JSON and to all inside it."""
     if isinstance(value, bool) or value is None:
@@ -305,17 +311,33 @@ def of_argument(value: Any, at: str, places: Callable[[int, int], Iterator[int]]
     """Damage to an argument of a maker."""
     if isinstance(value, str):
         yield from of_text(value, at, places)
+    elif isinstance(value, bytes) and value.startswith((b"{", b"[")):
+        for what, make in of_text(value.decode(), at, places):
+            yield what, partial(_encoded, make)
     elif isinstance(value, bytes):
         yield from of_bytes(value, at, places)
     elif isinstance(value, list):
         yield f"{at} without the last", partial(_same, value[:-1])
         yield f"{at} twice", partial(_same, value * 2)
         for place, inside in enumerate(value):
-            for what, make in of_argument(inside, f"{at}[{place}]", places):
+            # One piece is the whole.
+            alone = isinstance(inside, bytes) and len(value) == 1
+            for what, make in of_argument(inside, at if alone else f"{at}[{place}]", places):
                 yield what, partial(_inside, value, place, make)
     others: list[Any] = [None, 0, 2, -1, 2**40, "", b"", []]
     for other in others:
         yield f"{at} = {other!r}", partial(_same, other)
+
+
+def _plain(arguments: tuple[Any, ...]) -> tuple[Any, ...]:
+    """Arguments of a maker with the bytes of their pieces."""
+
+    def plain(argument: Any) -> Any:
+        if not isinstance(argument, list):
+            return argument
+        return [piece.__reduce__()[1][0] if type(piece).__name__ == PIECE[1] else piece for piece in argument]
+
+    return tuple(map(plain, arguments))
 
 
 class Made(NamedTuple):
@@ -338,7 +360,7 @@ class Careful(pickle._Unpickler):
     def find_class(self, module: str, name: str) -> Any:
         if (module, name) == ("builtins", "getattr"):
             return self.maker
-        if module == "palpate" and name in picklable():
+        if (module == "palpate" and name in picklable()) or (module, name) == PIECE:
             return Maker(name)
         raise pickle.UnpicklingError(f"{module}.{name} is not of palpate")
 
@@ -346,6 +368,8 @@ class Careful(pickle._Unpickler):
     def maker(of: Any, name: Any) -> Any:
         if not isinstance(of, Maker) or not isinstance(name, str) or not name.startswith("_from_"):
             raise pickle.UnpicklingError("no maker")
+        if of.name == PIECE[1]:
+            return lambda piece: piece
         return lambda *arguments: Made((of.name, name), arguments)
 
 
@@ -366,7 +390,7 @@ def cases(name: str, of: Any, seed: int, most: int = 4000) -> list[Case]:
     def places(count: int, share: int) -> Iterator[int]:
         yield from sorted(chance.sample(range(count), min(count, most // (2 * share) + 1)))
 
-    arguments = of.__reduce__()[1]
+    arguments = _plain(of.__reduce__()[1])
     found: list[Case] = []
     # One state and the number of its format, or several parts.
     alone = sum(not isinstance(argument, int) for argument in arguments) == 1
