@@ -219,6 +219,20 @@ fn a_sweep_that_was_killed_before_its_first_part_goes_on() {
     }
 }
 
+/// A table that was whole was not written again, and the temporary folder of the killed run stayed beside it.
+#[test]
+fn a_sweep_that_was_killed_behind_its_last_step_leaves_nothing() {
+    let folder = tempdir().unwrap();
+    let sweep = protocol(folder.path(), "law.exponent = \"1, 2\"");
+    let arguments = ["sweep", &sweep, "--out", "t.parquet"];
+    done(folder.path(), &arguments);
+    let before = names(folder.path());
+    fs::create_dir(folder.path().join(".palpate-x1y2z3")).unwrap();
+    fs::write(folder.path().join(".palpate-x1y2z3/lock"), "").unwrap();
+    done(folder.path(), &arguments);
+    assert_eq!(names(folder.path()), before);
+}
+
 #[test]
 fn a_sweep_that_was_killed_goes_on_and_nothing_is_lost_or_doubled() {
     let folder = tempdir().unwrap();

@@ -1,7 +1,7 @@
 //! All files of a report.
 
 use std::fs;
-use std::path::{Component, Path, PathBuf};
+use std::path::{Component, Path};
 
 use palpate_report::study::Bundle;
 
@@ -27,22 +27,28 @@ impl Stage {
     /// # Errors
     /// [`JobError`] where one of them cannot be written.
     pub fn bundle(&mut self, folder: &Path, bundle: &Bundle) -> Result<(), JobError> {
+        let written = fs::read_to_string(folder.join(MANIFEST)).unwrap_or_default();
+        let stale = stale_names(&written, bundle);
+        let names: String = bundle.files.iter().map(|(name, _)| format!("{name}\n")).collect();
+        // Whatever is there when a kill ends this is in the manifest of that moment, so that the next run takes it away.
+        let manifest = folder.join(MANIFEST);
+        self.bytes(&manifest, [&names, stale.join("\n").as_str()].concat().as_bytes())?;
         for (name, content) in &bundle.files {
             self.bytes(&folder.join(name), content)?;
         }
-        let names: String = bundle.files.iter().map(|(name, _)| format!("{name}\n")).collect();
-        self.bytes(&folder.join(MANIFEST), names.as_bytes())?;
-        stale_files(folder, bundle).into_iter().for_each(|path| self.remove(path));
+        if !stale.is_empty() {
+            self.bytes(&manifest, names.as_bytes())?;
+        }
+        stale.into_iter().for_each(|name| self.remove(folder.join(name)));
         Ok(())
     }
 }
 
-/// Files of an earlier run that this one does not write: they would speak of another record. Others' files stay.
-fn stale_files(folder: &Path, bundle: &Bundle) -> Vec<PathBuf> {
-    let written = fs::read_to_string(folder.join(MANIFEST)).unwrap_or_default();
+/// Files of an earlier run, by its manifest, that this one does not write: they would speak of another record. Others' files stay.
+fn stale_names<'a>(manifest: &'a str, bundle: &Bundle) -> Vec<&'a str> {
     let is_stale = |name: &&str| {
         let inside = Path::new(name).components().all(|part| matches!(part, Component::Normal(_)));
         inside && !bundle.files.iter().any(|(new, _)| new == name)
     };
-    written.lines().filter(is_stale).map(|name| folder.join(name)).collect()
+    manifest.lines().filter(is_stale).collect()
 }

@@ -24,8 +24,9 @@ pub(crate) use names::Names;
 pub use stage::{Stage, StagedFile};
 pub use target::check_folder;
 pub(crate) use target::{check_no_folder, unwritten, unwritten_table};
-use target::{check_regular, standing};
+use target::{check_regular, folder_of, standing};
 pub use temporary::abandon;
+use temporary::remove_stale;
 
 use crate::{ErrorKind, JobError};
 
@@ -52,6 +53,13 @@ pub fn keep_apart<R: AsRef<Path>, W: AsRef<Path>>(
             .iter()
             .filter(|out| !out.as_ref().is_dir())
             .try_for_each(|out| check_regular(out.as_ref(), out.as_ref())),
+    }
+}
+
+/// Removes the temporary folders that kills have left beside a file, of work that has nothing to write any more.
+pub(crate) fn remove_left_beside(file: &Path) {
+    if let Ok(target) = file.canonicalize() {
+        remove_stale(folder_of(&target));
     }
 }
 

@@ -186,21 +186,7 @@ fn moved(
         let found = temporaries.iter().find(|(of, _)| of == folder);
         found.map_or(folder, |(_, temporary)| temporary.path()).to_owned()
     };
-    let last = files.len() - usize::from(removed.is_empty()).min(files.len());
-    for (index, file) in files.iter().enumerate() {
-        let failed = |error| (file.named.clone(), error);
-        // The last step needs no way back.
-        let before_it =
-            (index < last && file.target.exists()).then(|| temporary(&file.target).join(format!("before-{index}")));
-        if let Some(kept) = &before_it {
-            kept_beside(&file.target, kept).map_err(failed)?;
-        }
-        before(Operation::Rename).and_then(|()| fs::rename(&file.written, &file.target)).map_err(failed)?;
-        done.push(Undo {
-            target: file.target.clone(),
-            before: before_it,
-        });
-    }
+    // First what goes: a manifest among the files may be the last that knows of it.
     for (index, path) in removed.iter().enumerate().filter(|(_, path)| path.exists()) {
         // Out of the way, and gone with the temporary folder.
         let Some((_, temporary)) = temporaries.first() else {
@@ -213,6 +199,20 @@ fn moved(
         done.push(Undo {
             target: path.clone(),
             before: Some(away),
+        });
+    }
+    for (index, file) in files.iter().enumerate() {
+        let failed = |error| (file.named.clone(), error);
+        // The last step needs no way back.
+        let needs_way_back = index + 1 < files.len() && file.target.exists();
+        let before_it = needs_way_back.then(|| temporary(&file.target).join(format!("before-{index}")));
+        if let Some(kept) = &before_it {
+            kept_beside(&file.target, kept).map_err(failed)?;
+        }
+        before(Operation::Rename).and_then(|()| fs::rename(&file.written, &file.target)).map_err(failed)?;
+        done.push(Undo {
+            target: file.target.clone(),
+            before: before_it,
         });
     }
     Ok(())
@@ -278,6 +278,9 @@ fn sync_folder(_: &Path) -> io::Result<()> {
 
 #[cfg(test)]
 mod tests {
+    use palpate_report::study::Bundle;
+
+    use super::super::write_bundle;
     use super::*;
 
     fn names(folder: &Path) -> Vec<String> {
@@ -312,6 +315,26 @@ mod tests {
         stage.bytes(&folder.path().join("new/deep/b"), b"2").unwrap();
         drop(stage);
         assert!(names(folder.path()).is_empty());
+    }
+
+    /// A kill before the last step left files of the run before, which no manifest knew any more.
+    #[test]
+    fn a_bundle_that_was_killed_at_any_step_leaves_nothing_to_the_next() {
+        let bundle = |names: &[&str]| Bundle {
+            files: names.iter().map(|name| ((*name).to_owned(), name.as_bytes().to_vec())).collect(),
+        };
+        for steps in 0..8 {
+            let folder = tempfile::tempdir().unwrap();
+            write_bundle(folder.path(), &bundle(&["old", "older", "same"])).unwrap();
+            let mut stage = Stage::default();
+            stage.bundle(folder.path(), &bundle(&["same", "killed"])).unwrap();
+            let goes = steps.min(stage.removed.len());
+            let comes = (steps - goes).min(stage.files.len());
+            assert!(moved(&stage.temporaries, &stage.files[..comes], &stage.removed[..goes], &mut Vec::new()).is_ok());
+            drop(stage);
+            write_bundle(folder.path(), &bundle(&["next"])).unwrap();
+            assert_eq!(names(folder.path()), [".palpate-files", "next"], "{steps}");
+        }
     }
 
     #[cfg(unix)]

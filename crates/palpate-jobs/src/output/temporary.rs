@@ -180,7 +180,7 @@ fn locked(folder: &Path) -> io::Result<Option<File>> {
 }
 
 /// Removes the temporary folders that nobody holds.
-fn remove_stale(folder: &Path) {
+pub(super) fn remove_stale(folder: &Path) {
     for entry in fs::read_dir(folder).into_iter().flatten().flatten() {
         let path = entry.path();
         if !entry.file_name().to_string_lossy().starts_with(PREFIX) || !path.is_dir() || path.is_symlink() {

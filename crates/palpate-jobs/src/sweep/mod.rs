@@ -23,7 +23,9 @@ use serde::{Deserialize, Serialize};
 pub use rows::{fields as sweep_fields, simulated as sweep_rows};
 
 use crate::depends::Dependencies;
-use crate::output::{Stage, check_ending, check_no_folder, keep_apart, unwritten_table, write_file};
+use crate::output::{
+    Stage, check_ending, check_no_folder, keep_apart, remove_left_beside, unwritten_table, write_file,
+};
 use crate::store::{Store, beside, depends_on};
 use crate::threads::over_threads;
 use crate::{JobError, Outcome};
@@ -126,6 +128,7 @@ impl Sweep {
                 // Killed after the table was whole: only its parts remain, or some of what was removed.
                 Store::open(&folder, "sweep", &digest, false)?.remove()?;
             }
+            remove_left_beside(out);
             return Ok(sweep.runs);
         }
         if !self.restart && found.is_some_and(|found| found != digest) {
