@@ -1,13 +1,13 @@
 """Interrupts of long work: how soon a command and a Python call end, and what they leave behind.
 
-    python validation/interrupts.py PALPATE [--times 5] [--seed 1] [--limit-s 0.2] [--write]
+    python validation/interrupts.py PALPATE [--times 5] [--seed 1] [--limit-s 0.2] [--only NAME] [--write]
 
 PALPATE is the command; the Python package has to be installed for the Python that runs this. Every job gets an input that takes more than
 2 s, found by trying larger ones. Commands hear SIGINT and SIGTERM at random times, calls of Python SIGINT. From the signal until the process
 has ended, or KeyboardInterrupt has been raised, at most --limit-s may pass; one second later the process may use no more than --busy-ms of
 processor time within 0.3 s, no file may have changed since, and no temporary file may be left. After parallel work in a process, a fork
-of it has to do the same work with the same result within 10 s. With --write the table goes to docs/validation/interrupts.md. Exit code 1
-if anything is not as required. The limits are those of a release build on an idle machine.
+of it has to do the same work with the same result within 10 s. With --write the table goes to docs/validation/interrupts.md, where rows of
+jobs that did not run stay as they are. Exit code 1 if anything is not as required. The limits are those of a release build on an idle machine.
 """
 
 import argparse
@@ -174,6 +174,7 @@ def calls():
         Work("fit_many, 30,000 lists", "palpate.fit_many([t] * 30_000, lists)", MANY + "; t = t.tolist(); lists = rows.tolist()", size=25, most=1000),
         Work("fit_many, a long curve each", "palpate.fit_many(t, rows, law='prony:4')", "t, y = hold(size); rows = np.array([y, y, y, y])", size=100_000, most=500_000),
         Work("compare", "palpate.compare(t, y)", HELD, size=5000, most=5_000_000),
+        Work("forecast", "palpate.forecast(t, y, 61 + t)", HELD, size=5000, most=5_000_000),
         Work("laws.latency", "palpate.laws.latency(t, 0, 1, 2, 5)", HELD, size=10_000_000, most=200_000_000),
         Work("read", "palpate.read(shared / 'record.csv')", **csv),
         Work("read_all", "palpate.read_all(shared / 'record.csv')", **csv),
@@ -440,6 +441,17 @@ def row(kind, work):
     return f"| {kind} | {work.name} | {work.takes_s:.1f} | {len(work.latencies)} | {latency} | {busy} | {summary(work.failures)} |"
 
 
+def written():
+    """The rows of the page as it is, by kind and job, and the jobs that are short; those that there are no more are left out."""
+    known = {*(("command", work.name) for work in commands()), *(("Python", work.name) for work in calls())}
+    known |= {("fork", f"{how}, {name}") for name in FORKS for how in FORKED}
+    lines = PAGE.read_text(encoding="utf-8").splitlines() if PAGE.exists() else []
+    cells = [(tuple(line.split(" | ")[:2]), line) for line in lines if line.startswith(("| command |", "| Python |", "| fork |"))]
+    rows = {(kind.removeprefix("| "), name): line for (kind, name), line in cells}
+    short = " ".join(lines).partition("Always below")[2].partition(": ")[2].rstrip(".").split(", ")
+    return {key: line for key, line in rows.items() if key in known}, [name for name in short if ("Python", name) in known]
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("palpate", type=pathlib.Path)
@@ -453,13 +465,11 @@ def main():
     parser.add_argument("--skip", action="append", default=[], choices=["commands", "calls", "forks"])
     parser.add_argument("--write", action="store_true", help="write the table to docs/validation/interrupts.md")
     requested = parser.parse_args()
-    rows, failed, short = [], 0, []
+    rows, short = written()
 
     def done(kind, work):
-        nonlocal failed
-        failed += bool(work.failures)
-        rows.append(row(kind, work))
-        print(rows[-1], flush=True)
+        rows[kind, work.name] = row(kind, work)
+        print(rows[kind, work.name], flush=True)
 
     with tempfile.TemporaryDirectory(prefix="interrupts-") as scratch:
         bench = Bench(requested.palpate.resolve(), requested.python, pathlib.Path(scratch), requested.patience_s)
@@ -474,8 +484,10 @@ def main():
                 chance = random.Random(f"{requested.seed} {kind} {work.name}")
                 try:
                     bench.size(work)
+                    short = [name for name in short if name != work.name]
                     if work.takes_s < SHORT_S:
                         short.append(work.name)
+                        rows.pop((kind, work.name), None)
                         continue
                     for number in numbers:
                         for _ in range(requested.times):
@@ -488,6 +500,7 @@ def main():
         if "forks" not in requested.skip:
             for work in forks(bench, requested.only):
                 done("fork", work)
+    failed = sum(not text.endswith("|  |") for text in rows.values())
     version = subprocess.run([requested.palpate, "--version"], capture_output=True, text=True, check=True).stdout.split()[1]
     page = f"""# Interrupts
 
@@ -503,7 +516,7 @@ python validation/interrupts.py PALPATE --times {requested.times} --seed {reques
 
 | what | job | takes, s | interrupts | worst latency, ms | processor time within 0.3 s, one second later, ms | failures |
 |---|---|--:|--:|--:|--:|---|
-{chr(10).join(rows)}
+{chr(10).join(rows.values())}
 
 {platform.system()} {platform.release().split("-")[0]}, {len(os.sched_getaffinity(0))} cores, CPython {platform.python_version()}. Inputs were made larger until a job took {LONG_S:.0f} s, or as large as memory
 allows.{f" Always below {1e3 * SHORT_S:.0f} ms: {', '.join(short)}." if short else ""}

@@ -1,16 +1,18 @@
 //! What an observer says after a tick, alone or as columns.
 
+use arrow_array::ArrayRef;
 use palpate::fit::Estimate;
 use palpate::grip::TimeToSlip;
 use palpate::number::significant;
 use palpate::observe::{Observation as Observed, Slip, SlipForecast};
+use palpate::watch::Cancelled;
 
 use palpate_report::result::{slips_word, word};
 use pyo3::prelude::*;
 use serde::{Deserialize, Serialize};
 
 use crate::shown::shown;
-use crate::table::{Table, columns};
+use crate::table::columns;
 
 /// What an observer says after a tick; None where something is not known.
 ///
@@ -55,8 +57,15 @@ macro_rules! attributes {
         }
 
         /// Observations as a table: a column for each attribute of `Observation`, numbers that are not known missing.
-        pub(crate) fn columns(all: &[Observed]) -> PyResult<Table> {
-            Table::of(columns!(all, $observed => $($name = $value),*))
+        /// `look` says before each column of millions of rows whether it is still wanted.
+        pub(crate) fn columns(
+            all: &[Observed],
+            look: impl Fn() -> Result<(), Cancelled>,
+        ) -> Result<Vec<(&'static str, ArrayRef)>, Cancelled> {
+            Ok(vec![$({
+                look()?;
+                columns!(all, $observed => $name = $value).swap_remove(0)
+            }),*])
         }
     };
 }

@@ -237,14 +237,15 @@ shown! {
                 let place = displacement.as_ref().map(|column| column[index]);
                 all.push(watcher.feed(*time, place, *force).map_err(|error| Some((index, error)))?);
             }
-            Ok((watcher, all))
+            let columns = columns(&all, || heard.look()).map_err(|_| None)?;
+            Ok((watcher, columns))
         })?;
-        let (watcher, all) = watched.map_err(|refused: Option<(usize, ObserveError)>| match refused {
+        let (watcher, columns) = watched.map_err(|refused: Option<(usize, ObserveError)>| match refused {
             Some((index, error)) => refused_at(&format!("tick {index}: "), &error),
             None => refused_plainly::<PalpateError>(Cancelled),
         })?;
         self.watcher = watcher;
-        columns(&all)
+        Table::of(columns)
     }
 
     fn __eq__(&self, other: &Self) -> bool {

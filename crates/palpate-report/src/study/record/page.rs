@@ -7,9 +7,10 @@ use palpate::fit::TrendVerdict;
 use palpate::segment::{After, Phase};
 
 use super::{figures, method, tables};
-use palpate::watch::Watch;
+use palpate::watch::{Progress, Watch};
 
 use crate::document::{AnalysisDocument, Software};
+use crate::figure::Figure;
 use crate::number::significant;
 use crate::page::{Block, Page, Section};
 use crate::result::{Answer, ComparedRecord, Input, parameters_table};
@@ -27,14 +28,21 @@ pub fn analysis_bundle(
     watch: &mut dyn Watch,
 ) -> Result<Bundle, StudyError> {
     let mut bundle = Bundle::default();
-    let figures = [
-        Some(figures::record(analysis, "record")),
-        figures::strain_rates(analysis, "strain_rates"),
-        figures::holds(analysis, "holds"),
-        figures::residuals(analysis, "residuals"),
-        figures::trend(analysis, "trend"),
+    // A figure of millions of samples takes a while.
+    let mut look = |done: usize| watch.report(Progress::open("making the report", done));
+    let makes: [&dyn Fn() -> Option<Figure>; 5] = [
+        &|| Some(figures::record(analysis, "record")),
+        &|| figures::strain_rates(analysis, "strain_rates"),
+        &|| figures::holds(analysis, "holds"),
+        &|| figures::residuals(analysis, "residuals"),
+        &|| figures::trend(analysis, "trend"),
     ];
-    let figures: Vec<_> = figures.into_iter().flatten().collect();
+    let mut figures = Vec::with_capacity(makes.len());
+    for (done, make) in makes.into_iter().enumerate() {
+        look(done)?;
+        figures.extend(make());
+    }
+    look(figures.len())?;
     let compared = ComparedRecord::of_analysis(analysis, input.clone());
     let of_laws = comparison::figures::all(&compared, "");
     bundle.figures(figures.iter().chain(&of_laws), pictures, watch)?;
@@ -49,8 +57,12 @@ pub fn analysis_bundle(
         answer::verdicts(&answer).iter().for_each(|table| bundle.table(table));
         answer::parameters_of_holds(&compared, &answer).iter().for_each(|table| bundle.table(table));
     }
+    let mut look = |done: usize| watch.report(Progress::open("making the report", done));
+    look(0)?;
     tables::all(analysis).iter().for_each(|table| bundle.table(table));
+    look(1)?;
     let page = page(analysis, &input, &figures, which_law)?;
+    look(2)?;
     let document = AnalysisDocument::new(analysis, input);
     bundle.table(&parameters_table(&document.parameter_rows()));
     bundle.text("report.html", page.to_html());
@@ -67,7 +79,7 @@ struct WhichLaw {
 fn page(
     analysis: &Analysis,
     input: &Input,
-    figures: &[crate::figure::Figure],
+    figures: &[Figure],
     which_law: Option<WhichLaw>,
 ) -> Result<Page, StudyError> {
     let record = Section::new("The record")
