@@ -125,6 +125,11 @@ shown! {
         rmse: f64 = self.fit.rmse,
         /// Correlation of neighbouring residuals.
         residual_correlation: f64 = self.fit.residual_correlation,
+        /// The noise that the residuals show: "white", "AR(1)", "white and AR(1)", "1/f^1.0" and so on, with ", uneven" where its size
+        /// follows the signal or time.
+        noise: String = self.fit.noise_in_words(),
+        /// Samples that count as independent under that noise.
+        effective_samples: f64 = self.fit.effective_samples(),
         /// Samples fitted.
         samples: usize = self.fit.samples,
         /// Time of the first sample on the clock of the samples, s.

@@ -29,6 +29,11 @@ documents! {
         relative_rmse: Option<f64> = Some(fit.rmse / fit.amplitude().value.abs()).filter(|share| share.is_finite()),
         /// Correlation of neighbouring residuals.
         residual_correlation: f64 = fit.residual_correlation,
+        /// The noise that the residuals show: `white`, `AR(1)`, `white and AR(1)`, `1/f^1.0`, …, with `, uneven` where its size follows the
+        /// signal or time. Standard errors and intervals are for this noise and others that are likely.
+        noise: String = fit.noise_in_words(),
+        /// Samples that count as independent under that noise.
+        effective_samples: f64 = fit.effective_samples(),
         /// Samples fitted.
         samples: usize = fit.samples,
         /// Bayesian information criterion less the lowest of this hold (time domain).

@@ -125,7 +125,8 @@ impl Scaled {
         let known = solution.termination == Termination::Converged;
         let (ones, amplitudes) = ([1.0; 3], [scaled_v; 2]);
         let trust = (options.confidence, NoiseChoice::FromResiduals);
-        let assessed = Assessed::new(solution, &amplitudes[..size - 1], &ones[..size], self.fastest, trust, known);
+        let assessed =
+            Assessed::new(solution, &amplitudes[..size - 1], &ones[..size], self.fastest, trust, (known, false));
         let estimate = |value: f64, weights: &[f64], scale: Scale, unit: f64| {
             let gradient: Vec<f64> = weights[..size].iter().map(|weight| weight * unit).collect();
             assessed.estimate(value, &gradient, scale)
@@ -194,6 +195,7 @@ impl Scaled {
             residual_square,
             rmse: (residual_square / strains.len() as f64).sqrt(),
             residual_correlation: assessed.correlation,
+            uneven_noise: assessed.uneven,
             noise: assessed.noise,
             uncertainty: None,
             samples: strains.len(),

@@ -103,6 +103,9 @@ pub struct Fit {
     pub rmse: f64,
     /// Correlation of neighbouring residuals.
     pub residual_correlation: f64,
+    /// The size of the noise follows the signal or time.
+    #[serde(default)]
+    pub uneven_noise: bool,
     /// Correlation of the residuals, which intervals take into account.
     pub noise: NoiseModel,
     /// What intervals are made of; `None` where the data leave a parameter open.
@@ -210,6 +213,22 @@ impl Fit {
         };
         let size = covariance.len();
         Some((0..size).map(|i| (0..size).map(|j| if i == j { 1.0 } else { entry(i, j) }).collect()).collect())
+    }
+
+    /// The noise that the residuals show, in a word: its model, and `uneven` where its size follows the signal or time.
+    ///
+    /// ```
+    /// use palpate::fit::{LawOptions, Samples, fit_law};
+    /// use palpate::laws::Law;
+    /// use palpate::test_problems::noisy_hold;
+    /// let (times, values) = noisy_hold(400, 5.0, 1e-3);
+    /// let fit = fit_law(&Samples::new(&times, &values), "latency:5".parse::<Law>()?, &LawOptions::default())?;
+    /// assert_eq!((fit.noise_in_words().as_str(), fit.effective_samples()), ("white", 400.0));
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    #[must_use]
+    pub fn noise_in_words(&self) -> String {
+        if self.uneven_noise { format!("{}, uneven", self.noise) } else { self.noise.to_string() }
     }
 
     /// Samples that count as independent, given how residuals correlate.

@@ -15,8 +15,14 @@ impl Fitted {
         let (linear, scale) = (self.model.linear(), self.scaled.range);
         let searched = linear + solution.nonlinear.len();
         let units: Vec<f64> = (0..searched).map(|i| if i < linear { scale } else { 1.0 }).collect();
-        let assessed =
-            Assessed::new(solution, &self.amplitudes(), &units, scale, (options.confidence, options.noise), known);
+        let assessed = Assessed::new(
+            solution,
+            &self.amplitudes(),
+            &units,
+            scale,
+            (options.confidence, options.noise),
+            (known, self.scaled.roots.is_none()),
+        );
         let loading = if matches!(law, Law::Latency { .. }) { None } else { options.loading.clone() };
         let mut fit = Fit {
             loading,
@@ -65,6 +71,7 @@ impl Fitted {
             residual_square,
             rmse: mean_square.sqrt() * scale,
             residual_correlation: assessed.correlation,
+            uneven_noise: assessed.uneven,
             noise: assessed.noise,
             uncertainty: assessed.uncertainty,
             samples,

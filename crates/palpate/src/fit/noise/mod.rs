@@ -16,6 +16,9 @@
 //! count ([`Uncertainty`]). White residuals cost next to nothing: other kinds are tried where neighbours correlate, or where sums over blocks
 //! drift.
 //!
+//! Where squares of residuals follow the fitted values or time, the noise has another size from sample to sample: V = σ² D R D with D the
+//! standard deviations, and R estimated from residuals over D; for R = 1 the squares of the residuals themselves stand for D² (HC3).
+//!
 //! | file | what |
 //! |---|---|
 //! | `model.rs` | how noise correlates; a noise that was found, lags of residuals |
@@ -24,6 +27,7 @@
 //! | `likelihood.rs` | the restricted likelihood, and noise with slow parts |
 //! | `lagged.rs` | that of autoregressions |
 //! | `estimation.rs` | which noise left the residuals |
+//! | `spread.rs` | noise whose size changes along the hold |
 //! | `uncertainty.rs` | errors and intervals that follow |
 
 mod autoregression;
@@ -32,6 +36,7 @@ mod lagged;
 mod likelihood;
 pub(crate) mod model;
 mod rows;
+mod spread;
 pub(crate) mod uncertainty;
 
 pub use model::NoiseModel;

@@ -1,5 +1,7 @@
 //! How noise correlates, by sample; a noise that was found.
 
+use std::fmt;
+
 use serde::{Deserialize, Serialize};
 use smallvec::SmallVec;
 
@@ -48,6 +50,22 @@ pub enum NoiseModel {
         /// The longest correlation time, in samples.
         longest: f64,
     },
+}
+
+/// In one word: `white`, `AR(1)`, `AR(3)`, `white and AR(1)`, `1/f^1.2`, `white and 1/f^0.8`.
+impl fmt::Display for NoiseModel {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::White => f.write_str("white"),
+            Self::Autoregressive { .. } => f.write_str("AR(1)"),
+            Self::AutoregressiveOfOrder { order, .. } => write!(f, "AR({order})"),
+            Self::WhiteAndAutoregressive { .. } => f.write_str("white and AR(1)"),
+            Self::PowerLaw { exponent, share, .. } => {
+                let beside = if *share < 1.0 { "white and " } else { "" };
+                write!(f, "{beside}1/f^{exponent:.1}")
+            }
+        }
+    }
 }
 
 impl NoiseModel {

@@ -5,6 +5,7 @@ use smallvec::SmallVec;
 
 use super::model::{Lags, Likely, Noise};
 use super::rows::Columns;
+use super::spread::{Spread, by_residuals};
 use crate::fit::{Estimate, NoiseChoice, NoiseModel};
 use crate::optimise::{Cholesky, Few, Solution, Termination};
 use crate::statistics::{coverage_factor, dot, normal_factor, two_sided_p};
@@ -160,18 +161,21 @@ pub(crate) struct Assessed {
     pub(crate) uncertainty: Option<Uncertainty>,
     pub(crate) noise: NoiseModel,
     pub(crate) correlation: f64,
+    /// The size of the noise changes along the samples.
+    pub(crate) uneven: bool,
 }
 
 impl Assessed {
     /// Assesses a solution. `amplitudes` multiply the derivatives in its Jacobian, `units` bring linear, then nonlinear
-    /// parameters to the caller's, `unit` the signal; without `known` its parameters have no errors.
+    /// parameters to the caller's, `unit` the signal; without `known` its parameters have no errors, and where the noise `may_vary` its
+    /// size is looked at.
     pub(crate) fn new(
         solution: &Solution,
         amplitudes: &[f64],
         units: &[f64],
         unit: f64,
         (confidence, choice): (f64, NoiseChoice),
-        known: bool,
+        (known, may_vary): (bool, bool),
     ) -> Self {
         let (samples, size) = (solution.residuals.len(), units.len());
         let lags = Lags::of(&solution.residuals);
@@ -181,9 +185,18 @@ impl Assessed {
             (0..size).map(|i| (0..size).map(|j| entry(i, j)).collect()).collect()
         };
         let columns: Vec<&[f64]> = solution.columns.iter().chain(&solution.derivatives).map(Vec::as_slice).collect();
-        let noise = match choice {
-            NoiseChoice::White => Noise::white(&lags, freedom),
-            NoiseChoice::FromResiduals => Noise::of(&columns, &solution.residuals, &lags),
+        let spread = (may_vary && choice == NoiseChoice::FromResiduals)
+            .then(|| Spread::of(&solution.residuals, &fitted(solution), lags.correlations[0]))
+            .flatten();
+        let noise = match (choice, &spread) {
+            (NoiseChoice::White, _) => Noise::white(&lags, freedom),
+            (NoiseChoice::FromResiduals, None) => Noise::of(&columns, &solution.residuals, &lags),
+            (NoiseChoice::FromResiduals, Some(spread)) => {
+                let even: Vec<Vec<f64>> = columns.iter().map(|column| spread.even(column)).collect();
+                let views: Vec<&[f64]> = even.iter().map(Vec::as_slice).collect();
+                let residuals = spread.even(&solution.residuals);
+                Noise::of(&views, &residuals, &Lags::of(&residuals))
+            }
         };
         // A robust loss has its own s²; the noise of its residuals stands in the same ratio to it as that of plain ones.
         let ratio = solution.variance * freedom / solution.residual_square;
@@ -191,8 +204,15 @@ impl Assessed {
         let finite = |rows: &Vec<Vec<f64>>| rows.iter().flatten().all(|entry| entry.is_finite());
         let inverse = solution.inverse_normal.as_deref().filter(|_| known);
         let white = inverse.map(|inverse| scaled(inverse, solution.variance)).filter(finite);
-        let correlated = (noise.model != NoiseModel::White).then(|| Columns::new(&columns));
+        let weighed: Option<Vec<Vec<f64>>> =
+            spread.as_ref().map(|spread| columns.iter().map(|column| spread.weighed(column)).collect());
+        let views: Option<Vec<&[f64]>> = weighed.as_ref().map(|weighed| weighed.iter().map(Vec::as_slice).collect());
+        let correlated = (noise.model != NoiseModel::White).then(|| Columns::new(views.as_ref().unwrap_or(&columns)));
         let sandwich = |inverse: &[f64], model: NoiseModel, variance: f64| match &correlated {
+            None if spread.is_some() => {
+                let filling = by_residuals(&columns, amplitudes, inverse, &solution.residuals);
+                scaled(&sandwiched(inverse, &filling, size), ratio)
+            }
             None => scaled(inverse, ratio * variance),
             Some(columns) => scaled(
                 &sandwiched(inverse, &with_amplitudes(columns.quadratic(model), amplitudes), size),
@@ -227,6 +247,7 @@ impl Assessed {
             uncertainty: uncertainty.filter(|found| finite(&found.covariance)),
             noise: noise.model,
             correlation: lags.correlations[0],
+            uneven: spread.is_some(),
         }
     }
 
@@ -249,7 +270,7 @@ impl Assessed {
             inverse_normal: Cholesky::new(&normal, size).map(|factor| factor.inverse()),
             termination: Termination::Converged,
         };
-        Self::new(&solution, &[], &vec![1.0; size], 1.0, (confidence, NoiseChoice::FromResiduals), true)
+        Self::new(&solution, &[], &vec![1.0; size], 1.0, (confidence, NoiseChoice::FromResiduals), (true, false))
     }
 
     /// From a covariance for white noise of this `deviation`, intervals widened by a factor for samples that count as fewer.
@@ -276,6 +297,7 @@ impl Assessed {
             uncertainty,
             noise,
             correlation,
+            uneven: false,
         }
     }
 
@@ -288,6 +310,15 @@ impl Assessed {
             _ => Estimate::fixed(value),
         }
     }
+}
+
+/// The curve of a solution: its columns times their amplitudes.
+fn fitted(solution: &Solution) -> Vec<f64> {
+    let mut values = vec![0.0; solution.residuals.len()];
+    for (column, amplitude) in solution.columns.iter().zip(&solution.linear) {
+        values.iter_mut().zip(column).for_each(|(value, entry)| *value += amplitude * entry);
+    }
+    values
 }
 
 /// JᵀRJ from that of columns and bare derivatives: the latter count times their amplitudes.
