@@ -56,6 +56,7 @@ mod _palpate {
         pickles::Piece,
         records::analysis::{Analysis, Finding},
         records::compare::{Comparison, RecordComparison, compare},
+        records::forecast::forecast,
         records::record::{Record, read, read_all},
         table::Table,
     };

@@ -79,6 +79,8 @@ fn documents_agree_with_their_schema_and_each_other() {
         (comparison, "HoldComparisonDocument"),
         (&comparison["laws"][0], "LawDocument"),
         (&comparison["verdict"], "VerdictDocument"),
+        (&comparison["forecast"], "HoldForecastDocument"),
+        (&comparison["forecast"]["at"][0], "ForecastedDocument"),
     ] {
         same_keys(value, &schema["$defs"][name]);
     }
@@ -89,6 +91,7 @@ fn documents_agree_with_their_schema_and_each_other() {
         "report.html",
         "comparison.md",
         "tables/laws.csv",
+        "figures/forecasts.svg",
         "figures/forward_errors.svg",
         "figures/spectra.svg",
     ] {
@@ -98,8 +101,10 @@ fn documents_agree_with_their_schema_and_each_other() {
     assert_eq!(&analysis["holds"][0]["comparison"], comparison);
     let study = folder.path().join("study");
     let page = std::fs::read_to_string(study.join("report.html")).unwrap();
-    let sentence = comparison["verdict"]["sentence"].as_str().unwrap();
-    assert!(page.contains(&sentence[..40]), "{sentence}");
+    for answer in ["verdict", "forecast"] {
+        let sentence = comparison[answer]["sentence"].as_str().unwrap();
+        assert!(page.contains(&sentence[..40]), "{sentence}");
+    }
     assert!(study.join("tables/laws.csv").exists() && study.join("figures/spectra.svg").exists());
     let without = json(folder.path(), &["analyze", &record, "--format", "json", "--no-compare", "--out", "study"]);
     assert!(without["holds"][0]["comparison"].is_null());

@@ -44,6 +44,7 @@ __all__ = [
     "convert",
     "fit_hold",
     "fit_many",
+    "forecast",
     "inspect",
     "latency",
     "law_names",
@@ -436,6 +437,8 @@ class Fit(_Value):
     residual_square: Final[float]
     rmse: Final[float]
     residual_correlation: Final[float]
+    noise: Final[str]
+    effective_samples: Final[float]
     samples: Final[int]
     start_s: Final[float]
     duration_s: Final[float]
@@ -467,6 +470,8 @@ class Comparison(_Value):
     law: Final[str | None]
     certainty: Final[str | None]
     sentence: Final[str | None]
+    reservation: Final[str | None]
+    forecast: Final[Table | None]
     laws: Final[Table]
     def to_dict(self) -> dict[str, Any]: ...
 
@@ -537,6 +542,16 @@ def compare(
     quantity: str = "force",
     cuts: Sequence[float] | None = None,
 ) -> Comparison: ...
+def forecast(
+    time_s: ArrayLike,
+    signal: ArrayLike,
+    at_s: ArrayLike,
+    *,
+    laws: Sequence[str] | None = None,
+    weights: ArrayLike | None = None,
+    quantity: str = "force",
+    confidence: float = 0.95,
+) -> Table: ...
 def simulate(path: _Path | None, text: str | None) -> Trajectory: ...
 def simulate_many(
     path: _Path | None,

@@ -26,7 +26,7 @@ pub(crate) struct Comparison {
     document: HoldComparisonDocument,
 }
 
-/// Fit laws to the first part of a hold, hold each against the rest, and say which to use.
+/// Fit laws to the first part of a hold, hold each against the rest, say which to use, and forecast what follows.
 ///
 /// Parameters
 /// ----------
@@ -63,17 +63,7 @@ pub(crate) fn compare(
 ) -> PyResult<Comparison> {
     let (times, values) = (doubles(time_s, "time_s")?, doubles(signal, "signal")?);
     let standard_deviations = standard_deviations_of(weights)?;
-    let (quantity, response) = match quantity {
-        "force" => (Quantity::Force, Response::Relaxation),
-        "strain" => (Quantity::Strain, Response::Relaxation),
-        "displacement" => (Quantity::Displacement, Response::Creep),
-        other => {
-            let message = format!(
-                "quantity is \"force\" or \"strain\" of a relaxation, or \"displacement\" of a creep, found {other:?}"
-            );
-            return Err(refused_plainly::<OptionError>(message));
-        }
-    };
+    let (quantity, response) = quantity_of(quantity)?;
     let usual = CompareOptions::default();
     let options = CompareOptions {
         laws: all_laws(&laws.unwrap_or_default())?,
@@ -96,6 +86,21 @@ pub(crate) fn compare(
     Ok(Comparison { document })
 }
 
+/// What a signal is, by its name, and what it answers to.
+pub(crate) fn quantity_of(name: &str) -> PyResult<(Quantity, Response)> {
+    match name {
+        "force" => Ok((Quantity::Force, Response::Relaxation)),
+        "strain" => Ok((Quantity::Strain, Response::Relaxation)),
+        "displacement" => Ok((Quantity::Displacement, Response::Creep)),
+        other => {
+            let message = format!(
+                "quantity is \"force\" or \"strain\" of a relaxation, or \"displacement\" of a creep, found {other:?}"
+            );
+            Err(refused_plainly::<OptionError>(message))
+        }
+    }
+}
+
 impl Comparison {
     fn verdict(&self, of: fn(&VerdictDocument) -> &String) -> Option<&str> {
         self.document.verdict.as_ref().map(|verdict| of(verdict).as_str())
@@ -111,6 +116,14 @@ shown! {
         certainty: Option<&str> = self.verdict(|verdict| &verdict.certainty),
         /// All that in one sentence.
         sentence: Option<&str> = self.verdict(|verdict| &verdict.sentence),
+        /// What stands against every law, so that the one named is the best approximation and no recommendation: "refuted" by the hold
+        /// itself, or "unpredictive"; None where nothing does.
+        reservation: Option<&str> = self.document.verdict.as_ref().and_then(|verdict| verdict.reservation.as_deref()),
+        /// What the hold will show next, from all laws together: ``elapsed_s``, ``value`` and the band ``low`` to ``high`` that covers a
+        /// sample in 95 of 100 holds. None where the hold is too short for that.
+        forecast: PyResult<Option<Table>> = self.document.forecast.as_ref().map(|found| Table::of(columns!(found.at, at =>
+            elapsed_s, value, low, high
+        ))).transpose(),
         /// The laws, best first, a row each.
         laws: PyResult<Table> = Table::of(columns!(self.document.laws, law =>
             law, effective_parameters, rmse, delta_aicc, delta_bic, forward_score, termination, error

@@ -2,5 +2,6 @@
 
 pub(crate) mod analysis;
 pub(crate) mod compare;
+pub(crate) mod forecast;
 pub(crate) mod kept;
 pub(crate) mod record;

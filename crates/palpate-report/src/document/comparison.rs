@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use palpate::fit::{Forecast, SampleChoice, SpectrumFit, SpectrumPeak};
-use palpate::forecast::{CompareOptions, Comparison, Row, Verdict};
+use palpate::forecast::{CompareOptions, Comparison, ForecastMember, Forecasted, HoldForecast, Row, Verdict};
 use palpate::segment::HoldStart;
 
 use super::settings::unusual;
@@ -85,12 +85,58 @@ documents! {
         error: Option<String> = without.map(ToString::to_string),
     }
 
+    /// A law, or a straight course, that is combined with others.
+    MemberDocument(member: &ForecastMember, weight: f64) {
+        /// Name of the law, or the course.
+        member: String = member.to_string(),
+        /// Its weight; those of all members add up to 1.
+        weight: f64 = weight,
+    }
+
+    /// The forecast at a time.
+    ForecastedDocument(elapsed: f64, found: Forecasted) {
+        /// Time since the start of the fit, s.
+        elapsed_s: f64 = elapsed,
+        /// The forecast, in the unit of the signal.
+        value: f64 = found.value,
+        /// Lower end of the band that covers a sample.
+        low: f64 = found.low,
+        /// Upper end.
+        high: f64 = found.high,
+    }
+
+    /// What the hold will show next, from all laws together.
+    HoldForecastDocument(comparison: &Comparison, forecast: &HoldForecast) with {
+        let at = |share: &f64| {
+            let elapsed = share * forecast.duration;
+            ForecastedDocument::new(elapsed, forecast.at(elapsed, FORECAST_CONFIDENCE))
+        };
+    } {
+        /// Duration of the hold so far, s.
+        duration_s: f64 = forecast.duration,
+        /// Confidence of the bands.
+        confidence: f64 = FORECAST_CONFIDENCE,
+        /// The forecast at times beyond the hold.
+        at: Vec<ForecastedDocument> = FORECAST_AT.iter().map(at).collect(),
+        /// What is combined.
+        members: Vec<MemberDocument> =
+            forecast.members.iter().map(|(member, weight)| MemberDocument::new(member, *weight)).collect(),
+        /// Number of cut points at which the combination was tried.
+        cuts: usize = forecast.cuts,
+        /// Root mean square error there, over the change until then and ln(t/T) + 0.1.
+        error: f64 = forecast.error,
+        /// The forecast in one sentence.
+        sentence: String = comparison.forecast_sentence().unwrap_or_default(),
+    }
+
     /// Which law to use.
     VerdictDocument(comparison: &Comparison, verdict: &Verdict) {
         /// The law with the fewest parameters among those that are not distinguishable from the best.
         law: String = verdict.law.to_string(),
         /// `clear`, `likely` or `open`.
         certainty: String = word(verdict.certainty),
+        /// `refuted` or `unpredictive` where every law is; this one is then the best approximation and no recommendation.
+        reservation: Option<String> = verdict.reservation.map(word),
         /// All laws that are not distinguishable from the best, this one included.
         indistinguishable: Vec<String> = verdict.indistinguishable.iter().map(ToString::to_string).collect(),
         /// Number of cut points at which no law predicts distinguishably better.
@@ -125,6 +171,9 @@ documents! {
         effective_samples: f64 = comparison.effective_samples,
         /// The laws, best first.
         laws: Vec<LawDocument> = rows.iter().map(|row| LawDocument::new(row, change, lowest, quantity)).collect(),
+        /// What the hold will show next; `null` where it is too short for that.
+        forecast: Option<HoldForecastDocument> =
+            comparison.forecast.as_ref().map(|forecast| HoldForecastDocument::new(comparison, forecast)),
         /// The law to use; `null` if none could be fitted.
         verdict: Option<VerdictDocument> =
             comparison.verdict.as_ref().map(|verdict| VerdictDocument::new(comparison, verdict)),
@@ -209,6 +258,12 @@ documents! {
         software: Software = Software::this(),
     }
 }
+
+/// Durations of the hold at which its forecast is stated.
+const FORECAST_AT: [f64; 5] = [1.0, 1.25, 1.5, 2.0, 3.0];
+
+/// Confidence of the bands of a forecast.
+const FORECAST_CONFIDENCE: f64 = 0.95;
 
 fn finite(value: f64) -> Option<f64> {
     Some(value).filter(|value| value.is_finite())

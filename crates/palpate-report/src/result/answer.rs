@@ -51,6 +51,8 @@ pub struct HoldAnswer {
     pub parameters: Parameters,
     /// Why its fit ended.
     pub termination: String,
+    /// `refuted` or `unpredictive` where every law is; this one is then the best approximation.
+    pub reservation: Option<String>,
     /// Root mean square error of its forecasts beyond the fitted parts, as a share of the change of the signal; `null` where the hold is
     /// too short to hold anything out.
     pub holdout_error: Option<f64>,
@@ -71,7 +73,7 @@ impl Answer {
             law: law.map(|law| law.to_string()),
             holds_agreeing: agreeing,
             holds_compared: judged.len(),
-            sentence: sentence(law, agreeing, judged.len()),
+            sentence: sentence(law, agreeing, &judged.iter().map(|(_, found)| *found).collect::<Vec<_>>()),
             holds: judged.iter().filter_map(|(hold, found)| HoldAnswer::new(hold, found)).collect(),
         }
     }
@@ -90,6 +92,7 @@ impl HoldAnswer {
             formula: fit.map(|fit| formula(fit, hold.quantity)),
             fit_start_s: hold.fit_start,
             parameters: fit.map(|fit| parameters_of(fit, hold.quantity)).unwrap_or_default(),
+            reservation: verdict.reservation.map(word),
             termination: fit.map_or_else(|| "converged".to_owned(), |fit| word(fit.termination)),
             holdout_error: row.forward.score.filter(|_| comparison.ranking == Ranking::Forward),
             indistinguishable: verdict
@@ -105,7 +108,14 @@ impl HoldAnswer {
     /// What the law predicts, how sure the choice is, and which other laws are not distinguishable from the best, in a sentence.
     #[must_use]
     pub fn statement(&self) -> String {
-        let mut text = match self.holdout_error {
+        let mut text = match self.reservation.as_deref() {
+            Some("refuted") => {
+                "No law describes this hold down to its noise; this is the best approximation. ".to_owned()
+            }
+            Some(_) => "No law predicts this hold; this one is the closest. ".to_owned(),
+            None => String::new(),
+        };
+        text += &match self.holdout_error {
             Some(error) => {
                 format!("Forecasts beyond the fitted parts miss by {} % of the change", significant(100.0 * error, 2))
             }
@@ -158,17 +168,28 @@ pub(crate) fn law_of_record(record: &ComparedRecord) -> Option<Law> {
     laws.into_iter().min_by(order)
 }
 
-fn sentence(law: Option<Law>, agreeing: usize, compared: usize) -> String {
+fn sentence(law: Option<Law>, agreeing: usize, judged: &[&Comparison]) -> String {
     let Some(law) = law else {
         return "No law can be recommended: no hold has enough samples and change to compare laws on it.".to_owned();
     };
     let name = name_in_words(law);
+    let compared = judged.len();
+    let reserved = judged
+        .iter()
+        .filter(|found| found.verdict.as_ref().is_some_and(|verdict| verdict.reservation.is_some()));
+    let what = match reserved.count() {
+        0 => "Law for this record",
+        all if all == compared => {
+            "No law that was compared describes this record down to its noise. The best approximation"
+        }
+        _ => "Best approximation for this record, of which some holds refute every law",
+    };
     let which = match (agreeing, compared) {
         (_, 1) => "On the one hold compared".to_owned(),
         (agreeing, compared) if agreeing == compared => format!("On all {compared} holds"),
         (agreeing, compared) => format!("On {agreeing} of {compared} holds"),
     };
-    format!("Law for this record: {law}, {name}. {which} it is the best law or not distinguishable from the best.")
+    format!("{what}: {law}, {name}. {which} it is the best law or not distinguishable from the best.")
 }
 
 /// The most severe findings in words, cautions and warnings alone.

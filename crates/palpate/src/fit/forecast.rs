@@ -48,18 +48,11 @@ pub fn forecast(samples: &Samples<'_>, law: Law, options: &LawOptions, cut: f64)
         values: &samples.values[..fitted],
         standard_deviations: samples.standard_deviations.map(|standard_deviations| &standard_deviations[..fitted]),
     };
-    let curve = match law {
-        Law::Spectrum => spectrum_curve(&first, options)?,
-        _ => law_curve(&first, law, options)?,
-    };
+    let curve = condensed_curve(&first, law, options)?;
     let times: Vec<f64> = samples.times[fitted..].iter().map(|t| t - start).collect();
     let rest = Condensed::finer(&times, &samples.values[fitted..]);
     let (mut square, mut off, mut weight) = (rest.inside, 0.0, 0.0);
-    let remembers = !matches!(law, Law::Latency { .. } | Law::Spectrum);
-    let predicted = match &options.loading {
-        Some(loading) if remembers => curve.after(loading, &rest.times),
-        _ => curve.values(&rest.times),
-    };
+    let predicted = extrapolated(&curve, law, options, &rest.times);
     for ((value, root), predicted) in rest.values.iter().zip(&rest.roots).zip(predicted) {
         let error = root * predicted - value;
         square += error * error;
@@ -73,6 +66,23 @@ pub fn forecast(samples: &Samples<'_>, law: Law, options: &LawOptions, cut: f64)
         rmse: (square / weight).sqrt(),
         bias: off / weight,
     })
+}
+
+/// A law, or the spectrum, fitted to condensed samples.
+pub(crate) fn condensed_curve(samples: &Samples<'_>, law: Law, options: &LawOptions) -> Result<LawCurve, FitError> {
+    match law {
+        Law::Spectrum => spectrum_curve(samples, options),
+        _ => law_curve(samples, law, options),
+    }
+}
+
+/// What such a curve is at times since the first sample, after the loading if there is one.
+pub(crate) fn extrapolated(curve: &LawCurve, law: Law, options: &LawOptions, times: &[f64]) -> Vec<f64> {
+    let remembers = !matches!(law, Law::Latency { .. } | Law::Spectrum);
+    match &options.loading {
+        Some(loading) if remembers => curve.after(loading, times),
+        _ => curve.values(times),
+    }
 }
 
 /// The law fitted to condensed samples.

@@ -40,6 +40,7 @@ pub use crate::laws::ExponentChoice;
 pub use crate::optimise::{Termination, Work};
 pub use error::FitError;
 pub use forecast::{Forecast, forecast};
+pub(crate) use forecast::{condensed_curve, extrapolated};
 pub(crate) use global::{combinations, distinct};
 use global::{finalists, search};
 pub use joint::{
@@ -55,10 +56,9 @@ pub use options::{
     BootstrapOptions, ConstantChoice, FitOptions, IntervalMethod, LawOptions, Loss, NoiseChoice, SampleChoice,
 };
 pub use parameter::{Estimate, Interval, ParameterKind, ParameterName};
+pub(crate) use problem::Condensed;
 pub use problem::RedundantTerm;
-use problem::{
-    Condensed, Model, ModelParameter, Sampled, build, condense, condense_to, redundant_terms, searched_name,
-};
+use problem::{Model, ModelParameter, Sampled, build, condense, condense_to, redundant_terms, searched_name};
 pub use rate_domain::{fit_rates, fit_rates_watched};
 pub use result::{Domain, Fit, Parameter, ParameterRole, ParameterUnit};
 pub use samples::Samples;

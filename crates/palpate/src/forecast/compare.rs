@@ -1,8 +1,8 @@
 //! All laws on one hold, ranked.
 
 use super::verdict::judge;
-use super::{CompareOptions, Comparison, ForwardScore, Ranking, Row, criteria};
-use crate::fit::{Fit, FitError, LawOptions, Samples, SpectrumOptions, fit_law_watched, fit_spectrum};
+use super::{CompareOptions, Comparison, ForwardScore, HoldForecast, Ranking, Row, criteria};
+use crate::fit::{Fit, FitError, LawOptions, Samples, SpectrumFit, SpectrumOptions, fit_law_watched, fit_spectrum};
 use crate::laws::Law;
 use crate::statistics::{mean, noise_in_time};
 use crate::watch::{Cancelled, Progress, Unwatched, Watch};
@@ -80,6 +80,13 @@ pub fn compare_laws_watched(
         .filter_map(|row| row.fit.as_ref().ok())
         .min_by(|a, b| a.residual_square.total_cmp(&b.residual_square));
     let effective = closest.map_or(values.len() as f64, Fit::effective_samples);
+    let refuting = rows.iter().find_map(|row| row.spectrum.as_ref());
+    let effective = match (refuting, closest) {
+        (Some(spectrum), Some(closest)) if spectrum.residual_square < CLOSER * closest.residual_square => {
+            effective_beside(spectrum, times, values)
+        }
+        _ => effective,
+    };
     weigh(&mut rows, effective, values.len(), change);
     let ranking = if cuts.is_empty() { Ranking::Information } else { Ranking::Forward };
     let key = |row: &Row| match ranking {
@@ -87,6 +94,10 @@ pub fn compare_laws_watched(
         Ranking::Information => row.delta_bic.unwrap_or(f64::INFINITY),
     };
     rows.sort_by(|a, b| key(a).total_cmp(&key(b)));
+    let forecast = match options.forecast {
+        true => HoldForecast::of(samples, &laws, &options.fit, watch)?,
+        false => None,
+    };
     let mut comparison = Comparison {
         rows,
         ranking,
@@ -96,10 +107,28 @@ pub fn compare_laws_watched(
         noise,
         samples: values.len(),
         effective_samples: effective,
+        forecast,
         verdict: None,
     };
     comparison.verdict = judge(&comparison);
     Ok(comparison)
+}
+
+/// Where the spectrum leaves less than this share of what the closest law leaves, the residuals of that law are no noise.
+const CLOSER: f64 = 0.8;
+
+/// Samples that count as independent by the correlation of neighbouring residuals of the spectrum, as those of AR(1).
+fn effective_beside(spectrum: &SpectrumFit, times: &[f64], values: &[f64]) -> f64 {
+    /// As many say enough of their neighbours.
+    const MOST: usize = 1 << 16;
+    let first = values.len().saturating_sub(MOST) / 2;
+    let some = times.iter().zip(values).skip(first).take(MOST);
+    let residuals: Vec<f64> = some.map(|(t, y)| y - spectrum.predict(*t - times[0])).collect();
+    let square: f64 = residuals.iter().map(|residual| residual * residual).sum();
+    let product: f64 = residuals.windows(2).map(|pair| pair[0] * pair[1]).sum();
+    let correlation = (product / square).clamp(0.0, 0.999);
+    let correlation = if correlation.is_nan() { 0.0 } else { correlation };
+    (values.len() as f64 * (1.0 - correlation) / (1.0 + correlation)).max(2.0)
 }
 
 fn row(

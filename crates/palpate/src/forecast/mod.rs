@@ -5,6 +5,7 @@
 //! | `criteria.rs` | AICc and BIC; forward score: fit the first part of the hold, predict the rest |
 //! | `options.rs`, `result.rs` | options and results |
 //! | `compare.rs` | all laws on one hold, ranked |
+//! | `stacked/` | what the hold will show next, from all laws together |
 //! | `verdict.rs` | the law to use, its certainty, the cost of others |
 //! | `sentence.rs` | that in one sentence |
 
@@ -13,11 +14,13 @@ mod criteria;
 mod options;
 mod result;
 mod sentence;
+mod stacked;
 mod verdict;
 
 pub use compare::{KnownFit, compare_laws, compare_laws_watched};
 pub use criteria::{Criteria, ForwardScore, criteria};
 pub use options::{CompareOptions, RampChoice};
-pub use result::{Certainty, Comparison, Ranking, Row, Verdict};
+pub use result::{Certainty, Comparison, Ranking, Reservation, Row, Verdict};
 pub(crate) use sentence::listed;
 pub use sentence::name_in_words;
+pub use stacked::{ForecastMember, Forecasted, HoldForecast};

@@ -29,6 +29,8 @@ pub struct CompareOptions {
     pub ramps: RampChoice,
     /// Cut points as shares of the duration of the hold, each between 0 and 1.
     pub cuts: Vec<f64>,
+    /// Whether the laws are combined to a forecast of what follows the hold too.
+    pub forecast: bool,
 }
 
 impl Default for CompareOptions {
@@ -38,6 +40,7 @@ impl Default for CompareOptions {
             fit: LawOptions::default(),
             ramps: RampChoice::default(),
             cuts: vec![0.25, 1.0 / 3.0, 0.5],
+            forecast: true,
         }
     }
 }

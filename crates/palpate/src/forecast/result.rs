@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::{Criteria, ForwardScore};
+use super::{Criteria, ForwardScore, HoldForecast};
 use crate::fit::{Fit, FitError, SpectrumFit};
 use crate::laws::Law;
 
@@ -66,6 +66,8 @@ pub struct Comparison {
     pub samples: usize,
     /// Samples that count as independent, by the residuals of the closest fit.
     pub effective_samples: f64,
+    /// What the hold will show next, from all laws together; `None` where it is too short, or nobody wants it.
+    pub forecast: Option<HoldForecast>,
     /// Which law to use; `None` if none could be fitted.
     pub verdict: Option<Verdict>,
 }
@@ -75,12 +77,23 @@ pub struct Comparison {
 #[serde(rename_all = "snake_case")]
 pub enum Certainty {
     /// Not distinguishable from the best at every cut point, as is no other law but its generalisations; the error of every other law is
-    /// at least twice as large.
+    /// at least twice as large, and its own is that of the noise.
     Clear,
-    /// Best in the mean.
+    /// Best in the mean, and its forecasts miss by no more than the noise.
     Likely,
-    /// Most laws that are no generalisation of the chosen one are not distinguishable from it.
+    /// Nothing is held out, forecasts miss by more than the noise, every law is refuted, or most that are no generalisation of the chosen one
+    /// are not distinguishable from it.
     Open,
+}
+
+/// What stands against every law.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Reservation {
+    /// Each is refuted by the hold itself: its BIC at the effective number of samples exceeds the lowest by more than 10.
+    Refuted,
+    /// The forecasts of each miss by more than a third of the change.
+    Unpredictive,
 }
 
 /// Which law to use.
@@ -93,6 +106,8 @@ pub struct Verdict {
     pub indistinguishable: Vec<Law>,
     /// Certainty of the verdict.
     pub certainty: Certainty,
+    /// What stands against this law and every other, so that it is the best approximation and no recommendation.
+    pub reservation: Option<Reservation>,
     /// Cut points at which it was best or alike.
     pub cuts_won: usize,
     /// What every other law costs: its error over that of the chosen one (forward), or its excess of BIC (information).

@@ -1,6 +1,6 @@
 //! A verdict in one sentence.
 
-use super::result::{Certainty, Comparison, Ranking, Verdict};
+use super::result::{Certainty, Comparison, Ranking, Reservation, Verdict};
 use crate::laws::{ExponentChoice, Law};
 
 /// Beyond this many times a cost is no longer reported exactly.
@@ -10,7 +10,44 @@ const MOST_TIMES: f64 = 1000.0;
 const NOTHING_HELD_OUT: &str = "The hold is too short, or changes too little, for a part of it to be held out, so that nothing tells what a law \
     predicts: laws are ranked by how closely they fit for their parameters (BIC). ";
 
+/// Stated in place of a choice.
+const REFUTED: &str = "No law that was compared describes this hold down to its noise (BIC)";
+/// See [`REFUTED`].
+const UNPREDICTIVE: &str = "No law that was compared predicts this hold";
+
 impl Comparison {
+    /// What the hold will show next, in one sentence; `None` without a forecast.
+    ///
+    /// ```
+    /// use palpate::forecast::{CompareOptions, compare_laws};
+    /// use palpate::fit::Samples;
+    /// let times: Vec<f64> = (0..400).map(|i| 0.1 * f64::from(i)).collect();
+    /// let values: Vec<f64> = times.iter().map(|t| 1.0 + 2.0 / (1.0 + 0.5 * t)).collect();
+    /// let comparison = compare_laws(&Samples::new(&times, &values), &CompareOptions::default())?;
+    /// // From 1.095 at 39.9 s, after a change of 1.905, to 1 + 2/(1 + 0.5 · 79.8) = 1.0489 at 79.8 s.
+    /// let sentence = comparison.forecast_sentence().unwrap();
+    /// assert!(sentence.starts_with("When the hold has lasted twice as long, the signal will have changed by another 2.4 % ["), "{sentence}");
+    /// # Ok::<(), palpate::fit::FitError>(())
+    /// ```
+    #[must_use]
+    pub fn forecast_sentence(&self) -> Option<String> {
+        const CONFIDENCE: f64 = 0.95;
+        let forecast = self.forecast.as_ref()?;
+        let last = forecast.at(forecast.duration, CONFIDENCE).value;
+        let next = forecast.at(2.0 * forecast.duration, CONFIDENCE);
+        // In the direction in which it has changed.
+        let share = |value: f64| 100.0 * (value - last) / forecast.change * forecast.direction;
+        let ends = [share(next.low), share(next.high)];
+        Some(format!(
+            "When the hold has lasted twice as long, the signal will have changed by another {} % [{}, {}] of its change so far, by the \
+             combination of laws that has predicted this hold best at {} cut points.",
+            rounded(share(next.value)),
+            rounded(ends[0].min(ends[1])),
+            rounded(ends[0].max(ends[1])),
+            forecast.cuts
+        ))
+    }
+
     /// The law to use, its certainty, and the cost of others, in one sentence; `None` without a verdict.
     ///
     /// ```
@@ -31,11 +68,13 @@ impl Comparison {
         let row = self.rows.iter().find(|row| row.law == verdict.law)?;
         // What the choice rests on goes before it where that is little.
         let mut text = if self.ranking == Ranking::Information { NOTHING_HELD_OUT.to_owned() } else { String::new() };
-        text.push_str(&format!("Use {} ({} parameters); ", name_in_words(row.law), rounded(row.effective_parameters)));
-        text.push_str(match verdict.certainty {
-            Certainty::Clear => "that is clear",
-            Certainty::Likely => "that is likely",
-            Certainty::Open => "that is open, since most laws are not distinguishable from it",
+        let named = format!("{} ({} parameters)", name_in_words(row.law), rounded(row.effective_parameters));
+        text.push_str(&match (verdict.reservation, verdict.certainty) {
+            (Some(Reservation::Refuted), _) => format!("{REFUTED}; the best approximation is {named}"),
+            (Some(Reservation::Unpredictive), _) => format!("{UNPREDICTIVE}; the closest is {named}"),
+            (None, Certainty::Clear) => format!("Use {named}; that is clear"),
+            (None, Certainty::Likely) => format!("Use {named}; that is likely"),
+            (None, Certainty::Open) => format!("Use {named}; that is open, since {}", self.why_open(verdict)),
         });
         if self.ranking == Ranking::Forward {
             text.push_str(&self.predicted(verdict));
@@ -56,6 +95,16 @@ impl Comparison {
         }
         text.push('.');
         Some(text)
+    }
+
+    fn why_open(&self, verdict: &Verdict) -> &'static str {
+        if 2 * verdict.indistinguishable.len() > self.rows.len() {
+            "most laws are not distinguishable from it"
+        } else if self.ranking == Ranking::Information {
+            "no forecast was tried"
+        } else {
+            "its forecasts miss by more than the noise"
+        }
     }
 
     /// What the chosen law predicts, and where it is best.

@@ -1,6 +1,6 @@
 //! The law to use, its certainty, and the cost of others.
 
-use super::result::{Certainty, Comparison, Ranking, Row, Verdict};
+use super::result::{Certainty, Comparison, Ranking, Reservation, Row, Verdict};
 use crate::laws::Law;
 
 /// Errors within this factor of the best count as alike.
@@ -11,6 +11,16 @@ const SHARE_OF_NOISE: f64 = 0.1;
 
 /// Differences of BIC within which laws are alike ("positive" evidence begins here in the scale of Kass and Raftery).
 const EVIDENCE: f64 = 2.0;
+
+/// A difference of BIC beyond which a law is refuted ("very strong" evidence in the scale of Kass and Raftery).
+const REFUTED: f64 = 10.0;
+
+/// A choice is more than open only where its forecasts miss by no more than this many standard deviations of the noise, or by this share
+/// of the change: on real holds those of no law mostly do, and then the law that was best so far is best in the rest in 3 of 10.
+const AT_NOISE: (f64, f64) = (1.25, 1e-4);
+
+/// A law whose forecasts miss by more than this share of the change predicts nothing.
+const UNPREDICTIVE: f64 = 1.0 / 3.0;
 
 impl Comparison {
     /// The figure that laws are ranked by: forward error as a share of the change of the signal, or excess of BIC.
@@ -35,7 +45,14 @@ impl Comparison {
 pub(super) fn judge(comparison: &Comparison) -> Option<Verdict> {
     let figures = || comparison.rows.iter().filter_map(|row| comparison.figure(row).map(|figure| (row, figure)));
     let any_good = figures().any(|(row, _)| row.is_good());
-    let usable = || figures().filter(move |(row, _)| row.is_good() || !any_good);
+    // The spectrum has no parameters to report; it may refute a law, and gives way to one that it does not refute.
+    let is_law = |row: &Row| row.is_good() && row.law != Law::Spectrum;
+    let stands = move |row: &Row| is_law(row) && row.delta_bic.is_some_and(|bic| bic <= REFUTED);
+    let any_stands = figures().any(|(row, _)| stands(row));
+    let usable = || {
+        let good = figures().filter(move |(row, _)| row.is_good() || !any_good);
+        good.filter(move |(row, _)| !any_stands || stands(row) || row.law == Law::Spectrum)
+    };
     let best = usable().next()?.1;
     let alike: Vec<(&Row, f64)> = usable().filter(|(_, figure)| comparison.indistinguishable(*figure, best)).collect();
     // A spectrum has no parameters to carry to another test, so a law that is not distinguishable from it goes first.
@@ -51,7 +68,8 @@ pub(super) fn judge(comparison: &Comparison) -> Option<Verdict> {
     });
     let cuts_won = (0..comparison.cuts.len()).filter(|&cut| wins(comparison, chosen, cut)).count();
     let next = usable().map(|(_, figure)| figure).find(|figure| !comparison.indistinguishable(*figure, best));
-    let apart = next.is_some_and(|next| match comparison.ranking {
+    let any_refuted = any_stands && figures().any(|(row, _)| is_law(row) && !stands(row));
+    let apart = next.map_or(any_refuted, |next| match comparison.ranking {
         Ranking::Forward => next >= 2.0 * figure,
         Ranking::Information => next - figure >= 10.0,
     });
@@ -59,7 +77,15 @@ pub(super) fn judge(comparison: &Comparison) -> Option<Verdict> {
     let alternative = |law: Law| !law.contains(chosen.law);
     let alternatives = usable().filter(|(row, _)| alternative(row.law)).count();
     let alike_alternatives = alike.iter().filter(|(row, _)| alternative(row.law)).count();
-    let certainty = if 2 * alike_alternatives > alternatives {
+    let reservation = match figure {
+        _ if !any_stands && figures().any(|(row, _)| is_law(row)) => Some(Reservation::Refuted),
+        error if comparison.ranking == Ranking::Forward && error > UNPREDICTIVE => Some(Reservation::Unpredictive),
+        _ => None,
+    };
+    let limit = AT_NOISE.0 * comparison.noise + AT_NOISE.1 * comparison.change;
+    let mut forecasts = chosen.forward.forecasts.iter().flatten();
+    let at_noise = comparison.ranking == Ranking::Forward && forecasts.all(|forecast| forecast.rmse <= limit);
+    let certainty = if reservation.is_some() || !at_noise || 2 * alike_alternatives > alternatives {
         Certainty::Open
     } else if apart && alike_alternatives == 0 && cuts_won == comparison.cuts.len() {
         Certainty::Clear
@@ -70,6 +96,7 @@ pub(super) fn judge(comparison: &Comparison) -> Option<Verdict> {
         law: chosen.law,
         indistinguishable: alike.iter().map(|(row, _)| row.law).collect(),
         certainty,
+        reservation,
         cuts_won,
         costs: costs.collect(),
     })

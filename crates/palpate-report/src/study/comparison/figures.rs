@@ -1,12 +1,12 @@
 //! Figures of compared laws.
 
 use palpate::fit::SpectrumFit;
-use palpate::forecast::{Comparison, Row};
+use palpate::forecast::{Comparison, Forecasted, HoldForecast, Row};
 use palpate::laws::Law;
 
 use crate::figure::{Axis, Figure, Layer, Panel, Role};
 use crate::number::significant;
-use crate::result::{ComparedHold, ComparedRecord, law_of_record};
+use crate::result::{ComparedHold, ComparedRecord, law_of_record, word};
 use crate::study::findings::entry;
 use crate::study::grid::by_hold;
 
@@ -21,10 +21,54 @@ const STRETCHES: usize = 60;
 
 /// All figures of a compared record; their names end in `suffix`.
 pub(in crate::study) fn all(record: &ComparedRecord, suffix: &str) -> Vec<Figure> {
-    [forward_errors(record, suffix), law_residuals(record, suffix), spectra(record, suffix)]
-        .into_iter()
-        .flatten()
-        .collect()
+    [
+        forecasts(record, suffix),
+        forward_errors(record, suffix),
+        law_residuals(record, suffix),
+        spectra(record, suffix),
+    ]
+    .into_iter()
+    .flatten()
+    .collect()
+}
+
+/// What each hold will show next, up to three times its duration.
+fn forecasts(record: &ComparedRecord, suffix: &str) -> Option<Figure> {
+    const POINTS: usize = 81;
+    const FARTHEST: f64 = 3.0;
+    const CONFIDENCE: f64 = 0.95;
+    let holds: Vec<_> = record.verdicts().filter_map(|(hold, found)| Some((hold, found.forecast.as_ref()?))).collect();
+    let panel = |(hold, forecast): &(&ComparedHold, &HoldForecast)| {
+        let largest = hold.values.iter().fold(0.0, |most: f64, value| most.max(value.abs()));
+        let (unit, factor) = hold.quantity.for_people(largest);
+        let (measured, means) = averaged(hold, factor, |_| 0.0);
+        let end = forecast.duration;
+        let begin = measured.first().map_or(0.01 * end, |first| first.min(end));
+        let spaced = |from: f64, to: f64| -> Vec<f64> {
+            (0..POINTS).map(|i| from * (to / from).powf(i as f64 / (POINTS - 1) as f64)).collect()
+        };
+        let (before, beyond) = (spaced(begin, end), spaced(end, FARTHEST * end));
+        let found = |times: &[f64]| forecast.at_times(times, CONFIDENCE);
+        let column = |of: &[Forecasted], pick: fn(&Forecasted) -> f64| -> Vec<f64> {
+            of.iter().map(|at| factor * pick(at)).collect()
+        };
+        let (fitted, next) = (found(&before), found(&beyond));
+        let (low, high) = (column(&next, |at| at.low), column(&next, |at| at.high));
+        let value = [column(&fitted, |at| at.value), column(&next, |at| at.value)].concat();
+        Panel::new(Axis::log("Time", "s"), Axis::linear(word(hold.quantity), unit))
+            .title(hold.short_title())
+            .layer(Layer::vertical(end, Role::Reference))
+            .layer(Layer::band(beyond.clone(), low, high, Role::Fitted).label("95 % of samples"))
+            .layer(Layer::points(measured, means, Role::Measured).label("measured, means"))
+            .layer(Layer::line([before, beyond].concat(), value, Role::Fitted).label("forecast"))
+    };
+    by_hold(
+        &format!("forecasts{suffix}"),
+        "What each hold will show next, up to three times its duration (line), from all laws together: each counts by what it has predicted of the hold so far. The band is for a sample; on published holds it covered what followed in 19 of 20.",
+        (1.4 * 62.0, 62.0),
+        (&holds, "holds"),
+        panel,
+    )
 }
 
 /// Forward error of each law after each cut.
@@ -100,7 +144,7 @@ fn law_residuals(record: &ComparedRecord, suffix: &str) -> Option<Figure> {
         let mut rows: Vec<&Row> = comparison.rows.iter().filter(|row| row.is_good()).collect();
         rows.sort_by_key(|row| Some(row.law) != chosen);
         for (series, row) in rows.into_iter().take(MOST_RESIDUALS).enumerate() {
-            let (times, means) = averaged(hold, row, factor);
+            let (times, means) = averaged(hold, factor, |t| predicted(row, t));
             let label = if Some(row.law) == chosen { format!("{}, recommended", row.law) } else { row.law.to_string() };
             panel = panel.layer(Layer::line(times, means, Role::Series(series as u8)).label(label));
         }
@@ -117,13 +161,17 @@ fn law_residuals(record: &ComparedRecord, suffix: &str) -> Option<Figure> {
     )
 }
 
-/// Means of the residuals over stretches that are equally long in ln t, in the unit for people.
-fn averaged(hold: &ComparedHold, row: &Row, factor: f64) -> (Vec<f64>, Vec<f64>) {
-    let predict = |t: f64| match (&row.spectrum, &row.fit) {
+/// What a law fitted to the whole hold is at a time.
+fn predicted(row: &Row, t: f64) -> f64 {
+    match (&row.spectrum, &row.fit) {
         (Some(spectrum), _) => spectrum.predict(t),
         (None, Ok(fit)) => fit.predict(t),
         (None, Err(_)) => f64::NAN,
-    };
+    }
+}
+
+/// Means of what is measured less a curve over stretches that are equally long in ln t, in the unit for people.
+fn averaged(hold: &ComparedHold, factor: f64, curve: impl Fn(f64) -> f64) -> (Vec<f64>, Vec<f64>) {
     // The first sample is at time zero, which a logarithm has no place for.
     let first = hold.times.partition_point(|t| *t <= 0.0);
     let (times, values) = (&hold.times[first..], &hold.values[first..]);
@@ -134,7 +182,7 @@ fn averaged(hold: &ComparedHold, row: &Row, factor: f64) -> (Vec<f64>, Vec<f64>)
     for (t, y) in times.iter().zip(values) {
         let place = (t / start).ln() / (end / start).ln() * STRETCHES as f64;
         let stretch = &mut sums[(place as usize).min(STRETCHES - 1)];
-        *stretch = (stretch.0 + t.ln(), stretch.1 + factor * (y - predict(*t)), stretch.2 + 1);
+        *stretch = (stretch.0 + t.ln(), stretch.1 + factor * (y - curve(*t)), stretch.2 + 1);
     }
     let filled = sums.into_iter().filter(|(.., count)| *count > 0);
     filled.map(|(ln_t, sum, count)| ((ln_t / count as f64).exp(), sum / count as f64)).unzip()
@@ -217,7 +265,7 @@ mod tests {
             findings: Vec::new(),
         };
         for row in &comparison.rows {
-            let (times, means) = averaged(&hold, row, 1.0);
+            let (times, means) = averaged(&hold, 1.0, |t| predicted(row, t));
             assert!(times.windows(2).all(|pair| pair[0] < pair[1]) && times.len() <= STRETCHES);
             let late = &means[means.len() - 5..];
             assert!(late.iter().all(|mean| mean.abs() < 0.5 * comparison.noise), "{}: {late:?}", row.law);

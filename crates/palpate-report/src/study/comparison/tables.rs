@@ -120,8 +120,9 @@ pub(in crate::study) fn verdict_text(record: &ComparedRecord) -> String {
         [(hold, comparison)] => {
             let table = laws_of_hold(record, hold).map(|table| table.to_plain_text()).unwrap_or_default();
             let notes: String = NOTES.iter().map(|note| wrapped(note)).collect();
-            let sentence = comparison.sentence().map(|sentence| wrapped(&sentence)).unwrap_or_default();
-            format!("{table}{sentence}{notes}\n")
+            let sentences = comparison.forecast_sentence().into_iter().chain(comparison.sentence());
+            let sentences: String = sentences.map(|sentence| wrapped(&sentence)).collect();
+            format!("{table}{sentences}{notes}\n")
         }
         _ => String::new(),
     }

@@ -13,7 +13,8 @@ pub(crate) mod model;
 pub(crate) mod redundant;
 
 pub(super) use build::build;
-pub(super) use condensed::{Condensed, condense, condense_to};
+pub(crate) use condensed::Condensed;
+pub(super) use condensed::{condense, condense_to};
 pub(super) use model::{Model, ModelParameter, Sampled, searched_name};
 pub use redundant::RedundantTerm;
 pub(super) use redundant::redundant_terms;

@@ -1,6 +1,7 @@
 //! What laws take, how they meet in their limits, and which of them is chosen.
 
 mod choosing;
+mod forecasts;
 mod inputs;
 mod limits;
 mod options;

@@ -1,0 +1,56 @@
+"""Forecasts of holds: close to what comes, the same as in a comparison, and refused where nothing is known."""
+
+from __future__ import annotations
+
+import numpy as np
+import palpate
+import pytest
+from numpy.typing import NDArray
+
+
+def relaxed(t: NDArray[np.float64], seed: int = 1) -> NDArray[np.float64]:
+    return np.asarray(1 + 2 * (1 + 4 * t) ** -0.25 + np.random.default_rng(seed).normal(0.0, 2e-3, len(t)))
+
+
+def test_what_follows_lies_in_the_band() -> None:
+    t = np.linspace(5.0, 65.0, 900)
+    y = relaxed(t - 5.0)
+    table = palpate.forecast(t[:300], y[:300], t[300:])
+    assert table.column_names == ["at_s", "value", "low", "high"] and len(table) == 600
+    assert np.mean((table["low"] <= y[300:]) & (y[300:] <= table["high"])) > 0.95
+    assert np.sqrt(np.mean((table["value"] - y[300:]) ** 2)) < 2 * 2e-3
+    narrow = palpate.forecast(t[:300], y[:300], t[300:], confidence=0.5)
+    assert np.all(narrow["high"] - narrow["low"] < table["high"] - table["low"])
+
+
+def test_a_comparison_states_the_same_forecast() -> None:
+    t = np.linspace(0.0, 20.0, 300)
+    y = relaxed(t)
+    comparison = palpate.compare(t, y, laws=["latency", "prony:2", "spectrum"])
+    stated = comparison.forecast
+    assert stated is not None
+    table = palpate.forecast(t, y, stated["elapsed_s"], laws=["latency", "prony:2", "spectrum"])
+    assert list(table["value"]) == list(stated["value"]) and list(table["high"]) == list(stated["high"])
+    members = comparison.to_dict()["forecast"]["members"]
+    assert sum(member["weight"] for member in members) == pytest.approx(1.0)
+
+
+def test_what_tells_nothing_is_refused() -> None:
+    t = np.arange(12.0)
+    with pytest.raises(palpate.FitError, match="too short"):
+        palpate.forecast(t, 1 + np.exp(-t / 4), [20.0])
+    t = np.linspace(0.0, 20.0, 300)
+    with pytest.raises(palpate.OptionError, match="from the first sample on, found -1"):
+        palpate.forecast(t, relaxed(t), [-1.0])
+    with pytest.raises(palpate.OptionError, match="between 0 and 1, found 95"):
+        palpate.forecast(t, relaxed(t), [30.0], confidence=95)
+    with pytest.raises(palpate.OptionError, match='no law is called "x"'):
+        palpate.forecast(t, relaxed(t), [30.0], laws=["x"])
+
+
+def test_laws_that_the_hold_refutes_are_not_recommended() -> None:
+    t = np.linspace(0.0, 60.0, 900)
+    comparison = palpate.compare(t, relaxed(t), laws=["standard-linear-solid", "prony:2", "spectrum"])
+    assert comparison.reservation == "refuted" and comparison.certainty == "open"
+    assert comparison.sentence is not None and comparison.sentence.startswith("No law that was compared")
+    assert palpate.compare(t, relaxed(t)).reservation is None
