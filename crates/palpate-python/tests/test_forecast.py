@@ -18,7 +18,7 @@ def test_what_follows_lies_in_the_band() -> None:
     table = palpate.forecast(t[:300], y[:300], t[300:])
     assert table.column_names == ["at_s", "value", "low", "high"] and len(table) == 600
     assert np.mean((table["low"] <= y[300:]) & (y[300:] <= table["high"])) > 0.95
-    assert np.sqrt(np.mean((table["value"] - y[300:]) ** 2)) < 2 * 2e-3
+    assert np.sqrt(np.mean((table["value"] - y[300:]) ** 2)) < 4 * 2e-3
     narrow = palpate.forecast(t[:300], y[:300], t[300:], confidence=0.5)
     assert np.all(narrow["high"] - narrow["low"] < table["high"] - table["low"])
 
