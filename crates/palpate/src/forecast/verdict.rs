@@ -53,7 +53,8 @@ pub(super) fn judge(comparison: &Comparison) -> Option<Verdict> {
         let good = figures().filter(move |(row, _)| row.is_good() || !any_good);
         good.filter(move |(row, _)| !any_stands || stands(row) || row.law == Law::Spectrum)
     };
-    let best = usable().next()?.1;
+    // Of laws that stand the best one; the spectrum may be as good as it, but not in its place.
+    let best = usable().find(|(row, _)| !any_stands || stands(row))?.1;
     let alike: Vec<(&Row, f64)> = usable().filter(|(_, figure)| comparison.indistinguishable(*figure, best)).collect();
     // A spectrum has no parameters to carry to another test, so a law that is not distinguishable from it goes first.
     let (chosen, figure) = *alike.iter().min_by(|(a, one), (b, other)| {
