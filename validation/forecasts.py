@@ -111,7 +111,8 @@ What the first {100 * requested.share:.0f} % of a hold says of the rest, on {len
 part of this repository. The forecast combines all laws, with weights from what each predicts within that first part. *Near*: holds in which
 its root mean square error is within 20 % of that of the law which turns out to be the best, in %; nobody knows that law before. *Ratio*: the
 median of one error over the other. *Covered*: holds in which the 95 % band contains 95 % of the samples that follow. Beside them the dense
-spectrum alone. The growth of the band was set on these holds. Not judged: {left_out} holds whose first part says nothing. One command writes this page:
+spectrum alone. Members, cuts, their importance, the ridge and the width of the band were chosen on
+these holds, among some sixty variants: other holds will do worse, by how much is not known. Not judged: {left_out} holds whose first part says nothing. One command writes this page:
 
 ```sh
 python validation/forecasts.py "$PALPATE_DATA" --share {requested.share:.4f} --fewest {requested.fewest} --write

@@ -28,7 +28,8 @@ const SOME: usize = 1 << 14;
 /// quantity
 ///     As for `compare`.
 /// confidence
-///     Of the band. One of 0.95 covers 95 % of what follows a real hold in 19 of 20 holds, up to three times its duration.
+///     Of the band. One of 0.95 covered 95 % of what followed in 19 of 20 of the measured holds on which its width was set, up to
+///     three times their duration.
 ///
 /// Returns
 /// -------

@@ -64,7 +64,7 @@ fn forecasts(record: &ComparedRecord, suffix: &str) -> Option<Figure> {
     };
     by_hold(
         &format!("forecasts{suffix}"),
-        "What each hold will show next, up to three times its duration (line), from all laws together: each counts by what it has predicted of the hold so far. The band is for a sample; on published holds it covered what followed in 19 of 20.",
+        "What each hold will show next, up to three times its duration (line), from all laws together: each counts by what it has predicted of the hold so far. The band is for a sample; it covered what followed in 19 of 20 of the measured holds on which its width was set.",
         (1.4 * 62.0, 62.0),
         (&holds, "holds"),
         panel,
