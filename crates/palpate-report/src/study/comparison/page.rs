@@ -1,7 +1,5 @@
 //! The page of compared laws.
 
-use palpate::forecast::Comparison;
-
 use super::{figures, tables};
 use palpate::watch::Watch;
 
@@ -58,18 +56,13 @@ pub fn comparison_bundle(
     Ok(bundle)
 }
 
-/// What a hold will show next, and which law to use for it.
-fn sentences(comparison: &Comparison) -> impl Iterator<Item = Block> {
-    comparison.forecast_sentence().into_iter().chain(comparison.sentence()).map(Block::Paragraph)
-}
-
 /// Which law to use on the holds of a record: sentences, tables, figures.
 pub(in crate::study) fn blocks(record: &ComparedRecord, figures: &[Figure]) -> Result<Vec<Block>, StudyError> {
     let mut blocks = Vec::new();
     let judged: Vec<_> = record.verdicts().collect();
     match judged.as_slice() {
         [] => return Ok(vec![Block::paragraph("No hold has enough samples and change to compare laws on it.")]),
-        [(_, comparison)] => blocks.extend(sentences(comparison)),
+        [(_, comparison)] => blocks.extend(tables::sentences(comparison).map(Block::Paragraph)),
         _ => {}
     }
     for figure in figures {
@@ -78,7 +71,7 @@ pub(in crate::study) fn blocks(record: &ComparedRecord, figures: &[Figure]) -> R
     for (hold, comparison) in judged.iter().take(MOST_PANELS) {
         if judged.len() > 1 {
             blocks.push(Block::Subheading(hold.title()));
-            blocks.extend(sentences(comparison));
+            blocks.extend(tables::sentences(comparison).map(Block::Paragraph));
         }
         blocks.extend(tables::laws_of_hold(record, hold).map(Block::Table));
     }

@@ -112,6 +112,11 @@ pub(in crate::study) fn laws(records: &[ComparedRecord], cuts: &[f64]) -> Table 
     law_columns(table, cuts)
 }
 
+/// What a hold will show next, and which law to use for it.
+pub(super) fn sentences(comparison: &Comparison) -> impl Iterator<Item = String> {
+    comparison.forecast_sentence().into_iter().chain(comparison.sentence())
+}
+
 /// All laws on the one hold of a record, for a terminal; nothing where there are several, for which the answer has a line each.
 pub(in crate::study) fn verdict_text(record: &ComparedRecord) -> String {
     let judged: Vec<_> = record.verdicts().collect();
@@ -120,8 +125,7 @@ pub(in crate::study) fn verdict_text(record: &ComparedRecord) -> String {
         [(hold, comparison)] => {
             let table = laws_of_hold(record, hold).map(|table| table.to_plain_text()).unwrap_or_default();
             let notes: String = NOTES.iter().map(|note| wrapped(note)).collect();
-            let sentences = comparison.forecast_sentence().into_iter().chain(comparison.sentence());
-            let sentences: String = sentences.map(|sentence| wrapped(&sentence)).collect();
+            let sentences: String = sentences(comparison).map(|sentence| wrapped(&sentence)).collect();
             format!("{table}{sentences}{notes}\n")
         }
         _ => String::new(),
@@ -140,9 +144,7 @@ pub fn comparison_text(records: &[ComparedRecord], left_out: &[LeftOut]) -> Stri
                 Some(table) => text.push_str(&table.to_plain_text()),
                 None => text.push_str(&format!("{}: nothing could be fitted.\n", hold.title())),
             }
-            if let Some(sentence) = hold.comparison.as_ref().and_then(Comparison::sentence) {
-                text.push_str(&wrapped(&sentence));
-            }
+            hold.comparison.iter().flat_map(sentences).for_each(|sentence| text.push_str(&wrapped(&sentence)));
             text.push('\n');
         }
         let found = findings::plain(&found);
