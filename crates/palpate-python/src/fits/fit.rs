@@ -377,6 +377,18 @@ pub(crate) fn standard_deviations_of(weights: Option<&Bound<'_, PyAny>>) -> PyRe
 /// Up to so many samples are fitted in a few milliseconds, without a thread.
 const BRIEF: usize = 20_000;
 
+/// Samples, with a standard deviation for each if they have some.
+pub(crate) fn samples_of<'a>(
+    times: &'a [f64],
+    values: &'a [f64],
+    standard_deviations: Option<&'a [f64]>,
+) -> Samples<'a> {
+    Samples {
+        standard_deviations,
+        ..Samples::new(times, values)
+    }
+}
+
 /// One fit, of samples that are there.
 pub(crate) fn fitted(
     times: &[f64],
@@ -385,9 +397,7 @@ pub(crate) fn fitted(
     requested: &Requested,
     watch: &mut dyn Watch,
 ) -> Result<Fit, palpate::fit::FitError> {
-    let samples = Samples::new(times, values);
-    let samples = standard_deviations
-        .map_or(samples, |standard_deviations| samples.with_standard_deviations(standard_deviations));
+    let samples = samples_of(times, values, standard_deviations);
     fit_law_watched(&samples, requested.law, &requested.options, watch)
 }
 

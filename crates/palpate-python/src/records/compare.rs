@@ -1,6 +1,6 @@
 //! Laws compared on one hold by what they predict.
 
-use palpate::fit::{LawOptions, Samples};
+use palpate::fit::LawOptions;
 use palpate::forecast::{CompareOptions, compare_laws_watched};
 use palpate::laws::Response;
 use palpate_jobs::input::Measurement;
@@ -13,7 +13,7 @@ use serde::{Deserialize, Serialize};
 use crate::arrays::doubles;
 use crate::errors::{FitError, OptionError, refused_plainly};
 use crate::files::all_laws;
-use crate::fits::fit::standard_deviations_of;
+use crate::fits::fit::{samples_of, standard_deviations_of};
 use crate::shown::shown;
 use crate::table::{Table, columns};
 use crate::work::{at_length, job, plain, printed};
@@ -75,10 +75,7 @@ pub(crate) fn compare(
         ..CompareOptions::default()
     };
     let compared = at_length(py, move |mut heard| {
-        let samples = Samples::new(&times, &values);
-        let samples = standard_deviations
-            .as_deref()
-            .map_or(samples, |standard_deviations| samples.with_standard_deviations(standard_deviations));
+        let samples = samples_of(&times, &values, standard_deviations.as_deref());
         compare_laws_watched(&samples, &options, &[], &mut heard)
     })?;
     let compared = compared.map_err(refused_plainly::<FitError>)?;

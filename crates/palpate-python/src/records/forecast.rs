@@ -1,6 +1,6 @@
 //! What a hold will show next.
 
-use palpate::fit::{LawOptions, Samples};
+use palpate::fit::LawOptions;
 use palpate::forecast::{CompareOptions, HoldForecast};
 use pyo3::prelude::*;
 
@@ -8,7 +8,7 @@ use super::compare::quantity_of;
 use crate::arrays::doubles;
 use crate::errors::{FitError, OptionError, refused, refused_plainly};
 use crate::files::all_laws;
-use crate::fits::fit::standard_deviations_of;
+use crate::fits::fit::{samples_of, standard_deviations_of};
 use crate::table::{Table, columns};
 use crate::work::at_length;
 
@@ -84,10 +84,7 @@ pub(crate) fn forecast(
         ..LawOptions::default()
     };
     let made = at_length(py, move |mut heard| {
-        let samples = Samples::new(&times, &values);
-        let samples = standard_deviations
-            .as_deref()
-            .map_or(samples, |standard_deviations| samples.with_standard_deviations(standard_deviations));
+        let samples = samples_of(&times, &values, standard_deviations.as_deref());
         let found = HoldForecast::of(&samples, &options.laws(), &options.fit, &mut heard)?;
         let Some(found) = found else { return Ok(None) };
         let elapsed: Vec<f64> = at.iter().map(|time| time - times[0]).collect();

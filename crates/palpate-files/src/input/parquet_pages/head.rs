@@ -7,6 +7,8 @@
 //! The crate `parquet` takes the number of a known field whatever the kind of the field says, so that a head that is not
 //! exactly as the format has it is refused here: what is checked is what `parquet` reads.
 
+use super::number;
+
 /// Deepest structures inside one another; those of the format have four.
 const DEEPEST: usize = 8;
 
@@ -92,17 +94,11 @@ impl Bytes<'_> {
         Some(())
     }
 
-    /// Seven bits a byte, lowest first.
     fn number(&mut self) -> Option<u64> {
-        let mut number = 0;
-        for place in 0..10 {
-            let byte = self.byte()?;
-            number |= u64::from(byte & 0x7F) << (7 * place);
-            if byte & 0x80 == 0 {
-                return Some(number);
-            }
-        }
-        None
+        let mut behind = self.bytes.get(self.at..)?;
+        let number = number(&mut behind)?;
+        self.at = self.bytes.len() - behind.len();
+        Some(number)
     }
 
     /// A size, which is kept as 2n (or 2n − 1 of a negative one), and has 31 bits.

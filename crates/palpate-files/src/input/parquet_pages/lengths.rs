@@ -14,7 +14,7 @@ use parquet::{
     schema::types::ColumnDescriptor,
 };
 
-use super::PageProblem;
+use super::{PageProblem, number};
 
 /// Bytes that `parquet` takes for a length.
 const BYTES_OF_LENGTH: u64 = 4;
@@ -111,18 +111,4 @@ fn behind_lengths(bytes: &[u8], most: u64) -> Option<&[u8]> {
         behind = differences.get(usize::try_from(size).ok()?..)?;
     }
     Some(behind)
-}
-
-/// Seven bits a byte, lowest first.
-fn number(bytes: &mut &[u8]) -> Option<u64> {
-    let mut number = 0;
-    for place in 0..10 {
-        let (byte, behind) = bytes.split_first()?;
-        *bytes = behind;
-        number |= u64::from(byte & 0x7F) << (7 * place);
-        if byte & 0x80 == 0 {
-            return Some(number);
-        }
-    }
-    None
 }

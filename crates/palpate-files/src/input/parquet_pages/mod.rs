@@ -121,6 +121,20 @@ fn unpacks_beyond(packed: &[u8], compression: Compression, size: u64) -> bool {
     }
 }
 
+/// Seven bits a byte, lowest first.
+fn number(bytes: &mut &[u8]) -> Option<u64> {
+    let mut number = 0;
+    for place in 0..10 {
+        let (byte, behind) = bytes.split_first()?;
+        *bytes = behind;
+        number |= u64::from(byte & 0x7F) << (7 * place);
+        if byte & 0x80 == 0 {
+            return Some(number);
+        }
+    }
+    None
+}
+
 /// Fewest bytes of a value in a dictionary of a column.
 fn least_width(column: &ColumnChunkMetaData) -> u64 {
     match column.column_type() {

@@ -29,7 +29,7 @@ pub fn analysis_bundle(
 ) -> Result<Bundle, StudyError> {
     let mut bundle = Bundle::default();
     // A figure of millions of samples takes a while.
-    let mut look = |done: usize| watch.report(Progress::open("making the report", done));
+    let look = |watch: &mut dyn Watch, done: usize| watch.report(Progress::open("making the report", done));
     let makes: [&dyn Fn() -> Option<Figure>; 5] = [
         &|| Some(figures::record(analysis, "record")),
         &|| figures::strain_rates(analysis, "strain_rates"),
@@ -39,10 +39,10 @@ pub fn analysis_bundle(
     ];
     let mut figures = Vec::with_capacity(makes.len());
     for (done, make) in makes.into_iter().enumerate() {
-        look(done)?;
+        look(watch, done)?;
         figures.extend(make());
     }
-    look(figures.len())?;
+    look(watch, figures.len())?;
     let compared = ComparedRecord::of_analysis(analysis, input.clone());
     let of_laws = comparison::figures::all(&compared, "");
     bundle.figures(figures.iter().chain(&of_laws), pictures, watch)?;
@@ -57,12 +57,11 @@ pub fn analysis_bundle(
         answer::verdicts(&answer).iter().for_each(|table| bundle.table(table));
         answer::parameters_of_holds(&compared, &answer).iter().for_each(|table| bundle.table(table));
     }
-    let mut look = |done: usize| watch.report(Progress::open("making the report", done));
-    look(0)?;
+    look(watch, 0)?;
     tables::all(analysis).iter().for_each(|table| bundle.table(table));
-    look(1)?;
+    look(watch, 1)?;
     let page = page(analysis, &input, &figures, which_law)?;
-    look(2)?;
+    look(watch, 2)?;
     let document = AnalysisDocument::new(analysis, input);
     bundle.table(&parameters_table(&document.parameter_rows()));
     bundle.text("report.html", page.to_html());
