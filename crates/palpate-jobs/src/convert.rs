@@ -93,7 +93,9 @@ impl Converted {
                 cancelled: false,
             };
             let written = match out.extension().and_then(|ending| ending.to_str()) {
-                Some("parquet") => write_parquet(&mut *heard.into, file, origin),
+                Some("parquet") => write_parquet(&mut *heard.into, file, origin, &mut || {
+                    heard.watch.report(Progress::open("writing", 0)).inspect_err(|_| heard.cancelled = true)
+                }),
                 Some("json") => {
                     write_json(BufWriter::with_capacity(AT_ONCE, &mut heard), file, origin).map_err(TableError::from)
                 }
@@ -184,15 +186,24 @@ fn write_json(mut out: impl Write, file: &RecordFile, origin: &serde_json::Value
     out.flush()
 }
 
-fn write_parquet(out: impl Write + Send, file: &RecordFile, origin: &serde_json::Value) -> Result<(), TableError> {
+fn write_parquet(
+    out: impl Write + Send,
+    file: &RecordFile,
+    origin: &serde_json::Value,
+    look: &mut dyn FnMut() -> Result<(), Cancelled>,
+) -> Result<(), TableError> {
+    /// Rows that are handed on together.
+    const TOGETHER: usize = 1 << 16;
     let columns = columns(file);
     let fields: Vec<Field> = columns.iter().map(|(name, _)| Field::new(*name, Kind::Number)).collect();
     let mut writer = TableWriter::new(out, &fields)?;
-    writer.write(Rows {
-        columns: columns
-            .iter()
-            .map(|(_, values)| Values::Number(values.iter().copied().map(Some).collect()))
-            .collect(),
-    })?;
+    for start in (0..file.record.len()).step_by(TOGETHER) {
+        look().map_err(io::Error::other)?;
+        let rows = start..(start + TOGETHER).min(file.record.len());
+        let numbers = |values: &[f64]| Values::Number(values[rows.clone()].iter().copied().map(Some).collect());
+        writer.write(Rows {
+            columns: columns.iter().map(|(_, values)| numbers(values)).collect(),
+        })?;
+    }
     writer.finish(&[(MARK, &origin.to_string())])
 }

@@ -2,7 +2,7 @@
 
 use std::io;
 
-use palpate::watch::{Cancelled, Progress, Watch};
+use palpate::watch::{Cancelled, Watch};
 
 use crate::figure::{Figure, FigureError};
 use crate::page::Block;
@@ -21,7 +21,7 @@ pub struct Pictures {
 pub enum StudyError {
     /// A figure.
     #[error(transparent)]
-    Figure(#[from] FigureError),
+    Figure(FigureError),
     /// Writing to memory.
     #[error(transparent)]
     Io(#[from] io::Error),
@@ -31,6 +31,32 @@ pub enum StudyError {
     /// The watch ended it.
     #[error(transparent)]
     Cancelled(#[from] Cancelled),
+}
+
+impl From<FigureError> for StudyError {
+    fn from(error: FigureError) -> Self {
+        match error {
+            FigureError::Cancelled(cancelled) => cancelled.into(),
+            error => Self::Figure(error),
+        }
+    }
+}
+
+/// A figure once drawn.
+pub(crate) struct Drawing {
+    name: String,
+    svg: String,
+    caption: String,
+}
+
+impl Drawing {
+    /// As a page shows it.
+    pub(crate) fn block(&self) -> Block {
+        Block::Figure {
+            svg: self.svg.clone(),
+            caption: self.caption.clone(),
+        }
+    }
 }
 
 /// Files by relative path.
@@ -51,20 +77,27 @@ impl Bundle {
         self.files.push((path.into(), content.into_bytes()));
     }
 
-    pub(crate) fn figures<'a>(
+    /// The files of figures, each drawn once: pages show the same drawings.
+    pub(crate) fn figures(
         &mut self,
-        figures: impl IntoIterator<Item = &'a Figure>,
+        figures: &[Figure],
         pictures: Pictures,
         watch: &mut dyn Watch,
-    ) -> Result<(), StudyError> {
-        for (done, figure) in figures.into_iter().enumerate() {
-            watch.report(Progress::open("drawing figures", done))?;
-            self.text(format!("figures/{}.svg", figure.name), figure.to_svg()?);
+    ) -> Result<Vec<Drawing>, StudyError> {
+        let mut drawings = Vec::with_capacity(figures.len());
+        for figure in figures {
+            let svg = figure.to_svg_watched(watch)?;
             if pictures.png {
-                self.files.push((format!("figures/{}.png", figure.name), figure.to_png(DPI)?));
+                self.files.push((format!("figures/{}.png", figure.name), figure.to_png_of(&svg, DPI)?));
             }
+            self.text(format!("figures/{}.svg", figure.name), svg.clone());
+            drawings.push(Drawing {
+                name: figure.name.clone(),
+                svg,
+                caption: figure.caption.clone(),
+            });
         }
-        Ok(())
+        Ok(drawings)
     }
 
     pub(crate) fn series<T>(&mut self, name: &str, write: WriteSeries<T>, series: &T) -> Result<(), StudyError> {
@@ -86,8 +119,7 @@ impl Bundle {
     }
 }
 
-/// The figures whose name starts so, as a page shows them.
-pub(super) fn drawn(figures: &[Figure], name: &str) -> Result<Vec<Block>, StudyError> {
-    let chosen = figures.iter().filter(|figure| figure.name.starts_with(name));
-    chosen.map(|figure| Ok(Block::figure(figure)?)).collect()
+/// The drawings whose name starts so, as a page shows them.
+pub(super) fn named(drawings: &[Drawing], name: &str) -> impl Iterator<Item = Block> {
+    drawings.iter().filter(move |drawing| drawing.name.starts_with(name)).map(Drawing::block)
 }

@@ -1,5 +1,7 @@
 //! What can go wrong while drawing.
 
+use palpate::watch::Cancelled;
+
 /// Why a figure could not be drawn.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
@@ -32,4 +34,7 @@ pub enum FigureError {
         /// What the renderer stated.
         reason: String,
     },
+    /// The watch ended it.
+    #[error(transparent)]
+    Cancelled(#[from] Cancelled),
 }

@@ -20,6 +20,7 @@ mod reference;
 mod series;
 mod svg;
 
+use palpate::watch::{Cancelled, Progress, Unwatched, Watch};
 use svg::Svg;
 
 use super::content::{Figure, FigureError, Mark};
@@ -32,18 +33,28 @@ impl Figure {
     ///
     /// When the columns of a layer differ in length, or a heat map cannot be encoded.
     pub fn to_svg(&self) -> Result<String, FigureError> {
+        self.to_svg_watched(&mut Unwatched)
+    }
+
+    /// [`Self::to_svg`] with a watch, which hears of every layer: one of millions of samples takes a tenth of a second.
+    ///
+    /// # Errors
+    ///
+    /// As for [`Self::to_svg`], and [`FigureError::Cancelled`].
+    pub fn to_svg_watched(&self, watch: &mut dyn Watch) -> Result<String, FigureError> {
         for layer in self.panels.iter().flat_map(|panel| &panel.layers) {
             layer.check(&self.name)?;
         }
-        self.in_suited_units().drawn()
+        look(watch)?;
+        self.in_suited_units().drawn(watch)
     }
 
-    fn drawn(&self) -> Result<String, FigureError> {
+    fn drawn(&self, watch: &mut dyn Watch) -> Result<String, FigureError> {
         let legends: Vec<_> = self.panels.iter().map(legend::entries).collect();
-        let frames = self.frames(&legends);
+        let frames = self.frames(&legends, watch)?;
         let mut svg = Svg::default();
         for (frame, legend) in frames.iter().zip(&legends) {
-            self.draw_panel(&mut svg, frame)?;
+            self.draw_panel(&mut svg, frame, watch)?;
             draw_inner_text(&mut svg, frame, legend);
         }
         let (width, height) = self.size_points();
@@ -55,10 +66,15 @@ impl Figure {
     /// # Errors
     ///
     /// As for [`Self::to_svg`], and when the picture would be empty or far too large, or without the feature `png`.
-    #[cfg_attr(not(feature = "png"), expect(unused_variables, reason = "nothing is drawn"))]
     pub fn to_png(&self, dpi: f64) -> Result<Vec<u8>, FigureError> {
+        self.to_png_of(&self.to_svg()?, dpi)
+    }
+
+    /// [`Self::to_png`] of the figure once drawn.
+    #[cfg_attr(not(feature = "png"), expect(unused_variables, reason = "nothing is drawn"))]
+    pub(crate) fn to_png_of(&self, svg: &str, dpi: f64) -> Result<Vec<u8>, FigureError> {
         #[cfg(feature = "png")]
-        return raster::png(&self.name, &self.to_svg()?, self.size_points(), dpi);
+        return raster::png(&self.name, svg, self.size_points(), dpi);
         #[cfg(not(feature = "png"))]
         Err(FigureError::Raster {
             figure: self.name.clone(),
@@ -68,23 +84,24 @@ impl Figure {
     }
 
     /// Places the panels; legends that would cover data get rows of their own above the axes.
-    fn frames(&self, legends: &[Vec<legend::Entry>]) -> Vec<Frame<'_>> {
+    fn frames(&self, legends: &[Vec<legend::Entry>], watch: &mut dyn Watch) -> Result<Vec<Frame<'_>>, Cancelled> {
         let mut rows = vec![0; self.panels.len()];
         loop {
             let frames = arrange(self, &rows);
             let before = rows.clone();
             for ((rows, frame), legend) in rows.iter_mut().zip(&frames).zip(legends) {
+                look(watch)?;
                 if *rows == 0 && !legend.is_empty() && inner_text(frame, legend).1.is_none() {
                     *rows = legend::rows(legend, frame.area.w);
                 }
             }
             if rows == before {
-                return frames;
+                return Ok(frames);
             }
         }
     }
 
-    fn draw_panel(&self, svg: &mut Svg, frame: &Frame<'_>) -> Result<(), FigureError> {
+    fn draw_panel(&self, svg: &mut Svg, frame: &Frame<'_>, watch: &mut dyn Watch) -> Result<(), FigureError> {
         reference::draw_spans(svg, frame);
         let empty = frame.panel.is_empty();
         svg.open_clip(frame.area);
@@ -103,6 +120,7 @@ impl Figure {
         reference::draw_references(svg, frame);
         svg.close_clip();
         for layer in &frame.panel.layers {
+            look(watch)?;
             match &layer.mark {
                 Mark::Line { x, y } => {
                     svg.open_clip(frame.area);
@@ -124,6 +142,10 @@ impl Figure {
         reference::draw_span_names(svg, frame);
         Ok(())
     }
+}
+
+fn look(watch: &mut dyn Watch) -> Result<(), Cancelled> {
+    watch.report(Progress::open("drawing figures", 0))
 }
 
 /// Names of reference lines, and where the legend fits inside the axes without covering anything.

@@ -4,10 +4,10 @@ use super::{figures, tables};
 use palpate::watch::Watch;
 
 use crate::document::{ComparisonDocument, ComparisonSettingsDocument, Software};
-use crate::figure::{Figure, MOST_PANELS};
+use crate::figure::MOST_PANELS;
 use crate::page::{Block, Page, Section};
 use crate::result::{Answer, ComparedRecord, LeftOut, parameters_table};
-use crate::study::bundle::{Bundle, Pictures, StudyError};
+use crate::study::bundle::{Bundle, Drawing, Pictures, StudyError};
 use crate::study::{answer, findings};
 
 /// All files of compared records: `report.html`, `comparison.json`, `comparison.md`, `tables/*.csv`, `figures/*.svg`.
@@ -25,12 +25,11 @@ pub fn comparison_bundle(
     let mut page = Page::new("Laws compared", "Law of relaxation or creep to use, and its certainty");
     for (index, record) in records.iter().enumerate() {
         let suffix = if records.len() == 1 { String::new() } else { format!("_{}", index + 1) };
-        let figures = figures::all(record, &suffix);
-        bundle.figures(&figures, pictures, watch)?;
+        let drawings = bundle.figures(&figures::all(record, &suffix), pictures, watch)?;
         let found = findings::gathered_of(record, findings::MOST_LINES);
         let mut section = Section::new(&record.input.title)
             .blocks(answer::answer_blocks(record, &Answer::new(record), &found))
-            .blocks(blocks(record, &figures)?);
+            .blocks(blocks(record, &drawings));
         if !found.is_empty() {
             section = section
                 .block(Block::Subheading("Findings".to_owned()))
@@ -57,17 +56,15 @@ pub fn comparison_bundle(
 }
 
 /// Which law to use on the holds of a record: sentences, tables, figures.
-pub(in crate::study) fn blocks(record: &ComparedRecord, figures: &[Figure]) -> Result<Vec<Block>, StudyError> {
+pub(in crate::study) fn blocks(record: &ComparedRecord, drawings: &[Drawing]) -> Vec<Block> {
     let mut blocks = Vec::new();
     let judged: Vec<_> = record.verdicts().collect();
     match judged.as_slice() {
-        [] => return Ok(vec![Block::paragraph("No hold has enough samples and change to compare laws on it.")]),
+        [] => return vec![Block::paragraph("No hold has enough samples and change to compare laws on it.")],
         [(_, comparison)] => blocks.extend(tables::sentences(comparison).map(Block::Paragraph)),
         _ => {}
     }
-    for figure in figures {
-        blocks.push(Block::figure(figure)?);
-    }
+    blocks.extend(drawings.iter().map(Drawing::block));
     for (hold, comparison) in judged.iter().take(MOST_PANELS) {
         if judged.len() > 1 {
             blocks.push(Block::Subheading(hold.title()));
@@ -82,5 +79,5 @@ pub(in crate::study) fn blocks(record: &ComparedRecord, figures: &[Figure]) -> R
         )));
     }
     blocks.push(Block::List(tables::NOTES.map(str::to_owned).into()));
-    Ok(blocks)
+    blocks
 }

@@ -7,7 +7,7 @@ use palpate::watch::Unwatched;
 use crate::document::{GripDocument, Software};
 use crate::page::{Block, Page, Section};
 use crate::result::GrippedBody;
-use crate::study::bundle::{Bundle, Pictures, StudyError};
+use crate::study::bundle::{Bundle, Drawing, Pictures, StudyError};
 use crate::study::calibration::{material_table, write_prediction};
 
 /// All files of a planned grip: `report.html`, `grip.json`, `tables/*.csv`, `figures/grip.svg`, `series/*.csv`.
@@ -21,10 +21,9 @@ pub fn grip_bundle(body: &GrippedBody<'_>, pictures: Pictures) -> Result<Bundle,
         .block(Block::Paragraph(body.verdict()));
     let grips = grip_table(body);
     if !grips.rows.is_empty() {
-        let figure = grip_figure(body, "grip");
-        bundle.figures([&figure], pictures, &mut Unwatched)?;
+        let drawings = bundle.figures(&[grip_figure(body, "grip")], pictures, &mut Unwatched)?;
         bundle.table(&grips);
-        verdict = verdict.block(Block::figure(&figure)?).block(Block::Table(grips));
+        verdict = verdict.blocks(drawings.iter().map(Drawing::block)).block(Block::Table(grips));
     }
     verdict = verdict.block(Block::List(body.remarks()));
     let mut page = Page::new("Grip", "Time to slip and closing motion").section(verdict);

@@ -14,7 +14,7 @@ use crate::figure::Figure;
 use crate::number::significant;
 use crate::page::{Block, Page, Section};
 use crate::result::{Answer, ComparedRecord, Input, parameters_table};
-use crate::study::bundle::{Bundle, Pictures, StudyError, drawn};
+use crate::study::bundle::{Bundle, Drawing, Pictures, StudyError, named};
 use crate::study::{answer, comparison, findings};
 
 /// All files of an analysed record: `report.html`, `analysis.json`, `tables/*.csv`, `figures/*.svg`.
@@ -44,14 +44,14 @@ pub fn analysis_bundle(
     }
     look(watch, figures.len())?;
     let compared = ComparedRecord::of_analysis(analysis, input.clone());
-    let of_laws = comparison::figures::all(&compared, "");
-    bundle.figures(figures.iter().chain(&of_laws), pictures, watch)?;
+    let drawings = bundle.figures(&figures, pictures, watch)?;
+    let of_laws = bundle.figures(&comparison::figures::all(&compared, ""), pictures, watch)?;
     let mut which_law = None;
     if let Some(compare) = &analysis.options.compare {
         let answer = Answer::new(&compared);
         which_law = Some(WhichLaw {
             answer: answer::answer_blocks(&compared, &answer, &findings::gathered(analysis, findings::MOST_LINES)),
-            comparison: comparison::page::blocks(&compared, &of_laws)?,
+            comparison: comparison::page::blocks(&compared, &of_laws),
         });
         bundle.table(&comparison::tables::laws(slice::from_ref(&compared), &compare.cuts));
         answer::verdicts(&answer).iter().for_each(|table| bundle.table(table));
@@ -60,7 +60,7 @@ pub fn analysis_bundle(
     look(watch, 0)?;
     tables::all(analysis).iter().for_each(|table| bundle.table(table));
     look(watch, 1)?;
-    let page = page(analysis, &input, &figures, which_law)?;
+    let page = page(analysis, &input, &drawings, which_law);
     look(watch, 2)?;
     let document = AnalysisDocument::new(analysis, input);
     bundle.table(&parameters_table(&document.parameter_rows()));
@@ -75,21 +75,16 @@ struct WhichLaw {
     comparison: Vec<Block>,
 }
 
-fn page(
-    analysis: &Analysis,
-    input: &Input,
-    figures: &[Figure],
-    which_law: Option<WhichLaw>,
-) -> Result<Page, StudyError> {
+fn page(analysis: &Analysis, input: &Input, drawings: &[Drawing], which_law: Option<WhichLaw>) -> Page {
     let record = Section::new("The record")
         .block(Block::paragraph(summary(analysis)))
-        .blocks(drawn(figures, "record")?)
+        .blocks(named(drawings, "record"))
         .block(Block::Table(tables::holds(analysis)));
     let mut laws = Section::new("The law for each hold")
         .blocks(tables::paper_tables(analysis).map(Block::Table))
         .block(Block::Table(tables::exponents(analysis)));
     for name in ["holds", "residuals", "strain_rates", "trend"] {
-        laws = laws.blocks(drawn(figures, name)?);
+        laws = laws.blocks(named(drawings, name));
     }
     laws = laws
         .blocks(joint_sentence(analysis).or_else(|| trend_sentence(analysis)).map(Block::Paragraph))
@@ -115,7 +110,7 @@ fn page(
     if let Some(test) = &input.test {
         page = page.provenance("Test description", test);
     }
-    Ok(page.provenance("Software", Software::this().to_string()))
+    page.provenance("Software", Software::this().to_string())
 }
 
 /// What was found, in a few sentences.

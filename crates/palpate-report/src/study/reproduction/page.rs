@@ -11,7 +11,7 @@ use crate::document::{ReproductionDocument, Software};
 use crate::figure::{Arrangement, Figure, Layer, Panel, Role};
 use crate::page::{Block, Page, Section};
 use crate::result::{ReproducedTest, Reproduction};
-use crate::study::bundle::{Bundle, Pictures, StudyError, drawn};
+use crate::study::bundle::{Bundle, Drawing, Pictures, StudyError, named};
 use crate::study::grid::displacement_panel;
 use crate::study::record::figures as record_figures;
 use crate::study::simulate::{wave_figure, write_trajectory};
@@ -117,7 +117,7 @@ fn paper_table(study: &Reproduction, test: &ReproducedTest, after: After) -> Tab
 }
 
 /// The page.
-fn page(study: &Reproduction, figures: &[Figure], tables: &[Table]) -> Result<Page, StudyError> {
+fn page(study: &Reproduction, drawings: &[Drawing], tables: &[Table]) -> Page {
     let model = &study.model;
     let page = Page::new(
         PAPER,
@@ -136,23 +136,23 @@ fn page(study: &Reproduction, figures: &[Figure], tables: &[Table]) -> Result<Pa
             ]))
             .block(Block::Checks(study.checks.clone())),
     )
-    .section(Section::new("The law").blocks(drawn(figures, "figure_1_")?).blocks(drawn(figures, "figure_2")?))
+    .section(Section::new("The law").blocks(named(drawings, "figure_1_")).blocks(named(drawings, "figure_2")))
     .section(
         Section::new("The two tests")
-            .blocks(drawn(figures, "figure_4a")?)
-            .blocks(drawn(figures, "figure_4b")?)
-            .blocks(drawn(figures, "figure_8")?)
+            .blocks(named(drawings, "figure_4a"))
+            .blocks(named(drawings, "figure_4b"))
+            .blocks(named(drawings, "figure_8"))
             .block(Block::paragraph(
                 "The authors remark that their simulated force drops faster than the measured one when the jaw retreats at about 53 s. The cause is the model: a bonded contact can pull. With a jaw that can only push, contact is lost, the force stays at zero, and the remaining indentation recovers by the same law.",
             )),
     )
     .section(
         Section::new("Strain rate against strain")
-            .blocks(drawn(figures, "figure_6")?)
+            .blocks(named(drawings, "figure_6"))
             .blocks(tables.iter().cloned().map(Block::Table)),
     )
-    .section(Section::new("The strain wave").blocks(drawn(figures, "figure_7")?));
-    Ok(page.provenance("Source", PAPER).provenance("Software", Software::this().to_string()))
+    .section(Section::new("The strain wave").blocks(named(drawings, "figure_7")));
+    page.provenance("Source", PAPER).provenance("Software", Software::this().to_string())
 }
 
 /// All files of the reproduced study.
@@ -165,8 +165,7 @@ pub fn reproduction_bundle(
     watch: &mut dyn Watch,
 ) -> Result<Bundle, StudyError> {
     let mut bundle = Bundle::default();
-    let figures = figures(study);
-    bundle.figures(&figures, pictures, watch)?;
+    let drawings = bundle.figures(&figures(study), pictures, watch)?;
     let tables = [(&study.test_a, After::Loading), (&study.test_b, After::Unloading)];
     let tables = tables.map(|(test, after)| paper_table(study, test, after));
     tables.iter().for_each(|table| bundle.table(table));
@@ -174,7 +173,7 @@ pub fn reproduction_bundle(
         bundle.series(&format!("test_{name}_bonded"), write_trajectory, &test.bonded)?;
         bundle.series(&format!("test_{name}_unilateral"), write_trajectory, &test.unilateral)?;
     }
-    bundle.text("report.html", page(study, &figures, &tables)?.to_html());
+    bundle.text("report.html", page(study, &drawings, &tables).to_html());
     bundle.json("summary.json", &ReproductionDocument::new(study))?;
     Ok(bundle)
 }
