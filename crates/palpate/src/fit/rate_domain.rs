@@ -126,7 +126,7 @@ impl Scaled {
         let (ones, amplitudes) = ([1.0; 3], [scaled_v; 2]);
         let trust = (options.confidence, NoiseChoice::FromResiduals);
         let assessed =
-            Assessed::new(solution, &amplitudes[..size - 1], &ones[..size], self.fastest, trust, (known, false));
+            Assessed::new(solution, &amplitudes[..size - 1], &ones[..size], self.fastest, trust, (known, false), None);
         let estimate = |value: f64, weights: &[f64], scale: Scale, unit: f64| {
             let gradient: Vec<f64> = weights[..size].iter().map(|weight| weight * unit).collect();
             assessed.estimate(value, &gradient, scale)

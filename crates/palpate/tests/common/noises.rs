@@ -92,7 +92,8 @@ pub(crate) fn laws() -> [Known; 4] {
 pub(crate) fn truth_at(known: &Known, noise: Noise, samples: usize) -> (Vec<f64>, Vec<f64>) {
     let share = |i: usize| i as f64 / (samples - 1) as f64;
     let time = |i: usize| match noise {
-        Noise::LogarithmicTimes => 10.0 * 1e-3_f64.powf(1.0 - share(i)),
+        // Amplitudes are those at the first sample, the true ones at 0.
+        Noise::LogarithmicTimes => 10.01 * (1.001e3_f64.powf(share(i)) - 1.0) / 1e3,
         _ => 10.0 * share(i),
     };
     let times: Vec<f64> = (0..samples).map(time).collect();

@@ -74,8 +74,8 @@ impl Fit {
 
 #[cfg(test)]
 mod tests {
+    use crate::fit::NoiseChoice;
     use crate::fit::law::fit_law::fit_law;
-    use crate::fit::noise::model::NoiseModel;
     use crate::fit::options::LawOptions;
     use crate::fit::samples::Samples;
     use crate::laws::{ExponentChoice, Law, Response};
@@ -139,8 +139,11 @@ mod tests {
     #[test]
     fn a_sample_is_less_sure_than_the_curve() {
         let (times, values) = noisy_hold(400, 1.0, 1e-2);
-        let fit = fit_law(&Samples::new(&times, &values), Law::StandardLinearSolid, &LawOptions::default()).unwrap();
-        assert_eq!(fit.noise, NoiseModel::White);
+        let options = LawOptions {
+            noise: NoiseChoice::White,
+            ..LawOptions::default()
+        };
+        let fit = fit_law(&Samples::new(&times, &values), Law::StandardLinearSolid, &options).unwrap();
         let (curve, sample) = (fit.predict_interval(12.0), fit.predict_sample(12.0));
         let noise = (fit.residual_square / 397.0).sqrt();
         let sum = curve.standard_error.unwrap().hypot(noise);

@@ -22,6 +22,7 @@ impl Fitted {
             scale,
             (options.confidence, options.noise),
             (known, self.scaled.roots.is_none()),
+            Some((&self.scaled.times, self.scaled.duration)),
         );
         let loading = if matches!(law, Law::Latency { .. }) { None } else { options.loading.clone() };
         let mut fit = Fit {

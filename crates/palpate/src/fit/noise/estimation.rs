@@ -1,22 +1,37 @@
 //! Which noise left the residuals of a fit.
 
 use super::autoregression::innovations;
-use super::lagged::{Lagged, partial};
-use super::likelihood::{Kind, Slow};
+use super::lagged::{Lagged, first_order, partial};
+use super::likelihood::{Kind, Likelihood, Slow};
+use super::markov::Beside;
 use super::model::{Lags, Likely, Noise, NoiseModel};
 use crate::statistics::dot;
 
 /// Fall of −2 ln L that one more parameter of the noise has to bring.
 const EVIDENCE: f64 = 4.0;
 
+/// Probability of a walk beside white noise over that of white noise alone, before the residuals say anything; and that of AR(1) for few samples.
+const WALKS: f64 = 0.7;
+const CORRELATES: f64 = 1.5;
+
+/// Up to so many samples any correlation may be, whatever the residuals show.
+const FEW: usize = 40;
+
+/// Means of neighbours that show a walk beside white noise.
+const MEANS: usize = 64;
+
+/// A hold of so many correlation times of its noise shows that it is no walk.
+const OUTLASTED: f64 = 25.0;
+
 /// A kind whose price is that much above the least one is left aside: it has a probability of some percent.
 const COUNTS: f64 = 7.0;
 
 impl Noise {
-    /// The noise that left these residuals beside a fit with this Jacobian, whose columns may have any size.
+    /// The noise that left these residuals beside a fit with this Jacobian, whose columns may have any size; `times` in s where samples are
+    /// spaced unevenly.
     ///
     /// Of a long series stretches, evenly spread, say how it correlates; its size comes from all samples.
-    pub(crate) fn of(jacobian: &[&[f64]], residuals: &[f64], lags: &Lags) -> Self {
+    pub(crate) fn of(jacobian: &[&[f64]], residuals: &[f64], lags: &Lags, times: Option<&[f64]>) -> Self {
         let (samples, parameters) = (residuals.len(), jacobian.len());
         let white = Self::white(lags, (samples - parameters) as f64);
         if samples < 8 || lags.square <= f64::MIN_POSITIVE * 1e20 {
@@ -28,17 +43,24 @@ impl Noise {
                 true => drifts(residuals, parameters),
                 false => drifts(&innovations(residuals, &partial), parameters),
             };
-        if partial.is_empty() && !is_slow {
-            return white;
+        let looks_white = partial.is_empty() && !is_slow;
+        let is_short = samples <= STRETCHES * STRETCH;
+        if samples <= FEW || (looks_white && (times.is_none() || !is_short)) {
+            let kinds = if samples <= FEW {
+                few_samples(jacobian, residuals, times)
+            } else {
+                Beside::new(jacobian, residuals, None, MEANS).kinds()
+            };
+            return kinds.and_then(Kinds::noise).unwrap_or(white);
         }
-        if samples <= STRETCHES * STRETCH {
+        if is_short {
             let series = Series {
                 jacobian,
                 residuals,
                 length: samples,
                 samples,
             };
-            return series.noise(&partial, is_slow).unwrap_or(white);
+            return series.noise(&partial, is_slow, times).unwrap_or(white);
         }
         let few: Vec<Vec<f64>> = jacobian.iter().copied().chain([residuals]).map(stretches).collect();
         let columns: Vec<&[f64]> = few[..parameters].iter().map(Vec::as_slice).collect();
@@ -49,10 +71,10 @@ impl Noise {
             length: STRETCH,
             samples,
         };
-        let Some(mut noise) = series.noise(&partial, is_slow) else {
+        let Some(mut noise) = series.noise(&partial, is_slow, None) else {
             return white;
         };
-        let scale = white.variance() / (dot(left, left) / (left.len() - parameters) as f64);
+        let scale = white.variance(samples) / (dot(left, left) / (left.len() - parameters) as f64);
         if scale.is_finite() {
             noise.likely.iter_mut().for_each(|likely| likely.variance *= scale);
         }
@@ -70,7 +92,7 @@ struct Series<'a> {
 
 impl Series<'_> {
     /// The noise that left them, of every kind that may have.
-    fn noise(&self, partial: &[f64], is_slow: bool) -> Option<Noise> {
+    fn noise(&self, partial: &[f64], is_slow: bool, times: Option<&[f64]>) -> Option<Noise> {
         let Self {
             jacobian,
             residuals,
@@ -80,37 +102,56 @@ impl Series<'_> {
         let order = partial.len().max(1);
         let lagged = Lagged::new(jacobian, residuals, length, order);
         let white = lagged.likelihood(&vec![0.0; order])?;
-        let alone = Likely {
-            model: NoiseModel::White,
-            variance: white.variance,
-            probability: 1.0,
-        };
-        let mut kinds = Kinds {
-            priced: vec![(
-                white.deviance,
-                Kind {
-                    deviance: white.deviance,
-                    model: NoiseModel::White,
-                    likely: vec![alone],
-                },
-            )],
-        };
+        let mut kinds = Kinds::white(white);
         let start = if partial.is_empty() { &[0.1] } else { partial };
-        kinds.take(lagged.noise(start), order);
+        let alike = order > 1 && start.iter().all(|by| *by > 0.0);
+        kinds.take(lagged.noise(start), if alike { 2 * order } else { order });
         if order > 1 {
             // An autoregression that needs several samples, all of them alike, may stand for slow noise.
             kinds.take(Lagged::new(jacobian, residuals, length, 1).noise(&start[..1]), 1);
         }
-        if is_slow || (order > 1 && start.iter().all(|by| *by > 0.0)) {
+        if is_slow || alike {
             let slow = Slow::new(jacobian, residuals, length, samples);
-            kinds.take(slow.mixture(kinds.worth(2)), 2);
+            // Two parameters, and a walk or a power law is as good an account of a slow drift: priced as three.
+            kinds.take(slow.mixture(kinds.worth(3)), 3);
             // Most white residuals that look slow are done with here.
             if kinds.least() < white.deviance {
                 kinds.take(slow.power_alone(kinds.worth(1)), 1);
-                kinds.take(slow.power_law(kinds.worth(2)), 2);
+                kinds.take(slow.power_law(kinds.worth(1)), 1);
+            }
+        }
+        if length == samples {
+            let beside = Beside::new(jacobian, residuals, times, samples);
+            if times.is_some() {
+                kinds.take(beside.in_time(true, kinds.worth(1)), 1);
+                kinds.take(beside.in_time(false, kinds.worth(2)), 2);
+            }
+            // Noise that fades well within the hold is no walk.
+            if is_slow || alike || partial.first().is_none_or(|by| *by > 1.0 - OUTLASTED / samples as f64) {
+                kinds.take_all(&beside.walks(kinds.least()), WALKS);
             }
         }
         kinds.noise()
+    }
+}
+
+/// Kinds that few samples leave possible.
+fn few_samples(jacobian: &[&[f64]], residuals: &[f64], times: Option<&[f64]>) -> Option<Kinds> {
+    let beside = Beside::new(jacobian, residuals, times, residuals.len());
+    let mut kinds = Kinds::white(beside.white()?);
+    let in_time = beside.fading();
+    let each = if in_time.is_empty() { CORRELATES } else { 0.5 * CORRELATES };
+    kinds.take_all(&first_order(jacobian, residuals), each);
+    kinds.take_all(&in_time, each);
+    Some(kinds)
+}
+
+impl Beside<'_> {
+    /// White noise, and a walk beside it.
+    fn kinds(&self) -> Option<Kinds> {
+        let mut kinds = Kinds::white(self.white()?);
+        kinds.take_all(&self.walks(kinds.least()), WALKS);
+        Some(kinds)
     }
 }
 
@@ -120,6 +161,45 @@ struct Kinds {
 }
 
 impl Kinds {
+    fn white(found: Likelihood) -> Self {
+        let alone = Likely {
+            model: NoiseModel::White,
+            variance: found.variance,
+            probability: 1.0,
+        };
+        let kind = Kind {
+            deviance: found.deviance,
+            model: NoiseModel::White,
+            likely: vec![alone],
+        };
+        Self {
+            priced: vec![(found.deviance, kind)],
+        }
+    }
+
+    /// Models that stand for a kind, all of them alike, and as probable together as `odds` to that of white noise.
+    fn take_all(&mut self, points: &[(Likelihood, NoiseModel)], odds: f64) {
+        /// A model of a smaller share of its kind is left out.
+        const LEAST: f64 = 1e-2;
+        let Some((best, model)) = points.iter().min_by(|a, b| a.0.deviance.total_cmp(&b.0.deviance)).copied() else {
+            return;
+        };
+        let share = |found: &Likelihood| (0.5 * (best.deviance - found.deviance)).exp();
+        let all: f64 = points.iter().map(|(found, _)| share(found)).sum();
+        let price = best.deviance - 2.0 * (odds * all / points.len() as f64).ln();
+        let likely = points.iter().filter(|(found, _)| share(found) > LEAST * all).map(|(found, model)| Likely {
+            model: *model,
+            variance: found.variance,
+            probability: share(found) / all,
+        });
+        let kind = Kind {
+            deviance: best.deviance,
+            model,
+            likely: likely.collect(),
+        };
+        self.priced.push((price, kind));
+    }
+
     fn take(&mut self, kind: Option<Kind>, parameters: usize) {
         self.priced.extend(kind.map(|kind| (kind.deviance + EVIDENCE * parameters as f64, kind)));
     }
@@ -232,7 +312,7 @@ mod tests {
     fn found(noise: &[f64]) -> Noise {
         let columns = line(noise.len());
         let left = without_line(noise);
-        Noise::of(&[&columns[0], &columns[1]], &left, &Lags::of(&left))
+        Noise::of(&[&columns[0], &columns[1]], &left, &Lags::of(&left), None)
     }
 
     /// All correlations, row by row, in series of `length` samples.
@@ -292,7 +372,7 @@ mod tests {
                 let pair = (quick.deviance, whole.deviance);
                 assert!((pair.0 - pair.1).abs() < 1e-9, "{model:?} {length}: {pair:?}");
                 assert!((quick.variance / whole.variance - 1.0).abs() < 1e-11);
-                let (matrix, filling) = (dense(model, COUNT, COUNT), Columns::new(&jacobian).quadratic(model));
+                let (matrix, filling) = (dense(model, COUNT, COUNT), Columns::new(&jacobian, None).quadratic(model));
                 for i in 0..2 {
                     for j in 0..2 {
                         let row = |a: usize| dot(&matrix[a * COUNT..(a + 1) * COUNT], jacobian[j]);
@@ -343,7 +423,10 @@ mod tests {
         for seed in 0..100 {
             for (count, model) in counts.iter_mut().zip(all) {
                 let found = found(&simulated(model, 1000, seed)).model;
-                *count += u32::from(std::mem::discriminant(&found) == std::mem::discriminant(&model));
+                let kind = std::mem::discriminant::<NoiseModel>;
+                // A slow part beside white noise is often as likely a walk.
+                let walks = model == both && matches!(found, NoiseModel::WhiteAndWalk { .. });
+                *count += u32::from(walks || kind(&found) == kind(&model));
                 if let NoiseModel::Autoregressive { correlation } = found
                     && model == alone
                 {
@@ -351,7 +434,7 @@ mod tests {
                 }
             }
         }
-        let least = [85, 85, 75, 95, 90, 90];
+        let least = [85, 85, 65, 95, 90, 90];
         assert!(counts.iter().zip(least).all(|(count, least)| *count >= least), "{counts:?}");
         // √((1 − ρ²)/N) is 0.014; without the restriction ρ would come out lower by some 0.006.
         let bias = errors.iter().sum::<f64>() / errors.len() as f64;
@@ -378,7 +461,7 @@ mod tests {
                 let noise = found(&simulated(model, samples, seed));
                 let counts = noise.model.effective_samples(samples) / model.effective_samples(samples);
                 assert!((0.5..2.0).contains(&counts), "{samples} {seed}: {counts} {:?}", noise.model);
-                let variance = noise.variance();
+                let variance = noise.variance(samples);
                 assert!((0.5..2.0).contains(&variance), "{samples} {seed}: {variance}");
             }
         }
@@ -386,8 +469,8 @@ mod tests {
 
     #[test]
     fn residuals_that_are_nothing_are_white() {
-        let nothing = Noise::of(&[&[1.0; 20]], &[0.0; 20], &Lags::of(&[0.0; 20]));
-        assert_eq!((nothing.model, nothing.variance()), (NoiseModel::White, 0.0));
+        let nothing = Noise::of(&[&[1.0; 20]], &[0.0; 20], &Lags::of(&[0.0; 20]), None);
+        assert_eq!((nothing.model, nothing.variance(20)), (NoiseModel::White, 0.0));
         assert_eq!(NoiseModel::White.effective_samples(20), 20.0);
     }
 }

@@ -147,6 +147,21 @@ impl Lagged {
     }
 }
 
+/// AR(1) of correlations evenly spaced in κ, with their likelihoods: of few samples any may be.
+pub(crate) fn first_order(jacobian: &[&[f64]], residuals: &[f64]) -> Vec<(Likelihood, NoiseModel)> {
+    /// From one κ to the next, and the least of them.
+    const PACE: f64 = 0.5;
+    const LEAST: f64 = -2.5;
+    let lagged = Lagged::new(jacobian, residuals, residuals.len(), 1);
+    let most = (residuals.len() as f64).ln() + 1.5;
+    let kappas = (0..).map(|i| LEAST + PACE * f64::from(i)).take_while(|kappa| *kappa < most);
+    let point = |kappa: f64| {
+        let correlation = (0.5 * kappa).tanh();
+        Some((lagged.likelihood(&[correlation])?, NoiseModel::Autoregressive { correlation }))
+    };
+    kappas.filter(|kappa| *kappa != 0.0).filter_map(point).collect()
+}
+
 /// Where the product of i and j stands.
 fn place(i: usize, j: usize, order: usize) -> usize {
     (0..i).map(|row| order + 1 - row).sum::<usize>() + j - i

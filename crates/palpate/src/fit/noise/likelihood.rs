@@ -237,4 +237,4 @@ impl<'a> Slow<'a> {
 const GLANCE: usize = 200;
 
 /// The longest correlation time of a power law over the length of the hold: what is slower still looks like a constant.
-const OUTLASTS: f64 = 4.0;
+const OUTLASTS: f64 = 16.0;

@@ -1,20 +1,23 @@
 //! How the residuals of a fit correlate with their neighbours.
 //!
-//! The noise of a hold is of one of these kinds, by sample, not by time: an instrument's filter acts that way, and for samples spaced unevenly
-//! it is an approximation.
+//! The noise of a hold is of one of these kinds. Most are by sample, not by time: an instrument's filter acts that way. Where samples are spaced
+//! unevenly, noise in time is tried too.
 //!
 //! | kind | correlation r_k at k samples |
 //! |---|---|
 //! | white | 0 |
 //! | autoregression of order p, 1 to 6 | by Yule and Walker from p partial autocorrelations |
 //! | white with AR(1) | s ρ^k |
+//! | white with a random walk | q² min(i, j) beside the white noise, i and j counted from the first sample |
+//! | in time (Ornstein and Uhlenbeck), alone and with white, for uneven times | s exp(−\|t_i − t_j\|/τ) |
 //! | power law 1/f^a, alone and with white | Σ_j s_j exp(−k/τ_j), τ_j evenly spaced in ln τ, s_j as τ_j^(a − 1) |
 //!
 //! Parameters of a kind are those of the largest *restricted* likelihood (Patterson and Thompson 1971): residuals are flatter than noise by what
 //! the fitted parameters took up, and a plain estimate of ρ from them is too small by some p (1 + ρ)/N. A kind counts by
 //! exp(−½ (deviance + 4 K)) with its K parameters, and stands for models about its best: intervals are those of the mixture of all models that
-//! count ([`Uncertainty`]). White residuals cost next to nothing: other kinds are tried where neighbours correlate, or where sums over blocks
-//! drift.
+//! count ([`Uncertainty`]). White residuals cost little: other kinds are tried where neighbours correlate, or where sums over blocks drift. Two
+//! kinds are always there, because residuals rarely rule them out: a random walk below white noise, as probable before as 0.7 times white
+//! noise alone, its steps evenly spaced in ln q; and for up to 40 samples AR(1) of any correlation (or in time), 1.5 times as probable.
 //!
 //! Where squares of residuals follow the fitted values or time, the noise has another size from sample to sample: V = σ² D R D with D the
 //! standard deviations, and R estimated from residuals over D; for R = 1 the squares of the residuals themselves stand for D² (HC3).
@@ -26,6 +29,7 @@
 //! | `rows.rs` | sums over residuals and columns; Kalman's filter |
 //! | `likelihood.rs` | the restricted likelihood, and noise with slow parts |
 //! | `lagged.rs` | that of autoregressions |
+//! | `markov.rs` | white noise beside a random walk, or beside noise in time |
 //! | `estimation.rs` | which noise left the residuals |
 //! | `spread.rs` | noise whose size changes along the hold |
 //! | `uncertainty.rs` | errors and intervals that follow |
@@ -34,6 +38,7 @@ mod autoregression;
 mod estimation;
 mod lagged;
 mod likelihood;
+mod markov;
 pub(crate) mod model;
 mod rows;
 mod spread;

@@ -50,9 +50,24 @@ pub enum NoiseModel {
         /// The longest correlation time, in samples.
         longest: f64,
     },
+    /// White noise and a random walk from the first sample on: variance 1 + q² k and covariance q² k with all that follow, k samples later.
+    WhiteAndWalk {
+        /// q, the standard deviation of a step from one sample to the next over that of the white noise; where samples are spaced unevenly, of
+        /// a step in a mean time between samples.
+        step: f64,
+    },
+    /// Noise whose correlation fades in time (Ornstein and Uhlenbeck), and white noise: s exp(−|t − t′|/τ).
+    InTime {
+        /// τ, s.
+        correlation_time_s: f64,
+        /// s, the share of the correlated part in the variance, 0 to 1.
+        share: f64,
+        /// Equivalent number of independent samples at the times of the fit: N/(1 + 2/N Σ_{i<j} s exp(−|t_i − t_j|/τ)).
+        independent: f64,
+    },
 }
 
-/// In one word: `white`, `AR(1)`, `AR(3)`, `white and AR(1)`, `1/f^1.2`, `white and 1/f^0.8`.
+/// In one word: `white`, `AR(1)`, `AR(3)`, `white and AR(1)`, `1/f^1.2`, `white and 1/f^0.8`, `white and random walk`, `OU`.
 impl fmt::Display for NoiseModel {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
@@ -64,6 +79,9 @@ impl fmt::Display for NoiseModel {
                 let beside = if *share < 1.0 { "white and " } else { "" };
                 write!(f, "{beside}1/f^{exponent:.1}")
             }
+            Self::WhiteAndWalk { .. } => f.write_str("white and random walk"),
+            Self::InTime { share, .. } if *share < 1.0 => f.write_str("white and OU"),
+            Self::InTime { .. } => f.write_str("OU"),
         }
     }
 }
@@ -72,7 +90,9 @@ impl NoiseModel {
     /// What correlates, as AR(1) of which each has a share in the variance and a ρ; none for an autoregression of higher order.
     pub(crate) fn parts(self) -> Parts {
         match self {
-            Self::White | Self::AutoregressiveOfOrder { .. } => Parts::new(),
+            Self::White | Self::AutoregressiveOfOrder { .. } | Self::WhiteAndWalk { .. } | Self::InTime { .. } => {
+                Parts::new()
+            }
             Self::Autoregressive { correlation } => Parts::from_iter([(1.0, correlation)]),
             Self::WhiteAndAutoregressive { correlation, share } => Parts::from_iter([(share, correlation)]),
             Self::PowerLaw {
@@ -87,6 +107,14 @@ impl NoiseModel {
                 sizes.zip(times()).map(|(size, time)| (unit * size, (-1.0 / time).exp())).collect()
             }
         }
+    }
+
+    /// The same where times were in this unit, in s.
+    pub(crate) fn in_unit(mut self, unit: f64) -> Self {
+        if let Self::InTime { correlation_time_s, .. } = &mut self {
+            *correlation_time_s *= unit;
+        }
+        self
     }
 
     /// The parts of the means of so many neighbours, as if each part were the same in all of them or changed from one to the next.
@@ -108,7 +136,8 @@ impl NoiseModel {
         parts
     }
 
-    /// Correlations r_k at k = 1 to `lags` samples, up to where they have faded to 1e-12.
+    /// Correlations r_k at k = 1 to `lags` samples, up to where they have faded to 1e-12; of a walk the means over so many samples, of noise in
+    /// time those of AR(1) with as many independent samples among them.
     ///
     /// ```
     /// use palpate::fit::NoiseModel;
@@ -127,6 +156,16 @@ impl NoiseModel {
                     let before = all.iter().rev().chain([&1.0]);
                     all.push(kept.at(all.len() + 1).iter().zip(before).map(|(by, before)| by * before).sum());
                 }
+            }
+            Self::WhiteAndWalk { step } => {
+                let (square, count) = (step * step, lags as f64);
+                let mean = |lag: usize| 0.5 * square * (count - lag as f64) / (1.0 + 0.5 * square * count);
+                all.extend((1..=lags).map(mean));
+            }
+            Self::InTime { independent, .. } => {
+                let together = (lags as f64 / independent).max(1.0);
+                let correlation = (together - 1.0) / (together + 1.0);
+                return Self::Autoregressive { correlation }.correlations(lags);
             }
             _ => {
                 let mut parts = self.parts();
@@ -150,6 +189,9 @@ impl NoiseModel {
     #[must_use]
     pub fn effective_samples(self, samples: usize) -> f64 {
         let count = samples as f64;
+        if let Self::InTime { independent, .. } = self {
+            return independent.clamp(count.min(2.0), count);
+        }
         let correlations = self.correlations(samples.saturating_sub(1));
         let sum: f64 = (1..).zip(&correlations).map(|(lag, r)| (1.0 - f64::from(lag) / count) * r).sum();
         (count / (1.0 + 2.0 * sum)).clamp(count.min(2.0), count)
@@ -214,8 +256,12 @@ impl Noise {
         }
     }
 
-    /// Mean of σ².
-    pub(crate) fn variance(&self) -> f64 {
-        self.likely.iter().map(|likely| likely.probability * likely.variance).sum()
+    /// Mean over the models of the variance of a sample, itself a mean over the samples.
+    pub(crate) fn variance(&self, samples: usize) -> f64 {
+        let of = |likely: &Likely| match likely.model {
+            NoiseModel::WhiteAndWalk { step } => 1.0 + 0.5 * step * step * (samples as f64 - 1.0),
+            _ => 1.0,
+        };
+        self.likely.iter().map(|likely| likely.probability * likely.variance * of(likely)).sum()
     }
 }

@@ -1,9 +1,12 @@
 //! Columns laid side by side, sample after sample, for recursions that wait for their own last step: all columns together take as long
 //! as one.
 
+use std::cell::OnceCell;
+
 use fearless_simd::{Simd, SimdBase, dispatch, f64x8};
 
 use super::autoregression::quadratic;
+use super::markov::{Markov, MarkovStep};
 use super::model::{MOST_PARTS, NoiseModel};
 use crate::vector::{accelerated, cross_products, level};
 
@@ -74,6 +77,41 @@ impl Rows {
                         }
                     }
                     new.map(|new| new * *root)
+                })
+            })
+        })
+    }
+
+    /// WᵀW with W the columns whitened by these steps, the last of them for all that follow.
+    pub(super) fn filtered(&self, steps: &[MarkovStep]) -> Vec<f64> {
+        let last = steps.len() - 1;
+        self.tiled(|left, right| {
+            dispatch!(level(), simd => {
+                let (mut expected, mut at) = ([f64x8::splat(simd, 0.0); 2], 0);
+                products(simd, left, right, #[inline(always)] |left, right| {
+                    let MarkovStep { root, gain, kept } = &steps[at.min(last)];
+                    at += 1;
+                    let new = [left - expected[0], right - expected[1]];
+                    for side in 0..2 {
+                        expected[side] = (expected[side] + new[side] * *gain) * *kept;
+                    }
+                    new.map(|new| new * *root)
+                })
+            })
+        })
+    }
+
+    /// ZᵀF with F_i = Σ_k cov(x_i, x_k) Z_k over the samples k before, and half of that with itself.
+    pub(super) fn with_process_before(&self, process: &Markov) -> Vec<f64> {
+        self.tiled(|left, right| {
+            dispatch!(level(), simd => {
+                let (mut before, mut at) = (f64x8::splat(simd, 0.0), process.kept.iter().zip(&process.variances));
+                products(simd, left, right, #[inline(always)] |left, right| {
+                    let Some((kept, variance)) = at.next() else { return [left * 0.0; 2] };
+                    let earlier = before * *kept;
+                    let own = right * *variance;
+                    before = earlier + own;
+                    [left, earlier + own * 0.5]
                 })
             })
         })
@@ -210,16 +248,22 @@ pub(crate) struct Columns<'a> {
     /// JᵀJ.
     product: Vec<f64>,
     rows: Rows,
+    /// Times of the samples in s, where they are spaced unevenly.
+    times: Option<&'a [f64]>,
+    /// JᵀRJ of a walk of steps of 1.
+    of_walk: OnceCell<Vec<f64>>,
 }
 
 impl<'a> Columns<'a> {
-    pub(crate) fn new(columns: &'a [&'a [f64]]) -> Self {
+    pub(crate) fn new(columns: &'a [&'a [f64]], times: Option<&'a [f64]>) -> Self {
         let mut product = vec![0.0; columns.len() * columns.len()];
         cross_products(columns, columns, &mut product);
         Self {
             columns,
             product,
             rows: Rows::new(columns),
+            times,
+            of_walk: OnceCell::new(),
         }
     }
 
@@ -231,6 +275,21 @@ impl<'a> Columns<'a> {
             return quadratic(self.columns, &partial[..order]);
         }
         let (mut product, size) = (self.product.clone(), self.columns.len());
+        let of = |model| Some(Markov::of(model, self.rows.samples, self.times)?.quadratic(&self.rows, size));
+        match model {
+            NoiseModel::WhiteAndWalk { step } => {
+                let walk = NoiseModel::WhiteAndWalk { step: 1.0 };
+                let of_walk = self.of_walk.get_or_init(|| of(walk).unwrap_or_default());
+                product.iter_mut().zip(of_walk).for_each(|(sum, walked)| *sum += step * step * walked);
+                return product;
+            }
+            NoiseModel::InTime { share, .. } => {
+                let process = of(model).unwrap_or_default();
+                product.iter_mut().zip(process).for_each(|(sum, faded)| *sum = (1.0 - share) * *sum + faded);
+                return product;
+            }
+            _ => {}
+        }
         for (share, correlation) in model.parts() {
             let across = self.rows.with_sums_before(correlation);
             for i in 0..size {

@@ -168,7 +168,7 @@ pub(crate) struct Assessed {
 impl Assessed {
     /// Assesses a solution. `amplitudes` multiply the derivatives in its Jacobian, `units` bring linear, then nonlinear
     /// parameters to the caller's, `unit` the signal; without `known` its parameters have no errors, and where the noise `may_vary` its
-    /// size is looked at.
+    /// size is looked at; `times` are those of the samples, and their unit in s.
     pub(crate) fn new(
         solution: &Solution,
         amplitudes: &[f64],
@@ -176,6 +176,7 @@ impl Assessed {
         unit: f64,
         (confidence, choice): (f64, NoiseChoice),
         (known, may_vary): (bool, bool),
+        times: Option<(&[f64], f64)>,
     ) -> Self {
         let (samples, size) = (solution.residuals.len(), units.len());
         let lags = Lags::of(&solution.residuals);
@@ -185,17 +186,19 @@ impl Assessed {
             (0..size).map(|i| (0..size).map(|j| entry(i, j)).collect()).collect()
         };
         let columns: Vec<&[f64]> = solution.columns.iter().chain(&solution.derivatives).map(Vec::as_slice).collect();
-        let spread = (may_vary && choice == NoiseChoice::FromResiduals)
+        let (times, time_unit) =
+            times.map_or((None, 1.0), |(times, unit)| (Some(times).filter(|times| are_uneven(times)), unit));
+        let spread = (may_vary && times.is_none() && choice == NoiseChoice::FromResiduals)
             .then(|| Spread::of(&solution.residuals, &fitted(solution), lags.correlations[0]))
             .flatten();
         let noise = match (choice, &spread) {
             (NoiseChoice::White, _) => Noise::white(&lags, freedom),
-            (NoiseChoice::FromResiduals, None) => Noise::of(&columns, &solution.residuals, &lags),
+            (NoiseChoice::FromResiduals, None) => Noise::of(&columns, &solution.residuals, &lags, times),
             (NoiseChoice::FromResiduals, Some(spread)) => {
                 let even: Vec<Vec<f64>> = columns.iter().map(|column| spread.even(column)).collect();
                 let views: Vec<&[f64]> = even.iter().map(Vec::as_slice).collect();
                 let residuals = spread.even(&solution.residuals);
-                Noise::of(&views, &residuals, &Lags::of(&residuals))
+                Noise::of(&views, &residuals, &Lags::of(&residuals), times)
             }
         };
         // A robust loss has its own s²; the noise of its residuals stands in the same ratio to it as that of plain ones.
@@ -207,17 +210,18 @@ impl Assessed {
         let weighed: Option<Vec<Vec<f64>>> =
             spread.as_ref().map(|spread| columns.iter().map(|column| spread.weighed(column)).collect());
         let views: Option<Vec<&[f64]>> = weighed.as_ref().map(|weighed| weighed.iter().map(Vec::as_slice).collect());
-        let correlated = (noise.model != NoiseModel::White).then(|| Columns::new(views.as_ref().unwrap_or(&columns)));
+        let correlates = noise.likely.iter().any(|likely| likely.model != NoiseModel::White);
+        let correlated = correlates.then(|| Columns::new(views.as_ref().unwrap_or(&columns), times));
         let sandwich = |inverse: &[f64], model: NoiseModel, variance: f64| match &correlated {
-            None if spread.is_some() => {
+            _ if model == NoiseModel::White && spread.is_some() => {
                 let filling = by_residuals(&columns, amplitudes, inverse, &solution.residuals);
                 scaled(&sandwiched(inverse, &filling, size), ratio)
             }
-            None => scaled(inverse, ratio * variance),
-            Some(columns) => scaled(
+            Some(columns) if model != NoiseModel::White => scaled(
                 &sandwiched(inverse, &with_amplitudes(columns.quadratic(model), amplitudes), size),
                 ratio * variance,
             ),
+            _ => scaled(inverse, ratio * variance),
         };
         let uncertainty = inverse.filter(|_| white.is_some()).map(|inverse| {
             let of_model = |likely: &Likely| ModelCovariance {
@@ -237,7 +241,7 @@ impl Assessed {
             Uncertainty {
                 confidence,
                 freedom,
-                deviation: noise.variance().sqrt() * unit,
+                deviation: noise.variance(samples).sqrt() * unit,
                 covariance,
                 models,
             }
@@ -245,7 +249,7 @@ impl Assessed {
         Self {
             white,
             uncertainty: uncertainty.filter(|found| finite(&found.covariance)),
-            noise: noise.model,
+            noise: noise.model.in_unit(time_unit),
             correlation: lags.correlations[0],
             uneven: spread.is_some(),
         }
@@ -270,7 +274,7 @@ impl Assessed {
             inverse_normal: Cholesky::new(&normal, size).map(|factor| factor.inverse()),
             termination: Termination::Converged,
         };
-        Self::new(&solution, &[], &vec![1.0; size], 1.0, (confidence, NoiseChoice::FromResiduals), (true, false))
+        Self::new(&solution, &[], &vec![1.0; size], 1.0, (confidence, NoiseChoice::FromResiduals), (true, false), None)
     }
 
     /// From a covariance for white noise of this `deviation`, intervals widened by a factor for samples that count as fewer.
@@ -310,6 +314,19 @@ impl Assessed {
             _ => Estimate::fixed(value),
         }
     }
+}
+
+/// Whether times between samples differ by more than jitter and some gaps would have it.
+fn are_uneven(times: &[f64]) -> bool {
+    let mut gaps: Vec<f64> = times.windows(2).map(|pair| pair[1] - pair[0]).collect();
+    let (least, most) = gaps.iter().fold((f64::INFINITY, 0.0), |(low, high), gap| (gap.min(low), gap.max(high)));
+    if gaps.len() < 4 || most <= 2.0 * least {
+        return false;
+    }
+    let (tenth, last) = (gaps.len() / 10, gaps.len() - 1);
+    let low = *gaps.select_nth_unstable_by(tenth, f64::total_cmp).1;
+    let high = *gaps.select_nth_unstable_by(last - tenth, f64::total_cmp).1;
+    low > 0.0 && high > 2.0 * low
 }
 
 /// The curve of a solution: its columns times their amplitudes.

@@ -1,0 +1,363 @@
+//! White noise beside one Markov process: a random walk, or noise whose correlation fades in time.
+
+use super::likelihood::{Kind, Likelihood};
+use super::model::NoiseModel;
+use super::rows::Rows;
+use crate::optimise::minimise;
+use crate::vector::cross_products;
+
+/// The covariance of a noise over σ²: y_i = x_i + v_i, where v is white, and x_i is what is left of x_{i−1} and something new.
+pub(super) struct Markov {
+    /// What is left of the process from the sample before.
+    pub(super) kept: Vec<f64>,
+    /// Variances of the process.
+    pub(super) variances: Vec<f64>,
+    /// Variance of white noise.
+    pub(super) white: f64,
+}
+
+/// What a filter does with one sample: what came beyond expectation counts times `root`, and changes what is expected by `gain` of it; of all
+/// that `kept` is left for the next.
+pub(super) struct MarkovStep {
+    pub(super) root: f64,
+    pub(super) gain: f64,
+    pub(super) kept: f64,
+}
+
+impl Markov {
+    /// That of a model, if it is one; noise in time needs the times of samples.
+    pub(super) fn of(model: NoiseModel, samples: usize, times: Option<&[f64]>) -> Option<Self> {
+        match (model, times) {
+            (NoiseModel::WhiteAndWalk { step }, times) => Some(Self::walk(step, samples, times)),
+            (
+                NoiseModel::InTime {
+                    correlation_time_s,
+                    share,
+                    ..
+                },
+                Some(times),
+            ) => {
+                let kept = |pair: &[f64]| ((pair[0] - pair[1]) / correlation_time_s).exp();
+                Some(Self {
+                    kept: std::iter::once(0.0).chain(times.windows(2).map(kept)).collect(),
+                    variances: vec![share; times.len()],
+                    white: 1.0 - share,
+                })
+            }
+            _ => None,
+        }
+    }
+
+    /// A walk from the first sample on, which goes by `step` in a mean time between samples.
+    fn walk(step: f64, samples: usize, times: Option<&[f64]>) -> Self {
+        let since = |i: usize| match times {
+            Some(times) => (times[i] - times[0]) / (times[samples - 1] - times[0]) * (samples - 1) as f64,
+            None => i as f64,
+        };
+        Self {
+            kept: vec![1.0; samples],
+            variances: (0..samples).map(|i| step * step * since(i)).collect(),
+            white: 1.0,
+        }
+    }
+
+    /// The same of √b times the means of b neighbours, among which a walk hardly moves.
+    fn walk_of_means(step: f64, means: usize, together: usize) -> Self {
+        let (count, square) = (together as f64, step * step);
+        Self {
+            kept: vec![1.0; means],
+            variances: (0..means).map(|k| square * count * count * (k as f64 + 0.5)).collect(),
+            white: 1.0,
+        }
+    }
+
+    /// Steps of Kalman's filter, the last of them for all that follow, and ln |R|.
+    fn steps(&self) -> (Vec<MarkovStep>, f64) {
+        let mut steps: Vec<MarkovStep> = Vec::with_capacity(self.kept.len());
+        let (mut log_determinant, mut determinant, mut ahead) = (0.0, 1.0, self.variances[0]);
+        let count = self.kept.len();
+        // What a walk adds from one sample to the next; it settles where that is always the same.
+        let added = |index: usize| self.variances[index + 1] - self.kept[index + 1].powi(2) * self.variances[index];
+        let even =
+            count > 2 && self.kept[1] == self.kept[count - 1] && (added(0) / added(count - 2) - 1.0).abs() < 1e-9;
+        let mut before = 0.0;
+        for index in 0..count {
+            let innovation = (ahead + self.white).max(f64::MIN_POSITIVE);
+            if even && (innovation - before).abs() <= 1e-14 * innovation {
+                log_determinant += (count - index) as f64 * innovation.ln();
+                break;
+            }
+            before = innovation;
+            let gain = ahead / innovation;
+            let (kept, new) =
+                if index + 1 < count { (self.kept[index + 1], added(index).max(0.0)) } else { (0.0, 0.0) };
+            steps.push(MarkovStep {
+                root: 1.0 / innovation.sqrt(),
+                gain,
+                kept,
+            });
+            // One logarithm for many factors.
+            determinant *= innovation;
+            if !(1e-100..1e100).contains(&determinant) {
+                log_determinant += determinant.ln();
+                determinant = 1.0;
+            }
+            ahead = kept * kept * ahead * (1.0 - gain) + new;
+        }
+        (steps, log_determinant + determinant.ln())
+    }
+
+    /// JᵀRJ without what is white.
+    pub(super) fn quadratic(&self, rows: &Rows, size: usize) -> Vec<f64> {
+        let across = rows.with_process_before(self);
+        (0..size * size).map(|at| across[at] + across[at % size * size + at / size]).collect()
+    }
+}
+
+/// ln of the shortest and the longest correlation time that samples at these times show.
+fn correlation_times(times: &[f64]) -> (f64, f64) {
+    let shortest = times.windows(2).map(|pair| pair[1] - pair[0]).fold(f64::INFINITY, f64::min);
+    ((0.3 * shortest).ln(), (4.0 * (times[times.len() - 1] - times[0])).ln())
+}
+
+/// Noise of this correlation time at these times.
+fn in_time(correlation_time_s: f64, share: f64, times: &[f64]) -> NoiseModel {
+    let (mut sum, mut before) = (0.0, 0.0);
+    for pair in times.windows(2) {
+        before = ((pair[0] - pair[1]) / correlation_time_s).exp() * (before + 1.0);
+        sum += before;
+    }
+    let count = times.len() as f64;
+    NoiseModel::InTime {
+        correlation_time_s,
+        share,
+        independent: count / (1.0 + 2.0 / count * share * sum),
+    }
+}
+
+/// Residuals beside the columns of a fit, for noise that is white beside a Markov process.
+pub(super) struct Beside<'a> {
+    times: Option<&'a [f64]>,
+    samples: usize,
+    /// Neighbours that are taken together.
+    together: usize,
+    /// Z = (J, r), or √b times the means of b neighbours.
+    rows: Rows,
+    /// ZᵀZ of what means leave out.
+    within: Vec<f64>,
+}
+
+impl<'a> Beside<'a> {
+    /// Means of as many neighbours are taken as leave at most `most` of them.
+    pub(super) fn new(jacobian: &[&[f64]], residuals: &[f64], times: Option<&'a [f64]>, most: usize) -> Self {
+        let columns: Vec<&[f64]> = jacobian.iter().copied().chain([residuals]).collect();
+        let samples = residuals.len();
+        let together = samples.div_ceil(most);
+        let size = columns.len();
+        if together == 1 {
+            return Self {
+                times,
+                samples,
+                together,
+                rows: Rows::new(&columns),
+                within: vec![0.0; size * size],
+            };
+        }
+        let root = (together as f64).sqrt().recip();
+        let means = |column: &&[f64]| -> Vec<f64> {
+            column.chunks_exact(together).map(|block| root * block.iter().sum::<f64>()).collect()
+        };
+        let means: Vec<Vec<f64>> = columns.iter().map(means).collect();
+        let views: Vec<&[f64]> = means.iter().map(Vec::as_slice).collect();
+        let (mut within, mut between) = (vec![0.0; size * size], vec![0.0; size * size]);
+        cross_products(&columns, &columns, &mut within);
+        cross_products(&views, &views, &mut between);
+        within.iter_mut().zip(&between).for_each(|(all, between)| *all -= between);
+        Self {
+            times,
+            samples,
+            together,
+            rows: Rows::new(&views),
+            within,
+        }
+    }
+
+    /// The restricted likelihood of a model; means are for a walk alone.
+    pub(super) fn likelihood(&self, model: NoiseModel) -> Option<Likelihood> {
+        let process = match model {
+            NoiseModel::WhiteAndWalk { step } if self.together > 1 => {
+                Markov::walk_of_means(step, self.rows.samples, self.together)
+            }
+            _ => Markov::of(model, self.samples, self.times)?,
+        };
+        let (steps, log_determinant) = process.steps();
+        let mut product = self.rows.filtered(&steps);
+        product.iter_mut().zip(&self.within).for_each(|(sum, within)| *sum += within);
+        Likelihood::of(&product, log_determinant, self.samples)
+    }
+
+    /// Noise whose correlation fades in time, alone or beside white noise, about the best.
+    pub(super) fn in_time(&self, alone: bool, deviance: f64) -> Option<Kind> {
+        let times = self.times.filter(|_| self.together == 1)?;
+        let (low, high) = correlation_times(times);
+        let model = |x: &[f64]| {
+            let share = x.get(1).map_or(1.0, |x| 1.0 / (1.0 + (-x).exp()));
+            let inside = (low..=high).contains(&x[0]) && x.get(1).is_none_or(|x| x.abs() <= 8.0);
+            inside.then(|| in_time(x[0].exp(), share, times))
+        };
+        let evaluate = |x: &[f64]| self.likelihood(model(x)?);
+        let count = ((high - low) / 1.2).ceil();
+        let taus = (0..=count as i32).map(|i| low + (high - low) * f64::from(i) / count);
+        let shares: &[f64] = if alone { &[f64::INFINITY] } else { &[-1.0, 1.5] };
+        let places = taus.flat_map(|tau| shares.iter().map(move |share| [tau, *share]));
+        let size = if alone { 1 } else { 2 };
+        let looked = places.filter_map(|place| Some((evaluate(&place[..size])?.deviance, place)));
+        let (best, start) = looked.min_by(|a, b| a.0.total_cmp(&b.0))?;
+        if best > deviance {
+            return None;
+        }
+        let found = minimise(&evaluate, &start[..size])?;
+        Kind::about(&found, &evaluate, model)
+    }
+
+    /// White noise alone.
+    pub(super) fn white(&self) -> Option<Likelihood> {
+        self.likelihood(NoiseModel::WhiteAndWalk { step: 0.0 })
+    }
+
+    /// Noise whose correlation fades in time, of correlation times evenly spaced in ln; none where samples are spaced evenly.
+    pub(super) fn fading(&self) -> Vec<(Likelihood, NoiseModel)> {
+        let Some(times) = self.times else { return Vec::new() };
+        let (low, high) = correlation_times(times);
+        let model = |i: i32| in_time((low + (high - low) * f64::from(i) / 12.0).exp(), 1.0, times);
+        (0..=12).filter_map(|i| Some((self.likelihood(model(i))?, model(i)))).collect()
+    }
+
+    /// Walks of sizes evenly spaced in ln: from what no series of this length could show to steps of three white deviations; none where a few
+    /// of them show that none comes near this deviance.
+    pub(super) fn walks(&self, deviance: f64) -> Vec<(Likelihood, NoiseModel)> {
+        /// Largest step.
+        const LARGEST: f64 = 3.0;
+        /// From one ln of a step to the next.
+        const PACE: f64 = 0.9;
+        /// One of so many is looked at first, and how far from the best of them it may be.
+        const FIRST: usize = 3;
+        const FARTHEST: f64 = 60.0;
+        let smallest = 2.0 / self.samples as f64;
+        let count = ((LARGEST / smallest).ln() / PACE).ceil() as usize + 1;
+        let model = |i: usize| NoiseModel::WhiteAndWalk {
+            step: smallest * (PACE * i as f64).exp(),
+        };
+        let found = |i: usize| Some((self.likelihood(model(i))?, model(i)));
+        let mut all: Vec<_> = (0..count).step_by(FIRST).filter_map(found).collect();
+        if all.iter().all(|(found, _)| found.deviance > deviance + FARTHEST) {
+            return Vec::new();
+        }
+        all.extend((0..count).filter(|i| i % FIRST != 0).filter_map(found));
+        all
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::fit::noise::rows::Columns;
+    use crate::optimise::Cholesky;
+    use crate::statistics::dot;
+    use crate::test_problems::Rng;
+
+    /// R of noise, row by row.
+    fn dense(model: NoiseModel, times: &[f64]) -> Vec<f64> {
+        let count = times.len();
+        let entry = |i: usize, j: usize| {
+            let (first, own) = (i.min(j), f64::from(u8::from(i == j)));
+            match model {
+                NoiseModel::WhiteAndWalk { step } => {
+                    let since = (times[first] - times[0]) / (times[count - 1] - times[0]) * (count - 1) as f64;
+                    own + step * step * since
+                }
+                NoiseModel::InTime {
+                    correlation_time_s,
+                    share,
+                    ..
+                } => (1.0 - share) * own + share * (-(times[i] - times[j]).abs() / correlation_time_s).exp(),
+                _ => own,
+            }
+        };
+        (0..count * count).map(|at| entry(at / count, at % count)).collect()
+    }
+
+    /// Residuals of a straight line, with its columns.
+    fn residuals(noise: &[f64]) -> ([Vec<f64>; 2], Vec<f64>) {
+        let count = noise.len() as f64;
+        let slope: Vec<f64> = (0..noise.len()).map(|i| (i as f64 + 0.5) / count - 0.5).collect();
+        let (mean, rise) = (noise.iter().sum::<f64>() / count, dot(&slope, noise) / dot(&slope, &slope));
+        let left = noise.iter().zip(&slope).map(|(value, x)| value - mean - rise * x).collect();
+        ([vec![1.0; noise.len()], slope], left)
+    }
+
+    #[test]
+    fn filters_agree_with_whole_matrices() {
+        let mut random = Rng::new(4);
+        let times: Vec<f64> = (0..40).map(|i| f64::from(i * i) * 0.01 + 0.2 * f64::from(i)).collect();
+        let noise: Vec<f64> = times.iter().map(|_| random.normal()).collect();
+        let (columns, left) = residuals(&noise);
+        let jacobian = [columns[0].as_slice(), columns[1].as_slice()];
+        let beside = Beside::new(&jacobian, &left, Some(&times), times.len());
+        let all = Columns::new(&jacobian, Some(&times));
+        let models = [NoiseModel::WhiteAndWalk { step: 0.3 }, in_time(0.7, 1.0, &times), in_time(2.0, 0.4, &times)];
+        for model in models {
+            let matrix = dense(model, &times);
+            let factor = Cholesky::new(&matrix, 40).unwrap();
+            let whole = [jacobian[0], jacobian[1], &left];
+            let solved = whole.map(|column| {
+                let mut solved = column.to_vec();
+                factor.solve(&mut solved);
+                solved
+            });
+            let product: Vec<f64> = (0..9).map(|at| dot(whole[at / 3], &solved[at % 3])).collect();
+            let expected = Likelihood::of(&product, factor.log_determinant(), 40).unwrap();
+            let found = beside.likelihood(model).unwrap();
+            assert!((found.deviance - expected.deviance).abs() < 1e-9, "{model:?}");
+            assert!((found.variance / expected.variance - 1.0).abs() < 1e-11, "{model:?}");
+            let filling = all.quadratic(model);
+            for (at, found) in filling.iter().enumerate() {
+                let row = |a: usize| dot(&matrix[a * 40..(a + 1) * 40], jacobian[at % 2]);
+                let sum: f64 = (0..40).map(|a| jacobian[at / 2][a] * row(a)).sum();
+                assert!((found - sum).abs() < 1e-10 * sum.abs().max(1.0), "{model:?}: {found} {sum}");
+            }
+        }
+        // Σ R of a constant column over N: what `independent` says.
+        let NoiseModel::InTime { independent, .. } = models[2] else {
+            panic!()
+        };
+        let sum: f64 = dense(models[2], &times).iter().sum();
+        assert!((independent * sum / 1600.0 - 1.0).abs() < 1e-12);
+    }
+
+    #[test]
+    fn means_of_neighbours_show_a_walk_as_all_samples_do() {
+        let mut random = Rng::new(9);
+        for step in [0.0, 0.01, 0.05] {
+            let mut walk = 0.0;
+            let mut next = || {
+                walk += step * random.normal();
+                walk + random.normal()
+            };
+            let noise: Vec<f64> = (0..1000).map(|_| next()).collect();
+            let (columns, left) = residuals(&noise);
+            let jacobian = [columns[0].as_slice(), columns[1].as_slice()];
+            let whole = Beside::new(&jacobian, &left, None, 1000);
+            let means = Beside::new(&jacobian, &left, None, 125);
+            assert_eq!(means.together, 8);
+            let base = |beside: &Beside<'_>| beside.white().unwrap().deviance;
+            for q in [0.003, 0.01, 0.03, 0.1] {
+                let fall = |beside: &Beside<'_>| {
+                    beside.likelihood(NoiseModel::WhiteAndWalk { step: q }).unwrap().deviance - base(beside)
+                };
+                let (exact, found) = (fall(&whole), fall(&means));
+                assert!((found - exact).abs() < 0.5 + 0.12 * exact.abs(), "{step} {q}: {found} {exact}");
+            }
+        }
+    }
+}
