@@ -262,8 +262,8 @@ mod tests {
     use super::*;
     use crate::fit::NoiseModel;
     use crate::fit::noise::autoregression::Autoregression;
+    use crate::fit::noise::columns::Columns;
     use crate::fit::noise::likelihood::Likelihood;
-    use crate::fit::noise::rows::Columns;
     use crate::optimise::Cholesky;
     use crate::vector::cross_products;
 

@@ -2,26 +2,18 @@
 
 use super::likelihood::{Kind, Likelihood};
 use super::model::NoiseModel;
-use super::rows::Rows;
+use super::rows::{MarkovStep, Rows};
 use crate::optimise::minimise;
 use crate::vector::cross_products;
 
 /// The covariance of a noise over σ²: y_i = x_i + v_i, where v is white, and x_i is what is left of x_{i−1} and something new.
 pub(super) struct Markov {
     /// What is left of the process from the sample before.
-    pub(super) kept: Vec<f64>,
+    kept: Vec<f64>,
     /// Variances of the process.
-    pub(super) variances: Vec<f64>,
+    variances: Vec<f64>,
     /// Variance of white noise.
-    pub(super) white: f64,
-}
-
-/// What a filter does with one sample: what came beyond expectation counts times `root`, and changes what is expected by `gain` of it; of all
-/// that `kept` is left for the next.
-pub(super) struct MarkovStep {
-    pub(super) root: f64,
-    pub(super) gain: f64,
-    pub(super) kept: f64,
+    white: f64,
 }
 
 impl Markov {
@@ -109,7 +101,7 @@ impl Markov {
 
     /// JᵀRJ without what is white.
     pub(super) fn quadratic(&self, rows: &Rows, size: usize) -> Vec<f64> {
-        let across = rows.with_process_before(self);
+        let across = rows.with_process_before(&self.kept, &self.variances);
         (0..size * size).map(|at| across[at] + across[at % size * size + at / size]).collect()
     }
 }
@@ -261,7 +253,6 @@ impl<'a> Beside<'a> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::fit::noise::rows::Columns;
     use crate::optimise::Cholesky;
     use crate::statistics::dot;
     use crate::test_problems::Rng;
@@ -304,7 +295,7 @@ mod tests {
         let (columns, left) = residuals(&noise);
         let jacobian = [columns[0].as_slice(), columns[1].as_slice()];
         let beside = Beside::new(&jacobian, &left, Some(&times), times.len());
-        let all = Columns::new(&jacobian, Some(&times));
+        let rows = Rows::new(&jacobian);
         let models = [NoiseModel::WhiteAndWalk { step: 0.3 }, in_time(0.7, 1.0, &times), in_time(2.0, 0.4, &times)];
         for model in models {
             let matrix = dense(model, &times);
@@ -320,8 +311,9 @@ mod tests {
             let found = beside.likelihood(model).unwrap();
             assert!((found.deviance - expected.deviance).abs() < 1e-9, "{model:?}");
             assert!((found.variance / expected.variance - 1.0).abs() < 1e-11, "{model:?}");
-            let filling = all.quadratic(model);
-            for (at, found) in filling.iter().enumerate() {
+            let process = Markov::of(model, 40, Some(&times)).unwrap();
+            for (at, found) in process.quadratic(&rows, 2).iter().enumerate() {
+                let found = found + process.white * dot(jacobian[at / 2], jacobian[at % 2]);
                 let row = |a: usize| dot(&matrix[a * 40..(a + 1) * 40], jacobian[at % 2]);
                 let sum: f64 = (0..40).map(|a| jacobian[at / 2][a] * row(a)).sum();
                 assert!((found - sum).abs() < 1e-10 * sum.abs().max(1.0), "{model:?}: {found} {sum}");

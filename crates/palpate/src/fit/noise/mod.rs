@@ -27,6 +27,7 @@
 //! | `model.rs` | how noise correlates; a noise that was found, lags of residuals |
 //! | `autoregression.rs` | autoregressions: coefficients, predictions, products |
 //! | `rows.rs` | sums over residuals and columns; Kalman's filter |
+//! | `columns.rs` | products of the columns of a fit with the correlations between them |
 //! | `likelihood.rs` | the restricted likelihood, and noise with slow parts |
 //! | `lagged.rs` | that of autoregressions |
 //! | `markov.rs` | white noise beside a random walk, or beside noise in time |
@@ -35,6 +36,7 @@
 //! | `uncertainty.rs` | errors and intervals that follow |
 
 mod autoregression;
+mod columns;
 mod estimation;
 mod lagged;
 mod likelihood;

@@ -1,14 +1,10 @@
 //! Columns laid side by side, sample after sample, for recursions that wait for their own last step: all columns together take as long
 //! as one.
 
-use std::cell::OnceCell;
-
 use fearless_simd::{Simd, SimdBase, dispatch, f64x8};
 
-use super::autoregression::quadratic;
-use super::markov::{Markov, MarkovStep};
-use super::model::{MOST_PARTS, NoiseModel};
-use crate::vector::{accelerated, cross_products, level};
+use super::model::MOST_PARTS;
+use crate::vector::{accelerated, level};
 
 /// Columns in one vector.
 const LANES: usize = 8;
@@ -102,10 +98,10 @@ impl Rows {
     }
 
     /// ZᵀF with F_i = Σ_k cov(x_i, x_k) Z_k over the samples k before, and half of that with itself.
-    pub(super) fn with_process_before(&self, process: &Markov) -> Vec<f64> {
+    pub(super) fn with_process_before(&self, left_over: &[f64], variances: &[f64]) -> Vec<f64> {
         self.tiled(|left, right| {
             dispatch!(level(), simd => {
-                let (mut before, mut at) = (f64x8::splat(simd, 0.0), process.kept.iter().zip(&process.variances));
+                let (mut before, mut at) = (f64x8::splat(simd, 0.0), left_over.iter().zip(variances));
                 products(simd, left, right, #[inline(always)] |left, right| {
                     let Some((kept, variance)) = at.next() else { return [left * 0.0; 2] };
                     let earlier = before * *kept;
@@ -242,64 +238,12 @@ impl Filter {
     }
 }
 
-/// The columns of a Jacobian J, ready for products with correlations between them.
-pub(crate) struct Columns<'a> {
-    columns: &'a [&'a [f64]],
-    /// JᵀJ.
-    product: Vec<f64>,
-    rows: Rows,
-    /// Times of the samples in s, where they are spaced unevenly.
-    times: Option<&'a [f64]>,
-    /// JᵀRJ of a walk of steps of 1.
-    of_walk: OnceCell<Vec<f64>>,
-}
-
-impl<'a> Columns<'a> {
-    pub(crate) fn new(columns: &'a [&'a [f64]], times: Option<&'a [f64]>) -> Self {
-        let mut product = vec![0.0; columns.len() * columns.len()];
-        cross_products(columns, columns, &mut product);
-        Self {
-            columns,
-            product,
-            rows: Rows::new(columns),
-            times,
-            of_walk: OnceCell::new(),
-        }
-    }
-
-    /// JᵀRJ, row-major, with R the correlations of this noise.
-    ///
-    /// With F_i = ρ (F_{i−1} + J_{i−1}), the sums of all that came before, it is JᵀJ + Σ s (JᵀF + FᵀJ) over the parts of the noise.
-    pub(crate) fn quadratic(&self, model: NoiseModel) -> Vec<f64> {
-        if let NoiseModel::AutoregressiveOfOrder { order, partial } = model {
-            return quadratic(self.columns, &partial[..order]);
-        }
-        let (mut product, size) = (self.product.clone(), self.columns.len());
-        let of = |model| Some(Markov::of(model, self.rows.samples, self.times)?.quadratic(&self.rows, size));
-        match model {
-            NoiseModel::WhiteAndWalk { step } => {
-                let walk = NoiseModel::WhiteAndWalk { step: 1.0 };
-                let of_walk = self.of_walk.get_or_init(|| of(walk).unwrap_or_default());
-                product.iter_mut().zip(of_walk).for_each(|(sum, walked)| *sum += step * step * walked);
-                return product;
-            }
-            NoiseModel::InTime { share, .. } => {
-                let process = of(model).unwrap_or_default();
-                product.iter_mut().zip(process).for_each(|(sum, faded)| *sum = (1.0 - share) * *sum + faded);
-                return product;
-            }
-            _ => {}
-        }
-        for (share, correlation) in model.parts() {
-            let across = self.rows.with_sums_before(correlation);
-            for i in 0..size {
-                for j in 0..size {
-                    product[i * size + j] += share * (across[i * size + j] + across[j * size + i]);
-                }
-            }
-        }
-        product
-    }
+/// What a filter does with one sample: what came beyond expectation counts times `root`, and changes what is expected by `gain` of it; of all
+/// that `kept` is left for the next.
+pub(super) struct MarkovStep {
+    pub(super) root: f64,
+    pub(super) gain: f64,
+    pub(super) kept: f64,
 }
 
 #[cfg(test)]

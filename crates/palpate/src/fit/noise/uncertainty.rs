@@ -3,8 +3,8 @@
 use serde::{Deserialize, Serialize};
 use smallvec::SmallVec;
 
+use super::columns::Columns;
 use super::model::{Lags, Likely, Noise};
-use super::rows::Columns;
 use super::spread::{Spread, by_residuals};
 use crate::fit::{Estimate, NoiseChoice, NoiseModel};
 use crate::optimise::{Cholesky, Few, Solution, Termination};
