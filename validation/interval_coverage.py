@@ -21,7 +21,8 @@ import matplotlib.pyplot as plt  # noqa: E402
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 RESULTS = ROOT / "validation" / "results"
-WHITE, CORRELATED = (0.93, 0.97), (0.90, 0.97)
+# A drift that the residuals cannot rule out widens intervals, and standard errors more than them.
+WHITE, CORRELATED, BY_ERROR = (0.93, 0.98), (0.90, 0.97), (0.93, 0.99)
 
 
 def study(arguments):
@@ -86,7 +87,7 @@ def main():
     for row in pick(rows, method="Curvature"):
         low, high = WHITE if row["noise"] == 0 else CORRELATED
         assert row["open"] == 0 and low <= share(row) <= high, row
-        assert WHITE[0] <= share(row, "by_error") <= WHITE[1], row
+        assert BY_ERROR[0] <= share(row, "by_error") <= BY_ERROR[1], row
     few = pick(rows, method="Profile")[0]["holds"]
     many = pick(rows, method="Curvature")[0]["holds"]
     RESULTS.mkdir(exist_ok=True)

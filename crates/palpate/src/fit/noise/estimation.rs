@@ -11,7 +11,7 @@ use crate::statistics::dot;
 const EVIDENCE: f64 = 4.0;
 
 /// Probability of a walk beside white noise over that of white noise alone, before the residuals say anything; and that of AR(1) for few samples.
-const WALKS: f64 = 0.7;
+const WALKS: f64 = 0.3;
 const CORRELATES: f64 = 1.5;
 
 /// Up to so many samples any correlation may be, whatever the residuals show.

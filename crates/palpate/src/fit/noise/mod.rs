@@ -16,7 +16,7 @@
 //! the fitted parameters took up, and a plain estimate of ρ from them is too small by some p (1 + ρ)/N. A kind counts by
 //! exp(−½ (deviance + 4 K)) with its K parameters, and stands for models about its best: intervals are those of the mixture of all models that
 //! count ([`Uncertainty`]). White residuals cost little: other kinds are tried where neighbours correlate, or where sums over blocks drift. Two
-//! kinds are always there, because residuals rarely rule them out: a random walk below white noise, as probable before as 0.7 times white
+//! kinds are always there, because residuals rarely rule them out: a random walk below white noise, as probable before as 0.3 times white
 //! noise alone, its steps evenly spaced in ln q; and for up to 40 samples AR(1) of any correlation (or in time), 1.5 times as probable.
 //!
 //! Where squares of residuals follow the fitted values or time, the noise has another size from sample to sample: V = σ² D R D with D the
