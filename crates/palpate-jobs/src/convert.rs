@@ -93,9 +93,9 @@ impl Converted {
                 cancelled: false,
             };
             let written = match out.extension().and_then(|ending| ending.to_str()) {
-                Some("parquet") => write_parquet(&mut *heard.into, file, origin, &mut || {
-                    heard.watch.report(Progress::open("writing", 0)).inspect_err(|_| heard.cancelled = true)
-                }),
+                Some("parquet") => {
+                    write_parquet(&mut *heard.into, file, origin, &mut || look(heard.watch, &mut heard.cancelled))
+                }
                 Some("json") => {
                     write_json(BufWriter::with_capacity(AT_ONCE, &mut heard), file, origin).map_err(TableError::from)
                 }
@@ -121,12 +121,13 @@ struct HeardWriter<'a, W> {
     cancelled: bool,
 }
 
+fn look(watch: &mut dyn Watch, cancelled: &mut bool) -> Result<(), Cancelled> {
+    watch.report(Progress::open("writing", 0)).inspect_err(|_| *cancelled = true)
+}
+
 impl<W: Write> Write for HeardWriter<'_, W> {
     fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
-        self.watch.report(Progress::open("writing", 0)).map_err(|cancelled| {
-            self.cancelled = true;
-            io::Error::other(cancelled)
-        })?;
+        look(self.watch, &mut self.cancelled).map_err(io::Error::other)?;
         self.into.write(bytes)
     }
 

@@ -3,7 +3,7 @@
 use std::cell::OnceCell;
 
 use super::autoregression::quadratic;
-use super::markov::Markov;
+use super::markov::{Markov, steps_since};
 use super::model::NoiseModel;
 use super::rows::Rows;
 use crate::vector::cross_products;
@@ -11,12 +11,11 @@ use crate::vector::cross_products;
 /// The columns of a Jacobian J, ready for products with correlations between them.
 pub(crate) struct Columns<'a> {
     columns: &'a [&'a [f64]],
+    /// Times of the samples, where they are spaced unevenly, in the unit of the models.
+    times: Option<&'a [f64]>,
     /// JᵀJ.
     product: Vec<f64>,
-    rows: Rows,
-    /// Times of the samples in s, where they are spaced unevenly.
-    times: Option<&'a [f64]>,
-    /// JᵀRJ of a walk of steps of 1.
+    rows: OnceCell<Rows>,
     of_walk: OnceCell<Vec<f64>>,
 }
 
@@ -26,9 +25,9 @@ impl<'a> Columns<'a> {
         cross_products(columns, columns, &mut product);
         Self {
             columns,
-            product,
-            rows: Rows::new(columns),
             times,
+            product,
+            rows: OnceCell::new(),
             of_walk: OnceCell::new(),
         }
     }
@@ -37,33 +36,92 @@ impl<'a> Columns<'a> {
     ///
     /// With F_i = ρ (F_{i−1} + J_{i−1}), the sums of all that came before, it is JᵀJ + Σ s (JᵀF + FᵀJ) over the parts of the noise.
     pub(crate) fn quadratic(&self, model: NoiseModel) -> Vec<f64> {
-        if let NoiseModel::AutoregressiveOfOrder { order, partial } = model {
-            return quadratic(self.columns, &partial[..order]);
-        }
-        let (mut product, size) = (self.product.clone(), self.columns.len());
-        let of = |model| Some(Markov::of(model, self.rows.samples, self.times)?.quadratic(&self.rows, size));
         match model {
+            NoiseModel::AutoregressiveOfOrder { order, partial } => quadratic(self.columns, &partial[..order]),
             NoiseModel::WhiteAndWalk { step } => {
-                let walk = NoiseModel::WhiteAndWalk { step: 1.0 };
-                let of_walk = self.of_walk.get_or_init(|| of(walk).unwrap_or_default());
-                product.iter_mut().zip(of_walk).for_each(|(sum, walked)| *sum += step * step * walked);
-                return product;
+                let of_walk = self.of_walk.get_or_init(|| self.of_walk());
+                self.product.iter().zip(of_walk).map(|(white, walk)| white + step * step * walk).collect()
             }
-            NoiseModel::InTime { share, .. } => {
-                let process = of(model).unwrap_or_default();
-                product.iter_mut().zip(process).for_each(|(sum, faded)| *sum = (1.0 - share) * *sum + faded);
-                return product;
+            NoiseModel::InTime {
+                correlation_time_s,
+                share,
+                ..
+            } => {
+                let times = self.times.unwrap_or_default();
+                let mut product: Vec<f64> = self.product.iter().map(|entry| (1.0 - share) * entry).collect();
+                self.add_twice(
+                    &mut product,
+                    1.0,
+                    &Markov::in_time(correlation_time_s, share, times).across(self.rows()),
+                );
+                product
             }
-            _ => {}
-        }
-        for (share, correlation) in model.parts() {
-            let across = self.rows.with_sums_before(correlation);
-            for i in 0..size {
-                for j in 0..size {
-                    product[i * size + j] += share * (across[i * size + j] + across[j * size + i]);
+            _ => {
+                let mut product = self.product.clone();
+                for (share, correlation) in model.parts() {
+                    self.add_twice(&mut product, share, &self.rows().with_sums_before(correlation));
                 }
+                product
+            }
+        }
+    }
+
+    fn rows(&self) -> &Rows {
+        self.rows.get_or_init(|| Rows::new(self.columns))
+    }
+
+    /// Adds s (A + Aᵀ).
+    fn add_twice(&self, product: &mut [f64], share: f64, across: &[f64]) {
+        let size = self.columns.len();
+        for (at, entry) in product.iter_mut().enumerate() {
+            *entry += share * (across[at] + across[at % size * size + at / size]);
+        }
+    }
+
+    /// JᵀMJ of a walk of steps of 1: Σ_k g_k S_k S_kᵀ with S_k the sums of the columns from sample k on, and g_k the time since the sample before
+    /// it in mean times between samples.
+    fn of_walk(&self) -> Vec<f64> {
+        let size = self.columns.len();
+        let samples = self.columns.first().map_or(0, |column| column.len());
+        let (mut sums, mut product) = (vec![0.0; size], vec![0.0; size * size]);
+        for k in (1..samples).rev() {
+            sums.iter_mut().zip(self.columns).for_each(|(sum, column)| *sum += column[k]);
+            let gap = steps_since(k, self.times) - steps_since(k - 1, self.times);
+            for (row, one) in product.chunks_exact_mut(size).zip(&sums) {
+                row.iter_mut().zip(&sums).for_each(|(entry, other)| *entry += gap * one * other);
             }
         }
         product
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::fit::noise::markov::in_time;
+    use crate::fit::noise::markov::tests::dense;
+    use crate::statistics::dot;
+
+    #[test]
+    fn products_with_processes_are_those_of_whole_matrices() {
+        let times: Vec<f64> = (0..40).map(|i| f64::from(i * i) * 0.01 + 0.2 * f64::from(i)).collect();
+        let even: Vec<f64> = (0..40).map(f64::from).collect();
+        let columns = [vec![1.0; 40], (0..40).map(|i| (0.3 * f64::from(i)).sin()).collect()];
+        let views = [columns[0].as_slice(), columns[1].as_slice()];
+        let walk = NoiseModel::WhiteAndWalk { step: 0.3 };
+        let cases = [
+            (walk, &even, None),
+            (walk, &times, Some(times.as_slice())),
+            (in_time(0.7, 1.0, &times), &times, Some(times.as_slice())),
+            (in_time(2.0, 0.4, &times), &times, Some(times.as_slice())),
+        ];
+        for (model, times, uneven) in cases {
+            let matrix = dense(model, times);
+            for (at, found) in Columns::new(&views, uneven).quadratic(model).iter().enumerate() {
+                let row = |a: usize| dot(&matrix[a * 40..(a + 1) * 40], views[at % 2]);
+                let sum: f64 = (0..40).map(|a| views[at / 2][a] * row(a)).sum();
+                assert!((found - sum).abs() < 1e-10 * sum.abs().max(1.0), "{model:?}: {found} {sum}");
+            }
+        }
     }
 }

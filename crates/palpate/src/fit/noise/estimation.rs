@@ -27,8 +27,8 @@ const OUTLASTED: f64 = 25.0;
 const COUNTS: f64 = 7.0;
 
 impl Noise {
-    /// The noise that left these residuals beside a fit with this Jacobian, whose columns may have any size; `times` in s where samples are
-    /// spaced unevenly.
+    /// The noise that left these residuals beside a fit with this Jacobian, whose columns may have any size; `times` where samples are spaced
+    /// unevenly: models have their unit.
     ///
     /// Of a long series stretches, evenly spread, say how it correlates; its size comes from all samples.
     pub(crate) fn of(jacobian: &[&[f64]], residuals: &[f64], lags: &Lags, times: Option<&[f64]>) -> Self {
@@ -43,14 +43,12 @@ impl Noise {
                 true => drifts(residuals, parameters),
                 false => drifts(&innovations(residuals, &partial), parameters),
             };
-        let looks_white = partial.is_empty() && !is_slow;
         let is_short = samples <= STRETCHES * STRETCH;
-        if samples <= FEW || (looks_white && (times.is_none() || !is_short)) {
-            let kinds = if samples <= FEW {
-                few_samples(jacobian, residuals, times)
-            } else {
-                Beside::new(jacobian, residuals, None, MEANS).kinds()
-            };
+        if samples <= FEW {
+            return few_samples(jacobian, residuals, times).and_then(Kinds::noise).unwrap_or(white);
+        }
+        if partial.is_empty() && !is_slow && (times.is_none() || !is_short) {
+            let kinds = beside_white(&Beside::new(jacobian, residuals, times, MEANS));
             return kinds.and_then(Kinds::noise).unwrap_or(white);
         }
         if is_short {
@@ -146,13 +144,11 @@ fn few_samples(jacobian: &[&[f64]], residuals: &[f64], times: Option<&[f64]>) ->
     Some(kinds)
 }
 
-impl Beside<'_> {
-    /// White noise, and a walk beside it.
-    fn kinds(&self) -> Option<Kinds> {
-        let mut kinds = Kinds::white(self.white()?);
-        kinds.take_all(&self.walks(kinds.least()), WALKS);
-        Some(kinds)
-    }
+/// White noise, and a walk beside it.
+fn beside_white(beside: &Beside<'_>) -> Option<Kinds> {
+    let mut kinds = Kinds::white(beside.white()?);
+    kinds.take_all(&beside.walks(kinds.least()), WALKS);
+    Some(kinds)
 }
 
 /// Kinds of noise with their prices: the deviance, and what the parameters cost.

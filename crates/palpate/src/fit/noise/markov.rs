@@ -17,49 +17,25 @@ pub(super) struct Markov {
 }
 
 impl Markov {
-    /// That of a model, if it is one; noise in time needs the times of samples.
-    pub(super) fn of(model: NoiseModel, samples: usize, times: Option<&[f64]>) -> Option<Self> {
-        match (model, times) {
-            (NoiseModel::WhiteAndWalk { step }, times) => Some(Self::walk(step, samples, times)),
-            (
-                NoiseModel::InTime {
-                    correlation_time_s,
-                    share,
-                    ..
-                },
-                Some(times),
-            ) => {
-                let kept = |pair: &[f64]| ((pair[0] - pair[1]) / correlation_time_s).exp();
-                Some(Self {
-                    kept: std::iter::once(0.0).chain(times.windows(2).map(kept)).collect(),
-                    variances: vec![share; times.len()],
-                    white: 1.0 - share,
-                })
-            }
-            _ => None,
-        }
-    }
-
-    /// A walk from the first sample on, which goes by `step` in a mean time between samples.
-    fn walk(step: f64, samples: usize, times: Option<&[f64]>) -> Self {
-        let since = |i: usize| match times {
-            Some(times) => (times[i] - times[0]) / (times[samples - 1] - times[0]) * (samples - 1) as f64,
-            None => i as f64,
-        };
+    /// A walk from the first sample on, which goes by `step` in a mean time between samples, as √b times the means of b neighbours show it,
+    /// among which it hardly moves.
+    fn walk(step: f64, count: usize, together: usize, times: Option<&[f64]>) -> Self {
+        let size = together as f64 * step * step;
+        let variance = |mean: usize| size * steps_since(mean * together + together / 2, times);
         Self {
-            kept: vec![1.0; samples],
-            variances: (0..samples).map(|i| step * step * since(i)).collect(),
+            kept: vec![1.0; count],
+            variances: (0..count).map(variance).collect(),
             white: 1.0,
         }
     }
 
-    /// The same of √b times the means of b neighbours, among which a walk hardly moves.
-    fn walk_of_means(step: f64, means: usize, together: usize) -> Self {
-        let (count, square) = (together as f64, step * step);
+    /// Noise of this correlation time at these times, with this share in the variance.
+    pub(super) fn in_time(correlation_time: f64, share: f64, times: &[f64]) -> Self {
+        let kept = |pair: &[f64]| ((pair[0] - pair[1]) / correlation_time).exp();
         Self {
-            kept: vec![1.0; means],
-            variances: (0..means).map(|k| square * count * count * (k as f64 + 0.5)).collect(),
-            white: 1.0,
+            kept: std::iter::once(0.0).chain(times.windows(2).map(kept)).collect(),
+            variances: vec![share; times.len()],
+            white: 1.0 - share,
         }
     }
 
@@ -99,10 +75,20 @@ impl Markov {
         (steps, log_determinant + determinant.ln())
     }
 
-    /// JᵀRJ without what is white.
-    pub(super) fn quadratic(&self, rows: &Rows, size: usize) -> Vec<f64> {
-        let across = rows.with_process_before(&self.kept, &self.variances);
-        (0..size * size).map(|at| across[at] + across[at % size * size + at / size]).collect()
+    /// JᵀF with F the products of the process at each sample with all before it, and half of that with itself.
+    pub(super) fn across(&self, rows: &Rows) -> Vec<f64> {
+        rows.with_process_before(&self.kept, &self.variances)
+    }
+}
+
+/// Mean times between samples from the first to this one.
+pub(super) fn steps_since(sample: usize, times: Option<&[f64]>) -> f64 {
+    match times {
+        Some(times) => {
+            let last = times.len() - 1;
+            (times[sample] - times[0]) / (times[last] - times[0]) * last as f64
+        }
+        None => sample as f64,
     }
 }
 
@@ -112,8 +98,8 @@ fn correlation_times(times: &[f64]) -> (f64, f64) {
     ((0.3 * shortest).ln(), (4.0 * (times[times.len() - 1] - times[0])).ln())
 }
 
-/// Noise of this correlation time at these times.
-fn in_time(correlation_time_s: f64, share: f64, times: &[f64]) -> NoiseModel {
+/// The model of this correlation time, in the unit of these times.
+pub(super) fn in_time(correlation_time_s: f64, share: f64, times: &[f64]) -> NoiseModel {
     let (mut sum, mut before) = (0.0, 0.0);
     for pair in times.windows(2) {
         before = ((pair[0] - pair[1]) / correlation_time_s).exp() * (before + 1.0);
@@ -177,10 +163,13 @@ impl<'a> Beside<'a> {
     /// The restricted likelihood of a model; means are for a walk alone.
     pub(super) fn likelihood(&self, model: NoiseModel) -> Option<Likelihood> {
         let process = match model {
-            NoiseModel::WhiteAndWalk { step } if self.together > 1 => {
-                Markov::walk_of_means(step, self.rows.samples, self.together)
-            }
-            _ => Markov::of(model, self.samples, self.times)?,
+            NoiseModel::WhiteAndWalk { step } => Markov::walk(step, self.rows.samples, self.together, self.times),
+            NoiseModel::InTime {
+                correlation_time_s,
+                share,
+                ..
+            } => Markov::in_time(correlation_time_s, share, self.times?),
+            _ => return None,
         };
         let (steps, log_determinant) = process.steps();
         let mut product = self.rows.filtered(&steps);
@@ -251,14 +240,14 @@ impl<'a> Beside<'a> {
 }
 
 #[cfg(test)]
-mod tests {
+pub(super) mod tests {
     use super::*;
     use crate::optimise::Cholesky;
     use crate::statistics::dot;
     use crate::test_problems::Rng;
 
     /// R of noise, row by row.
-    fn dense(model: NoiseModel, times: &[f64]) -> Vec<f64> {
+    pub(in super::super) fn dense(model: NoiseModel, times: &[f64]) -> Vec<f64> {
         let count = times.len();
         let entry = |i: usize, j: usize| {
             let (first, own) = (i.min(j), f64::from(u8::from(i == j)));
@@ -295,7 +284,6 @@ mod tests {
         let (columns, left) = residuals(&noise);
         let jacobian = [columns[0].as_slice(), columns[1].as_slice()];
         let beside = Beside::new(&jacobian, &left, Some(&times), times.len());
-        let rows = Rows::new(&jacobian);
         let models = [NoiseModel::WhiteAndWalk { step: 0.3 }, in_time(0.7, 1.0, &times), in_time(2.0, 0.4, &times)];
         for model in models {
             let matrix = dense(model, &times);
@@ -311,13 +299,6 @@ mod tests {
             let found = beside.likelihood(model).unwrap();
             assert!((found.deviance - expected.deviance).abs() < 1e-9, "{model:?}");
             assert!((found.variance / expected.variance - 1.0).abs() < 1e-11, "{model:?}");
-            let process = Markov::of(model, 40, Some(&times)).unwrap();
-            for (at, found) in process.quadratic(&rows, 2).iter().enumerate() {
-                let found = found + process.white * dot(jacobian[at / 2], jacobian[at % 2]);
-                let row = |a: usize| dot(&matrix[a * 40..(a + 1) * 40], jacobian[at % 2]);
-                let sum: f64 = (0..40).map(|a| jacobian[at / 2][a] * row(a)).sum();
-                assert!((found - sum).abs() < 1e-10 * sum.abs().max(1.0), "{model:?}: {found} {sum}");
-            }
         }
         // Σ R of a constant column over N: what `independent` says.
         let NoiseModel::InTime { independent, .. } = models[2] else {
