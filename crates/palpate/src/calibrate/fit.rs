@@ -111,6 +111,7 @@ pub fn calibrate(
         let columns: Vec<Vec<f64>> = open.iter().map(|i| jacobian[*i].clone()).collect();
         Assessed::of_columns(columns, found.residuals.clone(), confidence)
     });
+    let assessed = assessed.transpose()?;
     let is_reported = assessed.as_ref().is_some_and(|assessed| assessed.uncertainty.is_some());
     let termination = match found.termination {
         Termination::Converged

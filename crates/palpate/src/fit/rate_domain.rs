@@ -2,10 +2,10 @@
 
 use super::{
     Assessed, Domain, Estimate, Fit, FitError, FitOptions, LatencyFit, NoiseChoice, Parameter, ParameterKind,
-    ParameterRole, ParameterUnit, Scale, check_finite,
+    ParameterRole, ParameterUnit, Scale, Trust, check_finite,
 };
 use crate::laws::{ExponentChoice, Law, LawCurve, Response, Term};
-use crate::optimise::{Effort, Ending, Refined, Shapes, Solution, Target, Termination, Work, polished, refine};
+use crate::optimise::{Effort, Ending, Refined, Shapes, Solution, Target, Termination, polished, refine};
 use crate::watch::{Cancelled, Unwatched, Watch};
 
 /// Fits ε̇ = −v sgn(x) |x|ⁿ, x = ε − ε_e, to strain rates (1/s) over strains: equations (9) and (10).
@@ -80,7 +80,7 @@ fn found(
         }
     }
     let solution = polished(&shapes, target, best.ok_or(FitError::NoDecay)?, effort)?;
-    LatencyFit::new(scaled.fit(strains, &solution, choice, options, effort.work)).ok_or(FitError::NoDecay)
+    LatencyFit::new(scaled.fit(strains, &solution, choice, options, effort)?).ok_or(FitError::NoDecay)
 }
 
 /// Strains in units of their range about their middle, rates in units of the largest.
@@ -117,16 +117,21 @@ impl Scaled {
         solution: &Solution,
         choice: ExponentChoice,
         options: &FitOptions,
-        work: Work,
-    ) -> Fit {
+        effort: &Effort<'_>,
+    ) -> Result<Fit, Cancelled> {
         let scaled_v = solution.linear[0];
         let n = choice.given().unwrap_or_else(|| solution.nonlinear[1]);
         let size = 1 + solution.nonlinear.len();
         let known = solution.termination == Termination::Converged;
         let (ones, amplitudes) = ([1.0; 3], [scaled_v; 2]);
-        let trust = (options.confidence, NoiseChoice::FromResiduals);
-        let assessed =
-            Assessed::new(solution, &amplitudes[..size - 1], &ones[..size], self.fastest, trust, (known, false), None);
+        let trust = Trust {
+            confidence: options.confidence,
+            noise: NoiseChoice::FromResiduals,
+            known,
+            may_vary: false,
+            times: None,
+        };
+        let assessed = Assessed::new(solution, &amplitudes[..size - 1], &ones[..size], self.fastest, &trust, effort)?;
         let estimate = |value: f64, weights: &[f64], scale: Scale, unit: f64| {
             let gradient: Vec<f64> = weights[..size].iter().map(|weight| weight * unit).collect();
             assessed.estimate(value, &gradient, scale)
@@ -179,7 +184,7 @@ impl Scaled {
             shape: choice.shape(),
             parameters: [log_rate_value].into_iter().chain(choice.given().is_none().then_some(n)).collect(),
         }];
-        Fit {
+        Ok(Fit {
             law: Law::Latency { exponent: choice },
             domain: Domain::Rate,
             response: Response::Relaxation,
@@ -203,8 +208,8 @@ impl Scaled {
             duration: 0.0,
             termination: solution.termination,
             redundant_terms: Vec::new(),
-            work,
-        }
+            work: effort.work,
+        })
     }
 }
 

@@ -40,6 +40,22 @@ fn ended<T: std::fmt::Debug>(
     (whole.expect("nothing ended it"), reports)
 }
 
+/// Nobody heard of the errors of a fit, which take as long as the search where samples are millions.
+#[test]
+fn errors_of_a_fit_are_heard_of_after_its_search() {
+    let (times, values) = hold(800);
+    let options = LawOptions::default();
+    let mut at_evaluations = Vec::new();
+    let mut watch = |progress: Progress<'_>| {
+        at_evaluations.push(progress.done);
+        Ok::<(), Cancelled>(())
+    };
+    fit_law_watched(&Samples::new(&times, &values), Law::StandardLinearSolid, &options, &mut watch).unwrap();
+    let last = at_evaluations.last().unwrap();
+    let after = at_evaluations.iter().filter(|done| *done == last).count();
+    assert!(after >= 4, "{after} reports at {last} evaluations");
+}
+
 #[test]
 fn a_fit_ends_between_any_two_evaluations() {
     let (times, values) = hold(800);

@@ -7,7 +7,7 @@ use super::result::law_options;
 use super::starts::{Start, finalists};
 use crate::fit::{FitError, Fitted, HoldWeights, JointFit, JointOptions, LawOptions, Samples};
 use crate::laws::{ExponentChoice, Law, ShapeParameterKind};
-use crate::optimise::{Effort, Ending, Shapes, Termination, Work};
+use crate::optimise::{Effort, Ending, Shapes, Termination};
 use crate::statistics::mean;
 use crate::watch::{Cancelled, Progress, Unwatched, Watch};
 
@@ -82,7 +82,8 @@ fn found(
             },
         })?);
     }
-    let separate = alone.iter().map(|fitted| fitted.report(law, &law_options, Work::default())).collect();
+    let report = |fitted: &Fitted| fitted.report(law, &law_options, &effort.aside());
+    let separate = alone.iter().map(report).collect::<Result<_, _>>()?;
     let joint = joined(holds, alone, law, options);
     let (point, termination) = joint.solve(options.fit.most_iterations, effort)?;
     Ok(joint.report(&point, termination, separate, effort.work))

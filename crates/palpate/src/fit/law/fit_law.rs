@@ -49,7 +49,7 @@ pub fn fit_law_watched(
 
 fn found(samples: &Samples<'_>, law: Law, options: &LawOptions, effort: &mut Effort<'_>) -> Result<Fit, FitError> {
     let mut fitted = Fitted::new(samples, law, options, effort)?;
-    let mut fit = fitted.report(law, options, effort.work);
+    let mut fit = fitted.report(law, options, effort)?;
     match options.intervals {
         IntervalMethod::Curvature => {}
         IntervalMethod::Profile => fitted.profile(&mut fit, options, effort)?,

@@ -13,7 +13,7 @@
 use crate::fit::noise::uncertainty::variance_of;
 use crate::fit::{Estimate, Fit, FitError, Fitted, Interval, LawOptions, Model, Samples, condense};
 use crate::laws::{Law, ShapeParameterKind};
-use crate::optimise::{Effort, Ending, Shapes, Target, Work, refine};
+use crate::optimise::{Effort, Ending, Shapes, Target, refine};
 use crate::watch::{Cancelled, Progress};
 
 /// Standard errors from the best value beyond which an end counts as open.
@@ -53,7 +53,7 @@ pub fn profile_interval(
 ) -> Result<Interval, FitError> {
     let fitted = Fitted::new(samples, law, options, &mut Effort::default())?;
     let parameter = Searched::named(&fitted.model, name)?;
-    let fit = fitted.report(law, options, Work::default());
+    let fit = fitted.report(law, options, &Effort::default())?;
     fitted.profile_of(parameter, &fit, options, &mut Effort::default())
 }
 

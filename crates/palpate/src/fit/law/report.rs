@@ -3,36 +3,36 @@
 use super::derived::{Estimating, derived};
 use crate::fit::{
     Assessed, Domain, Estimate, Fit, Fitted, LawOptions, Loss, Parameter, ParameterKind, ParameterName, ParameterRole,
-    ParameterUnit, Scale, redundant_terms,
+    ParameterUnit, Scale, Trust, redundant_terms,
 };
 use crate::laws::{ExponentChoice, Law, ShapeParameterKind};
-use crate::optimise::{Few, Shapes, Termination, Work};
+use crate::optimise::{Effort, Few, Shapes, Termination, Work};
+use crate::watch::Cancelled;
 
 impl Fitted {
-    pub(crate) fn report(&self, law: Law, options: &LawOptions, work: Work) -> Fit {
+    pub(crate) fn report(&self, law: Law, options: &LawOptions, effort: &Effort<'_>) -> Result<Fit, Cancelled> {
         let solution = &self.solution;
         let known = matches!(solution.termination, Termination::Converged | Termination::AmplitudeAtBound);
         let (linear, scale) = (self.model.linear(), self.scaled.range);
         let searched = linear + solution.nonlinear.len();
         let units: Vec<f64> = (0..searched).map(|i| if i < linear { scale } else { 1.0 }).collect();
-        let assessed = Assessed::new(
-            solution,
-            &self.amplitudes(),
-            &units,
-            scale,
-            (options.confidence, options.noise),
-            (known, self.scaled.roots.is_none()),
-            Some((&self.scaled.times, self.scaled.duration)),
-        );
+        let trust = Trust {
+            confidence: options.confidence,
+            noise: options.noise,
+            known,
+            may_vary: self.scaled.roots.is_none(),
+            times: Some((&self.scaled.times, self.scaled.duration)),
+        };
+        let assessed = Assessed::new(solution, &self.amplitudes(), &units, scale, &trust, effort)?;
         let loading = if matches!(law, Law::Latency { .. }) { None } else { options.loading.clone() };
         let mut fit = Fit {
             loading,
-            ..self.report_with(law, assessed, work)
+            ..self.report_with(law, assessed, effort.work)
         };
         if !fit.termination.is_good() && options.loss == Loss::Squares {
             fit.residual_square = self.left_by(&fit);
         }
-        fit
+        Ok(fit)
     }
 
     /// χ² of a curve as it is returned: where large amplitudes cancel, rounding of its own parameters adds to it.

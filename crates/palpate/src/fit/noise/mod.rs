@@ -47,5 +47,5 @@ mod spread;
 pub(crate) mod uncertainty;
 
 pub use model::NoiseModel;
-pub(crate) use uncertainty::{Assessed, Scale};
+pub(crate) use uncertainty::{Assessed, Scale, Trust};
 pub use uncertainty::{ModelCovariance, Uncertainty};

@@ -7,9 +7,10 @@ use super::columns::Columns;
 use super::model::{Lags, Likely, Noise};
 use super::spread::{Spread, by_residuals};
 use crate::fit::{Estimate, NoiseChoice, NoiseModel};
-use crate::optimise::{Cholesky, Few, Solution, Termination};
+use crate::optimise::{Cholesky, Effort, Few, Solution, Termination};
 use crate::statistics::{coverage_factor, dot, normal_factor, two_sided_p};
 use crate::vector::cross_products;
+use crate::watch::Cancelled;
 
 /// How a parameter is brought to its interval.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -165,19 +166,38 @@ pub(crate) struct Assessed {
     pub(crate) uneven: bool,
 }
 
+/// What is known of a fit whose errors are wanted.
+pub(crate) struct Trust<'a> {
+    /// Coverage of intervals.
+    pub(crate) confidence: f64,
+    pub(crate) noise: NoiseChoice,
+    /// Whether its parameters have errors.
+    pub(crate) known: bool,
+    /// Whether the size of the noise may change along the samples.
+    pub(crate) may_vary: bool,
+    /// Times of the samples, and their unit in s.
+    pub(crate) times: Option<(&'a [f64], f64)>,
+}
+
 impl Assessed {
-    /// Assesses a solution. `amplitudes` multiply the derivatives in its Jacobian, `units` bring linear, then nonlinear
-    /// parameters to the caller's, `unit` the signal; without `known` its parameters have no errors, and where the noise `may_vary` its
-    /// size is looked at; `times` are those of the samples, and their unit in s.
+    /// Assesses a solution. `amplitudes` multiply the derivatives in its Jacobian, `units` bring linear, then nonlinear parameters to the
+    /// caller's, `unit` the signal. Of millions of samples it takes as long as the fit: it is heard of in between.
     pub(crate) fn new(
         solution: &Solution,
         amplitudes: &[f64],
         units: &[f64],
         unit: f64,
-        (confidence, choice): (f64, NoiseChoice),
-        (known, may_vary): (bool, bool),
-        times: Option<(&[f64], f64)>,
-    ) -> Self {
+        trust: &Trust<'_>,
+        effort: &Effort<'_>,
+    ) -> Result<Self, Cancelled> {
+        effort.hear()?;
+        let Trust {
+            confidence,
+            noise: choice,
+            known,
+            may_vary,
+            times,
+        } = *trust;
         let (samples, size) = (solution.residuals.len(), units.len());
         let lags = Lags::of(&solution.residuals);
         let freedom = (samples - size) as f64;
@@ -191,6 +211,7 @@ impl Assessed {
         let spread = (may_vary && times.is_none() && choice == NoiseChoice::FromResiduals)
             .then(|| Spread::of(&solution.residuals, &fitted(solution), lags.correlations[0]))
             .flatten();
+        effort.hear()?;
         let noise = match (choice, &spread) {
             (NoiseChoice::White, _) => Noise::white(&lags, freedom),
             (NoiseChoice::FromResiduals, None) => Noise::of(&columns, &solution.residuals, &lags, times),
@@ -201,6 +222,7 @@ impl Assessed {
                 Noise::of(&views, &residuals, &Lags::of(&residuals), times)
             }
         };
+        effort.hear()?;
         // A robust loss has its own s²; the noise of its residuals stands in the same ratio to it as that of plain ones.
         let ratio = solution.variance * freedom / solution.residual_square;
         let ratio = if ratio.is_finite() { ratio } else { 1.0 };
@@ -223,12 +245,16 @@ impl Assessed {
             ),
             _ => scaled(inverse, ratio * variance),
         };
-        let uncertainty = inverse.filter(|_| white.is_some()).map(|inverse| {
-            let of_model = |likely: &Likely| ModelCovariance {
-                probability: likely.probability,
-                covariance: sandwich(inverse, likely.model, likely.variance),
+        let of_inverse = |inverse: &[f64]| {
+            let of_model = |likely: &Likely| {
+                effort.hear()?;
+                Ok(ModelCovariance {
+                    probability: likely.probability,
+                    covariance: sandwich(inverse, likely.model, likely.variance),
+                })
             };
-            let mut models: Vec<ModelCovariance> = noise.likely.iter().map(of_model).collect();
+            let mut models: Vec<ModelCovariance> =
+                noise.likely.iter().map(of_model).collect::<Result<_, Cancelled>>()?;
             let mut covariance = vec![vec![0.0; size]; size];
             for model in &models {
                 for (sums, row) in covariance.iter_mut().zip(&model.covariance) {
@@ -238,25 +264,26 @@ impl Assessed {
             if models.len() == 1 {
                 models.clear();
             }
-            Uncertainty {
+            Ok(Uncertainty {
                 confidence,
                 freedom,
                 deviation: noise.variance(samples).sqrt() * unit,
                 covariance,
                 models,
-            }
-        });
-        Self {
+            })
+        };
+        let uncertainty = inverse.filter(|_| white.is_some()).map(of_inverse).transpose()?;
+        Ok(Self {
             white,
             uncertainty: uncertainty.filter(|found| finite(&found.covariance)),
             noise: noise.model.in_unit(time_unit),
             correlation: lags.correlations[0],
             uneven: spread.is_some(),
-        }
+        })
     }
 
     /// Assesses least squares with this Jacobian, column by column, of a model that is linear in nothing.
-    pub(crate) fn of_columns(columns: Vec<Vec<f64>>, residuals: Vec<f64>, confidence: f64) -> Self {
+    pub(crate) fn of_columns(columns: Vec<Vec<f64>>, residuals: Vec<f64>, confidence: f64) -> Result<Self, Cancelled> {
         let size = columns.len();
         let views: Vec<&[f64]> = columns.iter().map(Vec::as_slice).collect();
         let mut normal = vec![0.0; size * size];
@@ -274,7 +301,14 @@ impl Assessed {
             inverse_normal: Cholesky::new(&normal, size).map(|factor| factor.inverse()),
             termination: Termination::Converged,
         };
-        Self::new(&solution, &[], &vec![1.0; size], 1.0, (confidence, NoiseChoice::FromResiduals), (true, false), None)
+        let trust = Trust {
+            confidence,
+            noise: NoiseChoice::FromResiduals,
+            known: true,
+            may_vary: false,
+            times: None,
+        };
+        Self::new(&solution, &[], &vec![1.0; size], 1.0, &trust, &Effort::default())
     }
 
     /// From a covariance for white noise of this `deviation`, intervals widened by a factor for samples that count as fewer.
