@@ -37,11 +37,11 @@ pub struct Analyze {
     /// Coverage of the intervals, between 0 and 1.
     #[cfg_attr(feature = "clap", arg(skip))]
     pub confidence: Option<f64>,
-    /// Method of the intervals: "curvature", "profile", or "bootstrap" with its options.
+    /// Method of the intervals: "automatic", "curvature", "profile", or "bootstrap" with its options.
     #[schemars(with = "serde_json::Value")]
     #[cfg_attr(feature = "clap", arg(
         long, value_parser = crate::typed::one_of(crate::typed::INTERVALS),
-        help = "Method of the intervals; curvature if not given",
+        help = "Method of the intervals; automatic if not given",
     ))]
     pub intervals: Option<IntervalMethod>,
     /// Start of the fit in a hold: "peak", "settled", or a time in seconds after the peak.

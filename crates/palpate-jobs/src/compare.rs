@@ -52,11 +52,11 @@ pub struct Compare {
         help = "Samples to fit: all, or log:400 for about 400 spaced evenly in ln t",
     ))]
     pub samples: SampleChoice,
-    /// Method of the intervals: "curvature", "profile", or "bootstrap" with its options.
+    /// Method of the intervals: "automatic", "curvature", "profile", or "bootstrap" with its options.
     #[schemars(with = "serde_json::Value")]
     #[cfg_attr(feature = "clap", arg(
         long, value_parser = crate::typed::one_of(crate::typed::INTERVALS),
-        help = "Method of the intervals; curvature if not given",
+        help = "Method of the intervals; automatic if not given",
     ))]
     pub intervals: Option<IntervalMethod>,
     /// Loading history before a hold, as linear laws take it.

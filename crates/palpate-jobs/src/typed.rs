@@ -32,6 +32,11 @@ pub(crate) const RAMPS: &[Choice<RampChoice>] = &[
 
 /// What intervals rest on.
 pub(crate) const INTERVALS: &[Choice<IntervalMethod>] = &[
+    (
+        "automatic",
+        "Curvature where the law is nearly linear within the interval, else profile likelihood",
+        IntervalMethod::Automatic,
+    ),
     ("curvature", "Curvature of the residual sum of squares at the optimum", IntervalMethod::Curvature),
     (
         "profile",

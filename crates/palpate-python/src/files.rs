@@ -162,7 +162,7 @@ pub(crate) fn convert(
 /// laws
 ///     Laws to fit besides the latency law.
 /// intervals
-///     What the intervals of fits rest on: "curvature" (if left out), "profile" or "bootstrap".
+///     Method of the intervals of fits: "automatic" (if left out), "curvature", "profile" or "bootstrap".
 /// fit_until_s
 ///     Fit only this long from the start of each hold, s.
 /// restart

@@ -7,7 +7,7 @@ mod noises;
 
 use std::time::Instant;
 
-use noises::{KINDS, Known, Noise, laws, truth_at};
+use noises::{KINDS, Known, Noise, laws, truth_over};
 use palpate::fit::{LawOptions, Samples, fit_law};
 use palpate::test_problems::Rng;
 
@@ -29,7 +29,7 @@ fn main() {
 fn report(name: &str, noise: Noise, known: &Known, holds: usize, samples: usize) {
     let mut found: Vec<Vec<[f64; 3]>> = vec![Vec::new(); known.truth.len()];
     let mut seconds = 0.0;
-    let (times, clean) = truth_at(known, noise, samples);
+    let (times, clean) = truth_over(10.0, known, noise, samples);
     for hold in 0..holds {
         let mut random = Rng::new(77 + ((hold as u64) << 20));
         let values = noise.added(&times, &clean, SIZE, &mut random);

@@ -314,7 +314,7 @@ def fit_hold(
     noise: str = "residuals",
     confidence: float = 0.95,
     log_spaced: int | None = None,
-    intervals: str = "curvature",
+    intervals: str = "automatic",
 ) -> Fit:
     """Fit a law to one hold; no starting values.
 
@@ -346,8 +346,9 @@ def fit_hold(
     log_spaced
         Fit about this many samples, equally spaced in ln t.
     intervals
-        What intervals rest on: "curvature" at the optimum, "profile" of the residual square, asymmetric and open where the
-        data do not close it (`Fit.profiles`), or "bootstrap", residuals resampled in blocks.
+        Method of the intervals: "curvature" at the optimum, "profile" of the residual square, asymmetric and open where the
+        data do not close it, "bootstrap", residuals resampled in blocks, or "automatic": the profile where
+        an interval of curvature is wider than a third of its parameter to a side, or a time constant is longer than the hold.
 
     Returns
     -------
@@ -386,7 +387,7 @@ def fit_many(
     noise: str = "residuals",
     confidence: float = 0.95,
     log_spaced: int | None = None,
-    intervals: str = "curvature",
+    intervals: str = "automatic",
     progress: bool | None = None,
 ) -> Table:
     """Fit a law to many holds, on all processors and without the GIL.

@@ -439,6 +439,8 @@ class Fit(_Value):
     residual_correlation: Final[float]
     noise: Final[str]
     effective_samples: Final[float]
+    noise_p_value: Final[float | None]
+    interval_method: Final[str]
     samples: Final[int]
     start_s: Final[float]
     duration_s: Final[float]

@@ -130,6 +130,10 @@ shown! {
         noise: String = self.fit.noise_in_words(),
         /// Samples that count as independent under that noise.
         effective_samples: f64 = self.fit.effective_samples(),
+        /// Probability that this noise leaves such residuals (Ljung and Box, 20 lags); None for fewer than 100 samples and for uneven times.
+        noise_p_value: Option<f64> = self.fit.noise_p_value,
+        /// Method of the intervals: "curvature", "profile" or "bootstrap".
+        interval_method: String = self.fit.interval_method.name().to_owned(),
         /// Samples fitted.
         samples: usize = self.fit.samples,
         /// Time of the first sample on the clock of the samples, s.
@@ -302,6 +306,7 @@ const AT_ONCE: usize = 10_000;
 /// What intervals rest on, as a keyword says it.
 pub(crate) fn intervals(name: &str) -> PyResult<IntervalMethod> {
     let ways = [
+        IntervalMethod::Automatic,
         IntervalMethod::Curvature,
         IntervalMethod::Profile,
         IntervalMethod::Bootstrap(BootstrapOptions::USUAL),
@@ -377,6 +382,9 @@ pub(crate) fn standard_deviations_of(weights: Option<&Bound<'_, PyAny>>) -> PyRe
 /// Up to so many samples are fitted in a few milliseconds, without a thread.
 const BRIEF: usize = 20_000;
 
+/// About so many times as long as the fit a profile may take.
+const FITS_OF_A_PROFILE: usize = 10;
+
 /// Samples, with a standard deviation for each if they have some.
 pub(crate) fn samples_of<'a>(
     times: &'a [f64],
@@ -419,7 +427,11 @@ pub(crate) fn fit_hold<'py>(
         return Err(refused_plainly::<FitError>(message));
     }
     let requested = keywords.requested()?;
-    let is_brief = times.len() <= BRIEF && requested.options.intervals == IntervalMethod::Curvature;
+    let is_brief = match requested.options.intervals {
+        IntervalMethod::Curvature => times.len() <= BRIEF,
+        IntervalMethod::Automatic => times.len() <= BRIEF / FITS_OF_A_PROFILE,
+        IntervalMethod::Profile | IntervalMethod::Bootstrap(_) => false,
+    };
     let fit = match is_brief {
         true => briefly(py, || fitted(&times, &values, standard_deviations.as_deref(), &requested, &mut Unwatched))?,
         false => at_length(py, move |mut heard| {

@@ -202,6 +202,8 @@ fn table(requested: &Requested, fits: &[Fitted]) -> PyResult<Table> {
     columns.push(("residual_correlation".to_owned(), floats(&|fit| Some(fit.residual_correlation))));
     columns.push(("noise".to_owned(), Column::column(good().map(|fit| Some(fit?.noise_in_words())))));
     columns.push(("effective_samples".to_owned(), floats(&|fit| Some(fit.effective_samples()))));
+    let method = |fit: Option<&Fit>| fit.map(|fit| fit.interval_method.name().to_owned());
+    columns.push(("interval_method".to_owned(), Column::column(good().map(method))));
     columns.push(("samples".to_owned(), Column::column(good().map(|fit| Some(fit?.samples)))));
     let ended = good().map(|fit| Some(word(fit?.termination)));
     columns.push(("termination".to_owned(), Column::column(ended)));

@@ -67,6 +67,8 @@ documents! {
         formula: Option<String> = fit.map(|fit| formula(fit, quantity)),
         /// Parameters of the law by name.
         parameters: Parameters = fit.map(|fit| parameters_of(fit, quantity)).unwrap_or_default(),
+        /// Method of the intervals, as in `palpate.analysis/1`; `null` where there is no fit.
+        interval_method: Option<String> = fit.map(|fit| fit.interval_method.name().to_owned()),
         /// The spectrum, if that is the law.
         spectrum: Option<SpectrumDocument> = row.spectrum.as_ref().map(SpectrumDocument::new),
         /// Root mean square residual over the whole hold as a share of the change of the signal; `null` where there is no fit.
@@ -235,7 +237,7 @@ documents! {
         },
         /// Coverage of the intervals.
         confidence: f64 = options.fit.confidence,
-        /// Method of the intervals, if not the curvature: `profile` or `bootstrap`.
+        /// Method of the intervals, if not automatic: `curvature`, `profile` or `bootstrap`.
         intervals?: Option<String> = unusual(options.fit.intervals),
         /// Duration of the fitted part from the start of the fit, s.
         fit_until_s: Option<f64> = fit_until,

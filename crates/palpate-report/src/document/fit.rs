@@ -34,6 +34,10 @@ documents! {
         noise: String = fit.noise_in_words(),
         /// Samples that count as independent under that noise.
         effective_samples: f64 = fit.effective_samples(),
+        /// Probability that this noise leaves such residuals (Ljung and Box, 20 lags); `null` for fewer than 100 samples and for uneven times.
+        noise_p_value: Option<f64> = fit.noise_p_value,
+        /// Method of the intervals: `curvature`, `profile` or `bootstrap`.
+        interval_method: String = fit.interval_method.name().to_owned(),
         /// Samples fitted.
         samples: usize = fit.samples,
         /// Bayesian information criterion less the lowest of this hold (time domain).

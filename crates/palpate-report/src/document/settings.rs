@@ -70,7 +70,7 @@ documents! {
         exponent_range: [f64; 2] = options.fit.exponent_range.into(),
         /// Coverage of the intervals.
         confidence: f64 = options.fit.confidence,
-        /// Method of the intervals, if not the curvature: `profile` or `bootstrap`.
+        /// Method of the intervals, if not automatic: `curvature`, `profile` or `bootstrap`.
         intervals?: Option<String> = unusual(options.fit.intervals),
         /// Duration of the fitted part from the start of the fit, s.
         fit_until_s: Option<f64> = options.fit_until,
@@ -83,5 +83,5 @@ documents! {
 
 /// What intervals rest on, if not what is usual.
 pub(super) fn unusual(intervals: IntervalMethod) -> Option<String> {
-    Some(intervals).filter(|way| !way.is_curvature()).map(|way| way.name().to_owned())
+    Some(intervals).filter(|way| !way.is_automatic()).map(|way| way.name().to_owned())
 }

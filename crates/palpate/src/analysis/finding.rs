@@ -109,6 +109,13 @@ pub enum Finding {
         /// Equivalent number of independent samples.
         independent: f64,
     },
+    /// The residuals are of no kind of noise that is known.
+    NoiseUnexplained {
+        /// The closest kind.
+        noise: String,
+        /// Probability that it leaves such residuals.
+        p_value: f64,
+    },
     /// The change of the signal in the hold does not exceed its noise.
     NoRelaxation {
         /// Change, in the unit of the force.

@@ -22,6 +22,8 @@ pub struct Forecast {
     pub rmse: f64,
     /// Mean error over those: above zero where the law runs above the data.
     pub bias: f64,
+    /// Mean square error within each eighth of the time from the cut to the end; 0 where there are no samples.
+    pub square_by_eighth: [f64; 8],
 }
 
 /// Fits `law` to the samples up to `cut` seconds after the first, and compares with those after it.
@@ -51,20 +53,27 @@ pub fn forecast(samples: &Samples<'_>, law: Law, options: &LawOptions, cut: f64)
     let curve = condensed_curve(&first, law, options)?;
     let times: Vec<f64> = samples.times[fitted..].iter().map(|t| t - start).collect();
     let rest = Condensed::finer(&times, &samples.values[fitted..]);
-    let (mut square, mut off, mut weight) = (rest.inside, 0.0, 0.0);
+    let (mut squares, mut off, mut weights) = ([0.0; 8], 0.0, [0.0; 8]);
     let predicted = extrapolated(&curve, law, options, &rest.times);
-    for ((value, root), predicted) in rest.values.iter().zip(&rest.roots).zip(predicted) {
+    let last = times[times.len() - 1];
+    for (((time, value), root), predicted) in rest.times.iter().zip(&rest.values).zip(&rest.roots).zip(predicted) {
         let error = root * predicted - value;
-        square += error * error;
+        let eighth = ((8.0 * (time - cut) / (last - cut)) as usize).min(7);
+        squares[eighth] += error * error;
+        weights[eighth] += root * root;
         off += root * error;
-        weight += root * root;
     }
+    let weight: f64 = weights.iter().sum();
+    // What nodes do not know of their samples is noise, everywhere alike.
+    let inside = rest.inside / weight;
+    let mean = |(square, weight): (f64, f64)| if weight > 0.0 { square / weight + inside } else { 0.0 };
     Ok(Forecast {
         cut,
         fitted,
         held_out: times.len(),
-        rmse: (square / weight).sqrt(),
+        rmse: ((rest.inside + squares.iter().sum::<f64>()) / weight).sqrt(),
         bias: off / weight,
+        square_by_eighth: std::array::from_fn(|eighth| mean((squares[eighth], weights[eighth]))),
     })
 }
 

@@ -103,8 +103,11 @@ impl Default for BootstrapOptions {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum IntervalMethod {
-    /// The curvature at the optimum: symmetric, in ln for parameters that cannot change sign.
+    /// The curvature where it is to be trusted, else the profile: where the interval of a rate, a time or an exponent is wider than a third
+    /// of its value to a side, that of an amplitude wider than a third of its own, or a time constant is longer than the hold.
     #[default]
+    Automatic,
+    /// The curvature at the optimum: symmetric, in ln for parameters that cannot change sign.
     Curvature,
     /// The profile of the residual square: asymmetric, and open where the data do not close it.
     Profile,
@@ -115,14 +118,15 @@ pub enum IntervalMethod {
 impl IntervalMethod {
     /// Whether it is the usual one.
     #[must_use]
-    pub fn is_curvature(&self) -> bool {
-        *self == Self::Curvature
+    pub fn is_automatic(&self) -> bool {
+        *self == Self::Automatic
     }
 
-    /// `curvature`, `profile` or `bootstrap`.
+    /// `automatic`, `curvature`, `profile` or `bootstrap`.
     #[must_use]
     pub fn name(self) -> &'static str {
         match self {
+            Self::Automatic => "automatic",
             Self::Curvature => "curvature",
             Self::Profile => "profile",
             Self::Bootstrap(_) => "bootstrap",
@@ -246,7 +250,7 @@ pub struct FitOptions {
     /// Coverage of confidence intervals, between 0 and 1.
     pub confidence: f64,
     /// Method of the intervals.
-    #[serde(skip_serializing_if = "IntervalMethod::is_curvature")]
+    #[serde(skip_serializing_if = "IntervalMethod::is_automatic")]
     pub intervals: IntervalMethod,
     /// Steps of the refinement after which it ends short.
     pub most_iterations: usize,

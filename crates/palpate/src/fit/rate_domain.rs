@@ -1,8 +1,8 @@
 //! Strain rate fitted against strain, equation (10): the paper's way.
 
 use super::{
-    Assessed, Domain, Estimate, Fit, FitError, FitOptions, LatencyFit, NoiseChoice, Parameter, ParameterKind,
-    ParameterRole, ParameterUnit, Scale, Trust, check_finite,
+    Assessed, Domain, Estimate, Fit, FitError, FitOptions, IntervalMethod, LatencyFit, NoiseChoice, Parameter,
+    ParameterKind, ParameterRole, ParameterUnit, Scale, Trust, check_finite,
 };
 use crate::laws::{ExponentChoice, Law, LawCurve, Response, Term};
 use crate::optimise::{Effort, Ending, Refined, Shapes, Solution, Target, Termination, polished, refine};
@@ -202,6 +202,8 @@ impl Scaled {
             residual_correlation: assessed.correlation,
             uneven_noise: assessed.uneven,
             noise: assessed.noise,
+            noise_p_value: assessed.noise_p_value,
+            interval_method: IntervalMethod::Curvature,
             uncertainty: None,
             samples: strains.len(),
             start: 0.0,

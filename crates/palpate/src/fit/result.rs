@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::{Estimate, NoiseModel, ParameterName, RedundantTerm, Uncertainty};
+use super::{Estimate, IntervalMethod, NoiseModel, ParameterName, RedundantTerm, Uncertainty};
 use crate::laws::{Law, LawCurve, Loading, Response};
 use crate::optimise::{Termination, Work};
 
@@ -108,6 +108,14 @@ pub struct Fit {
     pub uneven_noise: bool,
     /// Correlation of the residuals, which intervals take into account.
     pub noise: NoiseModel,
+    /// Probability that noise of this model leaves residuals whose innovations correlate as much, by the test of Ljung and Box over 20 lags;
+    /// `None` for fewer than 100 samples, and for samples spaced unevenly. Below some 10⁻³ the residuals are not of this kind: the law misses
+    /// something, or the noise is of a kind that no model describes.
+    #[serde(default)]
+    pub noise_p_value: Option<f64>,
+    /// Method of the intervals; never automatic.
+    #[serde(default = "curvature")]
+    pub interval_method: IntervalMethod,
     /// What intervals are made of; `None` where the data leave a parameter open.
     pub uncertainty: Option<Uncertainty>,
     /// Samples fitted.
@@ -123,6 +131,11 @@ pub struct Fit {
     pub redundant_terms: Vec<RedundantTerm>,
     /// What it cost.
     pub work: Work,
+}
+
+/// What fits have that do not say it.
+fn curvature() -> IntervalMethod {
+    IntervalMethod::Curvature
 }
 
 checked_when_read!(Fit, "a value and a row of every covariance for each parameter that was searched", |fit: &Fit| {

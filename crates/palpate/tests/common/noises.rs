@@ -53,7 +53,7 @@ pub(crate) struct Known {
     pub(crate) truth: Vec<(&'static str, f64)>,
 }
 
-/// Laws of which all hold 10 s.
+/// Laws with times of 0.3 to 3 s.
 pub(crate) fn laws() -> [Known; 4] {
     let term = |amplitude: f64, shape: BasisFunction, parameters: &[f64]| Term {
         amplitude,
@@ -88,13 +88,13 @@ pub(crate) fn laws() -> [Known; 4] {
     ]
 }
 
-/// Times of a hold, and its signal there without noise.
-pub(crate) fn truth_at(known: &Known, noise: Noise, samples: usize) -> (Vec<f64>, Vec<f64>) {
+/// Times of a hold of this many seconds, and its signal there without noise.
+pub(crate) fn truth_over(duration: f64, known: &Known, noise: Noise, samples: usize) -> (Vec<f64>, Vec<f64>) {
     let share = |i: usize| i as f64 / (samples - 1) as f64;
     let time = |i: usize| match noise {
         // Amplitudes are those at the first sample, the true ones at 0.
-        Noise::LogarithmicTimes => 10.01 * (1.001e3_f64.powf(share(i)) - 1.0) / 1e3,
-        _ => 10.0 * share(i),
+        Noise::LogarithmicTimes => 1.001 * duration * (1.001e3_f64.powf(share(i)) - 1.0) / 1e3,
+        _ => duration * share(i),
     };
     let times: Vec<f64> = (0..samples).map(time).collect();
     let curve = LawCurve {

@@ -40,9 +40,10 @@ impl Finding {
             Self::ExponentUndetermined { interval } => caution(
                 "exponent_undetermined",
                 match interval {
-                    Some((low, high)) => {
-                        format!("the interval of the free exponent is {low:.1} to {high:.1}")
+                    Some((low, high)) if high.is_infinite() => {
+                        format!("the interval of the free exponent has no upper end; its lower one is {low:.1}")
                     }
+                    Some((low, high)) => format!("the interval of the free exponent is {low:.1} to {high:.1}"),
                     None => "the free exponent is at the bound of its range".to_owned(),
                 },
                 SHORT_OR_NOISY,
@@ -169,6 +170,15 @@ impl Finding {
                 ),
                 "the law misses part of the shape, or the noise is slow (drift, quantisation); the intervals account for the correlation",
                 "inspect the residuals in the report; try a free exponent or a later start of the hold",
+            ),
+            Self::NoiseUnexplained { noise, p_value } => caution(
+                "noise_unexplained",
+                format!(
+                    "no noise model describes the residuals: the closest is {noise}, {}",
+                    probability(*p_value)
+                ),
+                "the law misses part of the shape, or a vibration, steps or a controller act on the force; the intervals may be too narrow",
+                "inspect the residuals in the report; compare the intervals with those by bootstrap",
             ),
             Self::NoRelaxation { change, standard_error } => info(
                 "no_relaxation",
@@ -462,6 +472,11 @@ impl Finding {
 fn with_standard_error(value: f64, error: f64) -> String {
     let half = coverage_factor(0.95, f64::INFINITY) * error;
     with_interval(value, (value - half, value + half))
+}
+
+/// A small probability of a test.
+fn probability(p_value: f64) -> String {
+    if p_value < 1e-6 { "p < 10⁻⁶".to_owned() } else { format!("p = {}", significant(p_value, 1)) }
 }
 
 /// Numbers as people write a list.

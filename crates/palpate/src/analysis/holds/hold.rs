@@ -324,7 +324,16 @@ fn judge(hold: &mut HoldAnalysis) {
             independent: best.effective_samples(),
         });
     }
+    if let Some(p_value) = best.noise_p_value.filter(|p_value| *p_value < UNLIKELY) {
+        hold.findings.push(Finding::NoiseUnexplained {
+            noise: best.noise_in_words(),
+            p_value,
+        });
+    }
 }
+
+/// Probability of residuals below which they are not of the kind of noise that was found.
+const UNLIKELY: f64 = 1e-3;
 
 /// Correlation of exponent and equilibrium, if it is close to one and the exponent is not known well for all that.
 fn confounded(fit: &LatencyFit) -> Option<f64> {

@@ -12,11 +12,8 @@
 //! nothing of correlation beyond it; both would make intervals too narrow, so that residuals are first scaled to
 //! the variance of the noise ([`NoiseModel`]) times that of its long sums over that of sums of independent blocks.
 
-use super::derived::derived;
-use super::report::given_exponent;
-use crate::fit::{
-    BootstrapOptions, Estimate, Fit, FitError, Fitted, LawOptions, NoiseModel, Parameter, Scale, condense,
-};
+use super::fitted::Point;
+use crate::fit::{BootstrapOptions, Estimate, Fit, FitError, Fitted, LawOptions, NoiseModel, Parameter, condense};
 use crate::laws::Law;
 use crate::optimise::{Effort, Ending, refine};
 use crate::random::Rng;
@@ -118,23 +115,16 @@ impl Fitted {
         values: Vec<f64>,
         effort: &mut Effort<'_>,
     ) -> Result<Option<Vec<f64>>, Cancelled> {
-        let best = (self.solution.linear.clone(), self.solution.nonlinear.clone());
         let measured = std::mem::replace(&mut self.scaled.values, values);
         let nodes = condense(&self.scaled);
-        let ending = Ending::new(1e-8, options.most_iterations);
-        let refined = refine(&self.model.at(&nodes.times), nodes.target(), &best.1, ending, effort)?;
-        self.solution.linear = refined.point.linear.to_vec();
-        self.solution.nonlinear = refined.point.theta.to_vec();
-        let searched = self.values();
-        let plain = |value: f64, _: &[f64], _: Scale| Estimate::fixed(value);
-        let parameters = self
-            .direct(&searched, &plain)
-            .into_iter()
-            .chain(given_exponent(law))
-            .chain(derived(law, self, &searched, &plain));
-        let all: Vec<f64> = parameters.map(|parameter| parameter.estimate.value).collect();
-        (self.solution.linear, self.solution.nonlinear) = best;
         self.scaled.values = measured;
+        let ending = Ending::new(1e-8, options.most_iterations);
+        let refined = refine(&self.model.at(&nodes.times), nodes.target(), &self.solution.nonlinear, ending, effort)?;
+        let point = Point {
+            linear: &refined.point.linear,
+            nonlinear: &refined.point.theta,
+        };
+        let all: Vec<f64> = self.quantities(law, point).iter().map(|quantity| quantity.value).collect();
         Ok(all.iter().all(|parameter| parameter.is_finite()).then_some(all))
     }
 }

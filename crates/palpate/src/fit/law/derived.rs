@@ -1,14 +1,13 @@
 //! Parameters that follow from those that were searched, with their gradients.
 
-use crate::fit::{Estimate, Fitted, Parameter, ParameterKind, ParameterName, ParameterRole, ParameterUnit, Scale};
+use super::quantity::Quantity;
+use crate::fit::{Fitted, ParameterKind, ParameterName, ParameterRole, ParameterUnit, Scale};
 use crate::laws::{BasisFunction, Kernel, Law, Response};
+use crate::optimise::Few;
 
-/// What makes an estimate of a value, its derivatives by the searched parameters (of ln value on the logarithmic scale) and that scale.
-pub(crate) type Estimating<'a> = &'a dyn Fn(f64, &[f64], Scale) -> Estimate;
-
-/// The derived parameters of a law.
-pub(crate) fn derived(law: Law, fitted: &Fitted, values: &[f64], estimate: Estimating<'_>) -> Vec<Parameter> {
-    let view = View::new(fitted, values, estimate);
+/// The derived parameters of a law where the searched ones have these values, and all nonlinear ones those in natural units.
+pub(crate) fn derived(law: Law, fitted: &Fitted, values: &[f64], natural: &[f64]) -> Vec<Quantity> {
+    let view = View::new(fitted, values, natural);
     match law {
         Law::Latency { .. } => vec![view.start(), view.rate_coefficient()],
         Law::Fung { .. } => view.fung(),
@@ -26,19 +25,17 @@ struct View<'a> {
     constant: f64,
     /// Place of the first amplitude.
     first: usize,
-    parameters: Vec<f64>,
-    estimate: Estimating<'a>,
+    parameters: &'a [f64],
 }
 
 impl<'a> View<'a> {
-    fn new(fitted: &'a Fitted, values: &'a [f64], estimate: Estimating<'a>) -> Self {
+    fn new(fitted: &'a Fitted, values: &'a [f64], parameters: &'a [f64]) -> Self {
         Self {
             fitted,
             values,
             constant: if fitted.model.constant { values[0] } else { fitted.scaled.center },
             first: usize::from(fitted.model.constant),
-            parameters: fitted.natural_parameters(),
-            estimate,
+            parameters,
         }
     }
 
@@ -53,8 +50,8 @@ impl<'a> View<'a> {
         parameters[index].fixed.is_none().then(|| self.fitted.model.linear() + before)
     }
 
-    fn gradient(&self, entries: &[(Option<usize>, f64)]) -> Vec<f64> {
-        let mut gradient = vec![0.0; self.values.len()];
+    fn gradient(&self, entries: &[(Option<usize>, f64)]) -> Few {
+        let mut gradient = Few::from_elem(0.0, self.values.len());
         for (place, entry) in entries {
             if let Some(place) = place {
                 gradient[*place] += entry;
@@ -64,7 +61,7 @@ impl<'a> View<'a> {
     }
 
     /// ∂/∂ of constant + Σ amplitudes.
-    fn sum_gradient(&self) -> Vec<f64> {
+    fn sum_gradient(&self) -> Few {
         (0..self.values.len()).map(|i| if i < self.fitted.model.linear() { 1.0 } else { 0.0 }).collect()
     }
 
@@ -72,40 +69,18 @@ impl<'a> View<'a> {
         self.constant + self.amplitudes().iter().sum::<f64>()
     }
 
-    /// A parameter that is known on a straight scale: its value and ∂/∂ the searched ones.
-    fn linear(&self, name: impl Into<ParameterName>, unit: ParameterUnit, value: f64, gradient: &[f64]) -> Parameter {
-        let (name, estimate) = (name.into(), (self.estimate)(value, gradient, Scale::Linear));
-        Parameter {
-            name,
-            unit,
-            estimate,
-            role: ParameterRole::Derived,
-        }
-    }
-
-    /// The same for a number above 0, with ∂/∂ of its logarithm.
-    fn log(&self, name: impl Into<ParameterName>, unit: ParameterUnit, value: f64, gradient: &[f64]) -> Parameter {
-        let (name, estimate) = (name.into(), (self.estimate)(value, gradient, Scale::Log));
-        Parameter {
-            name,
-            unit,
-            estimate,
-            role: ParameterRole::Derived,
-        }
-    }
-
-    fn total(&self, name: ParameterKind) -> Parameter {
-        self.linear(name, ParameterUnit::Signal, self.sum(), &self.sum_gradient())
+    fn total(&self, name: ParameterKind) -> Quantity {
+        linear(name, ParameterUnit::Signal, self.sum(), self.sum_gradient())
     }
 
     /// Signal at the start of relaxation; signal at the end of creep.
-    fn start(&self) -> Parameter {
+    fn start(&self) -> Quantity {
         let creep = self.fitted.model.form.response == Response::Creep;
         self.total(if creep { ParameterKind::Final } else { ParameterKind::Start })
     }
 
     /// v = λ |Δ|^(1 − n).
-    fn rate_coefficient(&self) -> Parameter {
+    fn rate_coefficient(&self) -> Quantity {
         let amplitude = self.amplitudes()[0];
         let log_amplitude = amplitude.abs().ln();
         let (n, exponent) = match self.fitted.model.form.shapes[0] {
@@ -114,20 +89,20 @@ impl<'a> View<'a> {
         };
         let entries = [(Some(self.first), -(n - 1.0) / amplitude), (self.place(0), 1.0), (exponent, -log_amplitude)];
         let value = (self.parameters[0] - (n - 1.0) * log_amplitude).exp();
-        self.log(ParameterKind::RateCoefficient, ParameterUnit::RateCoefficient, value, &self.gradient(&entries))
+        log(ParameterKind::RateCoefficient, ParameterUnit::RateCoefficient, value, self.gradient(&entries))
     }
 
     /// N, c₀, cᵢ and νᵢ.
-    fn fung(&self) -> Vec<Parameter> {
+    fn fung(&self) -> Vec<Quantity> {
         let total = self.sum();
         let share = |term: usize, part: f64, place: Option<usize>| {
             // ∂(part/total) = ∂part/total − part ∂total/total².
-            let mut gradient: Vec<f64> = self.sum_gradient().iter().map(|one| -part * one / (total * total)).collect();
+            let mut gradient: Few = self.sum_gradient().iter().map(|one| -part * one / (total * total)).collect();
             if let Some(place) = place {
                 gradient[place] += 1.0 / total;
             }
             let name = ParameterName::of_term(ParameterKind::Share, term);
-            self.linear(name, ParameterUnit::One, part / total, &gradient)
+            linear(name, ParameterUnit::One, part / total, gradient)
         };
         let rest = share(0, self.constant, self.fitted.model.constant.then_some(0));
         let mut all = vec![self.total(ParameterKind::ElasticResponse), rest];
@@ -136,18 +111,13 @@ impl<'a> View<'a> {
         }
         for (i, parameter) in self.parameters.iter().enumerate() {
             let name = ParameterName::of_term(ParameterKind::TermRate, i + 1);
-            all.push(self.log(
-                name,
-                ParameterUnit::PerSecond,
-                parameter.exp(),
-                &self.gradient(&[(self.place(i), 1.0)]),
-            ));
+            all.push(log(name, ParameterUnit::PerSecond, parameter.exp(), self.gradient(&[(self.place(i), 1.0)])));
         }
         all
     }
 
     /// N, C and τ_short.
-    fn fung_continuous(&self) -> Vec<Parameter> {
+    fn fung_continuous(&self) -> Vec<Quantity> {
         let (amplitude, log_ratio) = (self.amplitudes()[0], self.parameters[1]);
         let constant = self.fitted.model.constant.then_some(0);
         let strength = amplitude / (self.constant * log_ratio);
@@ -160,13 +130,13 @@ impl<'a> View<'a> {
         let short = self.gradient(&[(self.place(0), -1.0), (self.place(1), -1.0)]);
         vec![
             self.total(ParameterKind::ElasticResponse),
-            self.linear(ParameterKind::Strength, ParameterUnit::One, strength, &self.gradient(&entries)),
-            self.log(ParameterKind::TimeShort, ParameterUnit::Second, (-self.parameters[0] - log_ratio).exp(), &short),
+            linear(ParameterKind::Strength, ParameterUnit::One, strength, self.gradient(&entries)),
+            log(ParameterKind::TimeShort, ParameterUnit::Second, (-self.parameters[0] - log_ratio).exp(), short),
         ]
     }
 
     /// Slope of a straight flow per s, coefficient of a power per s^α.
-    fn growth(&self) -> Vec<Parameter> {
+    fn growth(&self) -> Vec<Quantity> {
         let mut all = Vec::new();
         for (i, shape) in self.fitted.model.form.shapes.iter().enumerate() {
             let parameters = self.fitted.model.parameters_of(i);
@@ -175,20 +145,35 @@ impl<'a> View<'a> {
             if *shape == BasisFunction::Straight {
                 let gradient = self.gradient(&[(place, log_rate.exp())]);
                 let rate = amplitude * log_rate.exp();
-                all.push(self.linear(ParameterKind::FlowRate, ParameterUnit::SignalPerSecond, rate, &gradient));
+                all.push(linear(ParameterKind::FlowRate, ParameterUnit::SignalPerSecond, rate, gradient));
             } else if *shape == BasisFunction::PowerGrowth {
                 let factor = (log_rate * self.parameters[parameters.start + 1]).exp();
                 let entries = [(place, factor), (self.place(parameters.start + 1), amplitude * factor * log_rate)];
                 let gradient = self.gradient(&entries);
                 let coefficient = amplitude * factor;
-                all.push(self.linear(
-                    ParameterKind::Coefficient,
-                    ParameterUnit::SignalPerPower,
-                    coefficient,
-                    &gradient,
-                ));
+                all.push(linear(ParameterKind::Coefficient, ParameterUnit::SignalPerPower, coefficient, gradient));
             }
         }
         all
+    }
+}
+
+/// A parameter that is known on a straight scale: its value and ∂/∂ the searched ones.
+fn linear(name: impl Into<ParameterName>, unit: ParameterUnit, value: f64, gradient: Few) -> Quantity {
+    Quantity {
+        name: name.into(),
+        unit,
+        role: ParameterRole::Derived,
+        value,
+        gradient,
+        scale: Scale::Linear,
+    }
+}
+
+/// The same for a number above 0, with ∂/∂ of its logarithm.
+fn log(name: impl Into<ParameterName>, unit: ParameterUnit, value: f64, gradient: Few) -> Quantity {
+    Quantity {
+        scale: Scale::Log,
+        ..linear(name, unit, value, gradient)
     }
 }

@@ -51,11 +51,13 @@ fn found(samples: &Samples<'_>, law: Law, options: &LawOptions, effort: &mut Eff
     let mut fitted = Fitted::new(samples, law, options, effort)?;
     let mut fit = fitted.report(law, options, effort)?;
     match options.intervals {
-        IntervalMethod::Curvature => {}
+        IntervalMethod::Automatic if fitted.bends(&fit) => fitted.profile(&mut fit, options, effort)?,
+        IntervalMethod::Automatic | IntervalMethod::Curvature => {}
         IntervalMethod::Profile => fitted.profile(&mut fit, options, effort)?,
         IntervalMethod::Bootstrap(how) => {
             let drawn = fitted.resample(&fit, options, &how, effort)?;
             fit.parameters.iter_mut().zip(drawn).for_each(|(parameter, drawn)| parameter.estimate = drawn);
+            fit.interval_method = options.intervals;
         }
     }
     Ok(fit)

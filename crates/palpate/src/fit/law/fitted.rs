@@ -11,18 +11,39 @@ pub(crate) struct Fitted {
     pub(crate) solution: Solution,
 }
 
+/// Free parameters in the units of the fit.
+#[derive(Clone, Copy)]
+pub(crate) struct Point<'a> {
+    pub(crate) linear: &'a [f64],
+    pub(crate) nonlinear: &'a [f64],
+}
+
+impl Solution {
+    pub(crate) fn at(&self) -> Point<'_> {
+        Point {
+            linear: &self.linear,
+            nonlinear: &self.nonlinear,
+        }
+    }
+}
+
 impl Fitted {
     /// Values of the free parameters in the caller's units: constant, amplitudes, ln of rates in 1/s, dimensionless parameters.
     pub(crate) fn values(&self) -> Vec<f64> {
+        self.values_at(self.solution.at())
+    }
+
+    /// The same at another point.
+    pub(crate) fn values_at(&self, point: Point<'_>) -> Vec<f64> {
         let (model, scaled) = (&self.model, &self.scaled);
-        let linear = self.solution.linear.iter().enumerate().map(|(i, value)| {
+        let linear = point.linear.iter().enumerate().map(|(i, value)| {
             let constant = model.constant && i == 0;
             value * scaled.range + if constant { scaled.center } else { 0.0 }
         });
         let nonlinear = model
             .parameters
             .iter()
-            .zip(self.natural_parameters())
+            .zip(self.natural_parameters(point))
             .filter(|(parameter, _)| parameter.fixed.is_none());
         linear.chain(nonlinear.map(|(_, value)| value)).collect()
     }
@@ -30,7 +51,7 @@ impl Fitted {
     /// The law with the parameters found.
     pub(crate) fn curve(&self) -> LawCurve {
         let (model, values) = (&self.model, self.values());
-        let parameters = self.natural_parameters();
+        let parameters = self.natural_parameters(self.solution.at());
         let constants = usize::from(model.constant);
         let constant = if model.constant { values[0] } else { self.scaled.center };
         let terms = model.form.shapes.iter().enumerate().map(|(shape, kind)| Term {
@@ -46,8 +67,8 @@ impl Fitted {
     }
 
     /// All nonlinear parameters, fixed ones too, in the caller's units.
-    pub(crate) fn natural_parameters(&self) -> Vec<f64> {
-        let complete = self.model.complete(&self.solution.nonlinear);
+    pub(crate) fn natural_parameters(&self, point: Point<'_>) -> Vec<f64> {
+        let complete = self.model.complete(point.nonlinear);
         let natural = |(parameter, value): (&crate::fit::problem::model::ModelParameter, f64)| match parameter.kind {
             ShapeParameterKind::Pure { .. } => value,
             _ => value - self.scaled.duration.ln(),

@@ -3,7 +3,9 @@
 //! | file | what |
 //! |---|---|
 //! | `fitted.rs` | a problem with its solution |
+//! | `quantity.rs` | a parameter with its gradient, before it has an error |
 //! | `derived.rs` | parameters that follow from those that were searched |
+//! | `quantities.rs` | all that are reported at a point |
 //! | `report.rs` | from both to the result |
 //! | `robust.rs` | outliers made to count less |
 //! | `profile.rs`, `bootstrap.rs` | intervals that may be asymmetric or open, and those from resampled residuals |
@@ -16,6 +18,8 @@ pub(crate) mod fit_law;
 pub(crate) mod fitted;
 mod prediction;
 mod profile;
+mod quantities;
+mod quantity;
 mod report;
 mod robust;
 

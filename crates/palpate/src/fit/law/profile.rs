@@ -10,11 +10,24 @@
 //! `lmfit.conf_interval`. Where residuals correlate, w is the variance of the parameter for noise of their kind over that for
 //! white noise, and t has the degrees of freedom of that variance ([`Uncertainty`](super::Uncertainty)).
 
+//!
+//! A parameter that follows from those (v from λ, Δ and n) has the ends of the one that it correlates with most, ϱ: its value at an end,
+//! its distance from the best value divided by |ϱ|. Where the data leave one direction nearly open, that direction is what all parameters
+//! share, and |ϱ| is near 1; below 0.7 the interval of the curvature stays.
+
+use super::fitted::Point;
+use super::quantity::Quantity;
 use crate::fit::noise::uncertainty::variance_of;
-use crate::fit::{Estimate, Fit, FitError, Fitted, Interval, LawOptions, Model, Samples, condense};
+use crate::fit::{
+    Condensed, Fit, FitError, Fitted, Interval, IntervalMethod, LawOptions, Model, ParameterRole, RedundantTerm,
+    Samples, Scale, Uncertainty, condense,
+};
 use crate::laws::{Law, ShapeParameterKind};
-use crate::optimise::{Effort, Ending, Shapes, Target, refine};
+use crate::optimise::{Effort, Ending, Few, Shapes, Target, refine};
 use crate::watch::{Cancelled, Progress};
+
+/// Valleys that an end is looked for in, one behind the other.
+const VALLEYS: usize = 6;
 
 /// Standard errors from the best value beyond which an end counts as open.
 const FARTHEST: f64 = 2000.0;
@@ -25,9 +38,21 @@ const CLOSE: f64 = 1e-9;
 /// The same on condensed samples, which only show where to look.
 const ROUGH: f64 = 1e-3;
 
+/// Half an interval over the parameter beyond which its curvature is not to be trusted.
+const WIDE: f64 = 1.0 / 3.0;
+
+/// The same where a time constant is longer than the hold.
+const WIDE_IF_LONG: f64 = 0.1;
+
+/// Standard errors of an amplitude below which noise alone may have left the term: the largest of some ten places is twice as far out as one.
+const DOUBTFUL: f64 = 4.0;
+
+/// Correlation below which a profile says too little of another parameter.
+const FOLLOWED: f64 = 0.7;
+
 /// The profile-likelihood interval of a parameter of a law, by its name as in the result of [`fit_law`](crate::fit::fit_law).
 ///
-/// Parameters that follow from others (`start`, `rate_coefficient`) have none. An end is open (`None`) if the profile stays below
+/// Parameters that follow from others (`start`, `rate_coefficient`) have none of their own. An end is open (`None`) if the profile stays below
 /// its bound up to the edge of the range in which parameters are sought, or 2000 standard errors away. Both are where the
 /// fit did not converge.
 ///
@@ -52,62 +77,187 @@ pub fn profile_interval(
     name: &str,
 ) -> Result<Interval, FitError> {
     let fitted = Fitted::new(samples, law, options, &mut Effort::default())?;
-    let parameter = Searched::named(&fitted.model, name)?;
+    let names = fitted.model.names(|parameter| parameter.name.clone());
+    let place = names.iter().position(|known| known == name).ok_or_else(|| FitError::UnknownParameter {
+        name: name.to_owned(),
+        known: names.join(", "),
+    })?;
     let fit = fitted.report(law, options, &Effort::default())?;
-    fitted.profile_of(parameter, &fit, options, &mut Effort::default())
+    let quantities = fitted.quantities(law, fitted.solution.at());
+    let quantity = quantities.iter().position(|quantity| quantity.name == *name);
+    let (Some(uncertainty), Some(quantity), true) = (&fit.uncertainty, quantity, fit.termination.is_good()) else {
+        return Ok(Interval::OPEN);
+    };
+    let ends = fitted.ends(place, &fit, uncertainty, &condense(&fitted.scaled), options, &mut Effort::default())?;
+    let value = |end: &Option<Reached>| end.as_ref().map(|end| fitted.quantities(law, end.at())[quantity].value);
+    let [low, high] = [&ends.low, &ends.high].map(value);
+    Ok(match quantities[quantity].gradient[place] < 0.0 {
+        true => Interval { low: high, high: low },
+        false => Interval { low, high },
+    })
 }
 
 impl Fitted {
-    /// Intervals of all searched parameters of this fit by their profiles, whose ends may be open; where the whole profile is, there is
-    /// no standard error.
+    /// Whether the intervals of curvature are not to be trusted: a parameter beside the constant whose interval is wide, a time constant
+    /// longer than the hold, terms that merge or vanish. The curve then bends within an interval.
+    pub(crate) fn bends(&self, fit: &Fit) -> bool {
+        let (true, Some(uncertainty)) = (fit.termination.is_good(), &fit.uncertainty) else {
+            return false;
+        };
+        let is_constant = |quantity: &Quantity| self.model.constant && quantity.gradient[0] != 0.0;
+        let lasts = |(kind, theta): (ShapeParameterKind, &f64)| match kind {
+            ShapeParameterKind::Time | ShapeParameterKind::Rate => *theta < 0.0,
+            ShapeParameterKind::Pure { .. } | ShapeParameterKind::Reference => false,
+        };
+        let kinds = self.model.free().map(|parameter| parameter.kind);
+        let wide = if kinds.zip(&self.solution.nonlinear).any(lasts) { WIDE_IF_LONG } else { WIDE };
+        let half = |quantity: &Quantity| {
+            let error = variance_of(&quantity.gradient, &uncertainty.covariance).sqrt();
+            let unit = if quantity.scale == Scale::Log { 1.0 } else { quantity.value.abs() };
+            error * uncertainty.factor(&quantity.gradient, 0.0) / unit
+        };
+        let quantities = self.quantities(fit.law, self.solution.at());
+        let mut shapes = quantities.iter().filter(|one| one.role == ParameterRole::Estimated && !is_constant(one));
+        !fit.redundant_terms.is_empty() || shapes.any(|quantity| half(quantity) > wide)
+    }
+
+    /// Intervals of the parameters of this fit by their profiles, whose ends may be open; standard errors are those of curvature.
     pub(crate) fn profile(&self, fit: &mut Fit, options: &LawOptions, effort: &mut Effort<'_>) -> Result<(), FitError> {
-        let known = fit.clone();
-        for parameter in &mut fit.parameters {
-            let Ok(searched) = Searched::named(&self.model, &parameter.name.to_string()) else {
+        fit.interval_method = IntervalMethod::Profile;
+        let (Some(uncertainty), true) = (fit.uncertainty.clone(), fit.termination.is_good()) else {
+            return Ok(());
+        };
+        let nodes = condense(&self.scaled);
+        let (size, known) = (fit.values.len(), fit.clone());
+        let all = (0..size).map(|place| self.ends(place, &known, &uncertainty, &nodes, options, effort));
+        let all = all.collect::<Result<Vec<Ends>, Cancelled>>()?;
+        let values_at = |end: &Option<Reached>| -> Option<Vec<f64>> {
+            let quantities = self.quantities(fit.law, end.as_ref()?.at());
+            Some(quantities.iter().map(|quantity| quantity.value).collect())
+        };
+        let reached: Vec<[Option<Vec<f64>>; 2]> =
+            all.iter().map(|ends| [&ends.low, &ends.high].map(values_at)).collect();
+        let best = self.quantities(fit.law, self.solution.at());
+        for (i, (quantity, parameter)) in best.iter().zip(&mut fit.parameters).enumerate() {
+            let Some((place, correlation)) = followed(&quantity.gradient, &uncertainty.covariance) else {
                 continue;
             };
-            let interval = self.profile_of(searched, &known, options, effort)?;
-            let lowest = if searched.is_above_zero() { 0.0 } else { f64::NEG_INFINITY };
-            let ends = (interval.low.unwrap_or(lowest), interval.high.unwrap_or(f64::INFINITY));
-            parameter.estimate = match known.termination.is_good() {
-                true => Estimate {
-                    interval: Some(ends),
-                    ..parameter.estimate
-                },
-                false => parameter.estimate,
+            let [low, high] = &reached[place];
+            let [low, high] = if correlation < 0.0 { [high, low] } else { [low, high] };
+            let end = |values: &Option<Vec<f64>>, open: f64| {
+                values.as_ref().map_or(open, |values| quantity.beyond(values[i], correlation.abs()))
             };
+            let lowest = if quantity.scale == Scale::Log { 0.0 } else { f64::NEG_INFINITY };
+            parameter.estimate.interval = Some((end(low, lowest), end(high, f64::INFINITY)));
         }
         Ok(())
     }
 
-    fn profile_of(
+    /// Terms of a series of exponentials that noise alone may have left.
+    fn doubtful(&self, fit: &Fit) -> Doubtful {
+        let mut doubtful = Doubtful::default();
+        let (true, Some(white)) = (self.model.is_series(), &fit.white_covariance) else {
+            return doubtful;
+        };
+        for (term, &shape) in self.model.moving().0.iter().enumerate() {
+            let place = usize::from(self.model.constant) + shape;
+            let z = fit.values[place].abs() / white[place][place].sqrt();
+            let is_merged = fit.redundant_terms.iter().any(|redundant| match *redundant {
+                RedundantTerm::Merged { a, b } => a == term + 1 || b == term + 1,
+                RedundantTerm::Vanishing { .. } => false,
+            });
+            if z < DOUBTFUL {
+                doubtful.z = z.max(doubtful.z);
+            }
+            if z < DOUBTFUL || is_merged {
+                doubtful.terms.push(term);
+            }
+        }
+        doubtful
+    }
+
+    /// Both ends of the profile of a searched parameter.
+    fn ends(
         &self,
-        parameter: Searched,
+        place: usize,
         fit: &Fit,
+        uncertainty: &Uncertainty,
+        nodes: &Condensed,
         options: &LawOptions,
         effort: &mut Effort<'_>,
-    ) -> Result<Interval, FitError> {
+    ) -> Result<Ends, Cancelled> {
         effort.reach(Progress::open("following a profile", 0))?;
-        let (Some(uncertainty), Some(inverse)) = (&fit.uncertainty, &self.solution.inverse_normal) else {
-            return Ok(Interval::OPEN);
+        let (size, linear) = (fit.values.len(), self.model.linear());
+        let parameter = match place < linear {
+            true => Searched::Linear(place),
+            false => Searched::Nonlinear(self.model.free[place - linear], place - linear),
         };
-        let (size, place) = (fit.values.len(), parameter.place(&self.model));
-        let gradient: Vec<f64> = (0..size).map(|i| if i == place { 1.0 } else { 0.0 }).collect();
+        let gradient: Few = (0..size).map(|i| if i == place { 1.0 } else { 0.0 }).collect();
         let white = fit.white_covariance.as_ref().map_or(f64::NAN, |covariance| covariance[place][place]);
         let widening = (variance_of(&gradient, &uncertainty.covariance) / white).sqrt();
+        let variance = self.solution.inverse_normal.as_ref().map_or(f64::NAN, |inverse| inverse[place * size + place]);
+        let doubtful = self.doubtful(fit);
         let profile = Profile {
             fitted: self,
+            nodes,
+            doubtful: &doubtful.terms,
             parameter,
-            error: (inverse[place * size + place] * self.solution.residual_square / uncertainty.freedom).sqrt(),
-            target: uncertainty.factor(&gradient, 0.0) * widening,
+            error: (variance * self.solution.residual_square / uncertainty.freedom).sqrt(),
+            target: (uncertainty.factor(&gradient, 0.0) * widening).hypot(doubtful.z),
             freedom: uncertainty.freedom,
             most_iterations: options.most_iterations,
         };
-        if !(fit.termination.is_good() && profile.error > 0.0 && profile.target.is_finite()) {
-            return Ok(Interval::OPEN);
+        if !(profile.error > 0.0 && profile.target.is_finite()) {
+            return Ok(Ends::default());
         }
-        Ok(parameter.in_natural_units(self, profile.end(-1.0, effort)?, profile.end(1.0, effort)?))
+        let end = if profile.doubtful.is_empty() { Profile::end } else { Profile::end_among_valleys };
+        Ok(Ends {
+            low: end(&profile, -1.0, effort)?,
+            high: end(&profile, 1.0, effort)?,
+        })
     }
+}
+
+/// Which searched parameter a quantity with this gradient correlates with most, and how much; none if it does so with none.
+fn followed(gradient: &[f64], covariance: &[Vec<f64>]) -> Option<(usize, f64)> {
+    let own = variance_of(gradient, covariance);
+    let correlation = |row: &Vec<f64>, i: usize| {
+        let along: f64 = row.iter().zip(gradient).map(|(entry, g)| entry * g).sum();
+        along / (own * row[i]).sqrt()
+    };
+    let all = covariance.iter().enumerate().map(|(i, row)| (i, correlation(row, i)));
+    all.filter(|(_, correlation)| correlation.abs() >= FOLLOWED)
+        .max_by(|a, b| a.1.abs().total_cmp(&b.1.abs()))
+}
+
+impl Quantity {
+    /// Where the quantity ends if it has this value at the end of a parameter that it correlates with.
+    fn beyond(&self, end: f64, correlation: f64) -> f64 {
+        if correlation > 1.0 - 1e-9 {
+            return end;
+        }
+        match self.scale {
+            Scale::Linear => self.value + (end - self.value) / correlation,
+            Scale::Log => self.value * (end / self.value).powf(1.0 / correlation),
+        }
+    }
+}
+
+/// Terms of a series that noise alone may have left, in one of the many places where it could have. They took out of the residuals what a
+/// fit without them leaves there: z², by which the bound of a profile is raised.
+#[derive(Default)]
+struct Doubtful {
+    /// Places of their times among the free nonlinear parameters, of which a series has one a term.
+    terms: Vec<usize>,
+    /// The largest amplitude over its standard error.
+    z: f64,
+}
+
+/// Ends of a profile; `None` where it is open.
+#[derive(Default)]
+struct Ends {
+    low: Option<Reached>,
+    high: Option<Reached>,
 }
 
 /// Which of the searched parameters.
@@ -119,57 +269,12 @@ enum Searched {
     Nonlinear(usize, usize),
 }
 
-impl Searched {
-    fn named(model: &Model, name: &str) -> Result<Self, FitError> {
-        let names = model.names(|parameter| parameter.name.clone());
-        match names.iter().position(|known| known == name) {
-            Some(place) if place < model.linear() => Ok(Self::Linear(place)),
-            Some(place) => Ok(Self::Nonlinear(model.free[place - model.linear()], place - model.linear())),
-            None => Err(FitError::UnknownParameter {
-                name: name.to_owned(),
-                known: names.join(", "),
-            }),
-        }
-    }
-
-    /// Whether it is a rate, a time or an exponent.
-    fn is_above_zero(self) -> bool {
-        matches!(self, Self::Nonlinear(..))
-    }
-
-    /// Place in the covariance.
-    fn place(self, model: &Model) -> usize {
-        match self {
-            Self::Linear(place) => place,
-            Self::Nonlinear(_, free) => model.linear() + free,
-        }
-    }
-
-    /// Ends in the units of the fit brought to those of the caller.
-    fn in_natural_units(self, fitted: &Fitted, low: Option<f64>, high: Option<f64>) -> Interval {
-        let (model, scaled) = (&fitted.model, &fitted.scaled);
-        let natural = |value: f64| match self {
-            Self::Linear(0) if model.constant => value * scaled.range + scaled.center,
-            Self::Linear(_) => value * scaled.range,
-            Self::Nonlinear(place, _) => match model.parameters[place].kind {
-                ShapeParameterKind::Pure { .. } => value,
-                ShapeParameterKind::Time => scaled.duration * (-value).exp(),
-                ShapeParameterKind::Rate | ShapeParameterKind::Reference => value.exp() / scaled.duration,
-            },
-        };
-        let (low, high) = (low.map(natural), high.map(natural));
-        match self {
-            Self::Nonlinear(place, _) if model.parameters[place].kind == ShapeParameterKind::Time => {
-                Interval { low: high, high: low }
-            }
-            _ => Interval { low, high },
-        }
-    }
-}
-
 /// The profile of one parameter.
 struct Profile<'a> {
     fitted: &'a Fitted,
+    nodes: &'a Condensed,
+    /// Places of the times of doubtful terms among the free nonlinear parameters.
+    doubtful: &'a [usize],
     parameter: Searched,
     /// Standard error for white noise, in the units of the fit.
     error: f64,
@@ -179,55 +284,129 @@ struct Profile<'a> {
     most_iterations: usize,
 }
 
-/// A point of a profile: z, and the free nonlinear parameters there.
+/// A point of a profile: its residual square, z, and the parameters there.
 #[derive(Clone)]
 struct Reached {
     distance: f64,
+    square: f64,
     z: f64,
-    theta: Vec<f64>,
+    linear: Vec<f64>,
+    /// All free nonlinear ones, that which is held with them.
+    nonlinear: Vec<f64>,
     /// A free parameter lies at the edge of its range.
     at_edge: bool,
+}
+
+impl Reached {
+    fn at(&self) -> Point<'_> {
+        Point {
+            linear: &self.linear,
+            nonlinear: &self.nonlinear,
+        }
+    }
 }
 
 /// Samples or the nodes that stand for them.
 struct Field<'a> {
     times: &'a [f64],
     target: Target<'a>,
+    /// Square that the nodes leave out.
     inside: f64,
+    /// Residual square at the optimum.
+    least: f64,
 }
 
 impl Profile<'_> {
-    /// Where the profile meets its bound on one side, in the units of the fit.
-    fn end(&self, side: f64, effort: &mut Effort<'_>) -> Result<Option<f64>, Cancelled> {
-        let nodes = condense(&self.fitted.scaled);
-        let all = Field {
+    /// All samples.
+    fn all(&self) -> Field<'_> {
+        Field {
             times: &self.fitted.scaled.times,
             target: self.fitted.scaled.target(),
             inside: 0.0,
-        };
-        let few = Field {
+            least: self.fitted.solution.residual_square,
+        }
+    }
+
+    /// The nodes, if there are few of them beside the samples.
+    fn few(&self, effort: &mut Effort<'_>) -> Result<Option<Field<'_>>, Cancelled> {
+        let nodes = self.nodes;
+        if 4 * nodes.times.len() >= self.fitted.scaled.times.len() {
+            return Ok(None);
+        }
+        let field = Field {
             times: &nodes.times,
             target: nodes.target(),
             inside: nodes.inside,
+            least: 1.0,
         };
-        let start = self.start();
-        let worth = 4 * nodes.times.len() < all.times.len();
-        let guess = if worth { self.meet(&few, side, &start, self.target, ROUGH, effort)? } else { None };
-        let (theta, first) = guess.map_or((start.theta.clone(), self.target), |guess| (guess.theta, guess.distance));
-        let met = self.meet(&all, side, &Reached { theta, ..start }, first, CLOSE, effort)?;
-        Ok(met.filter(|met| !met.at_edge).map(|met| self.value(side, met.distance)))
+        let least = self.at(&field, 1.0, 0.0, &self.start(), effort)?.square;
+        Ok(Some(Field { least, ..field }))
     }
 
-    /// The best value and the other nonlinear parameters there.
-    fn start(&self) -> Reached {
-        let mut theta = self.fitted.solution.nonlinear.clone();
-        if let Searched::Nonlinear(_, free) = self.parameter {
-            theta.remove(free);
+    /// Where the profile meets its bound on one side.
+    fn end(&self, side: f64, effort: &mut Effort<'_>) -> Result<Option<Reached>, Cancelled> {
+        let start = self.start();
+        let guess = match self.few(effort)? {
+            Some(few) => self.meet(&few, side, &start, self.target, ROUGH, effort)?,
+            None => None,
+        };
+        let first = guess.as_ref().map_or(self.target, |guess| guess.distance);
+        let nonlinear = guess.map_or_else(|| start.nonlinear.clone(), |guess| guess.nonlinear);
+        let met = self.meet(&self.all(), side, &Reached { nonlinear, ..start }, first, CLOSE, effort)?;
+        Ok(met.filter(|met| !met.at_edge))
+    }
+
+    /// The same beside doubtful terms: each lies in one of many valleys, of which another may be the lowest when a parameter is held
+    /// elsewhere. The profile jumps from one to the next, and is followed roughly.
+    fn end_among_valleys(&self, side: f64, effort: &mut Effort<'_>) -> Result<Option<Reached>, Cancelled> {
+        let field = self.few(effort)?.unwrap_or_else(|| self.all());
+        let (mut from, mut first) = (self.start(), self.target);
+        let mut met = None;
+        for _ in 0..VALLEYS {
+            met = self.meet(&field, side, &from, first, ROUGH, effort)?.filter(|met| !met.at_edge);
+            let Some(end) = &met else { break };
+            let Some(lower) = self.elsewhere(&field, side, end, effort)? else {
+                break;
+            };
+            (first, from) = (1.2 * end.distance, lower);
         }
+        Ok(met)
+    }
+
+    /// A lower point of the profile at the same place, with a doubtful term at another time; `None` if there is none below the bound.
+    fn elsewhere(
+        &self,
+        field: &Field<'_>,
+        side: f64,
+        met: &Reached,
+        effort: &mut Effort<'_>,
+    ) -> Result<Option<Reached>, Cancelled> {
+        /// ln of rates over that of the hold.
+        const PLACES: [f64; 5] = [-2.0, 0.0, 1.5, 3.0, 5.0];
+        /// Of the bound; below it is worth going on.
+        const LOWER: f64 = 0.98;
+        let mut lowest: Option<Reached> = None;
+        for &term in self.doubtful {
+            for place in PLACES {
+                let mut start = met.clone();
+                start.nonlinear[term] = place;
+                let found = self.at(field, side, met.distance, &start, effort)?;
+                if found.z < lowest.as_ref().map_or(LOWER * self.target, |lowest| lowest.z) {
+                    lowest = Some(found);
+                }
+            }
+        }
+        Ok(lowest)
+    }
+
+    /// The optimum.
+    fn start(&self) -> Reached {
         Reached {
             distance: 0.0,
+            square: self.fitted.solution.residual_square,
             z: 0.0,
-            theta,
+            linear: self.fitted.solution.linear.clone(),
+            nonlinear: self.fitted.solution.nonlinear.clone(),
             at_edge: false,
         }
     }
@@ -260,17 +439,18 @@ impl Profile<'_> {
         close: f64,
         effort: &mut Effort<'_>,
     ) -> Result<Option<Reached>, Cancelled> {
-        const ROUNDS: usize = 100;
+        /// Halvings of what is left, if no secant leads anywhere.
+        const ROUNDS: usize = 40;
         let farthest = self.farthest(side);
         let mut near = start.clone();
-        let mut far = self.at(field, side, first.min(farthest), &near.theta, effort)?;
+        let mut far = self.at(field, side, first.min(farthest), &near, effort)?;
         while far.z < self.target {
             if far.distance >= farthest {
                 return Ok(None);
             }
             let growth = (1.05 * self.target / far.z).clamp(1.1, 2.0);
             near = far;
-            far = self.at(field, side, (near.distance * growth).min(farthest), &near.theta, effort)?;
+            far = self.at(field, side, (near.distance * growth).min(farthest), &near, effort)?;
         }
         // What is missing at the near end, what is over at the far one.
         let (mut missing, mut over) = (self.target - near.z, far.z - self.target);
@@ -278,7 +458,7 @@ impl Profile<'_> {
             let share = missing / (missing + over);
             let middle = near.distance + share * (far.distance - near.distance);
             let width = far.distance - near.distance;
-            let trial = self.at(field, side, middle, &far.theta, effort)?;
+            let trial = self.at(field, side, middle, &far, effort)?;
             let left = self.target - trial.z;
             if width < close * (1.0 + middle) || left.abs() < close {
                 return Ok(Some(trial));
@@ -298,23 +478,33 @@ impl Profile<'_> {
         field: &Field<'_>,
         side: f64,
         distance: f64,
-        theta: &[f64],
+        near: &Reached,
         effort: &mut Effort<'_>,
     ) -> Result<Reached, Cancelled> {
-        let model = self.held(self.value(side, distance));
+        let value = self.value(side, distance);
+        let model = self.held(value);
         let shapes = model.at(field.times);
-        let ending = Ending::tight(self.most_iterations);
-        let refined = refine(&shapes, field.target, theta, ending, effort)?;
-        let excess = (refined.point.square + field.inside) / self.fitted.solution.residual_square - 1.0;
-        let at_edge = refined.point.theta.iter().enumerate().any(|(i, value)| {
+        let mut theta = near.nonlinear.clone();
+        if let Searched::Nonlinear(_, free) = self.parameter {
+            theta.remove(free);
+        }
+        let point = refine(&shapes, field.target, &theta, Ending::tight(self.most_iterations), effort)?.point;
+        let square = point.square + field.inside;
+        let at_edge = point.theta.iter().enumerate().any(|(i, value)| {
             let (low, high) = shapes.bounds(i);
             let near = 1e-6 * (high - low);
             *value <= low + near || *value >= high - near
         });
+        let mut nonlinear = point.theta.to_vec();
+        if let Searched::Nonlinear(_, free) = self.parameter {
+            nonlinear.insert(free, value);
+        }
         Ok(Reached {
             distance,
-            z: (excess.max(0.0) * self.freedom).sqrt(),
-            theta: refined.point.theta.to_vec(),
+            square,
+            z: ((square / field.least - 1.0).max(0.0) * self.freedom).sqrt(),
+            linear: point.linear.to_vec(),
+            nonlinear,
             at_edge,
         })
     }

@@ -1,12 +1,8 @@
 //! From a solution to the result: parameters with errors and intervals.
 
-use super::derived::{Estimating, derived};
-use crate::fit::{
-    Assessed, Domain, Estimate, Fit, Fitted, LawOptions, Loss, Parameter, ParameterKind, ParameterName, ParameterRole,
-    ParameterUnit, Scale, Trust, redundant_terms,
-};
-use crate::laws::{ExponentChoice, Law, ShapeParameterKind};
-use crate::optimise::{Effort, Few, Shapes, Termination, Work};
+use crate::fit::{Assessed, Domain, Fit, Fitted, IntervalMethod, LawOptions, Loss, Trust, redundant_terms};
+use crate::laws::Law;
+use crate::optimise::{Effort, Shapes, Termination, Work};
 use crate::watch::Cancelled;
 
 impl Fitted {
@@ -49,10 +45,8 @@ impl Fitted {
     /// The result with these errors.
     pub(crate) fn report_with(&self, law: Law, assessed: Assessed, work: Work) -> Fit {
         let (solution, values, scale) = (&self.solution, self.values(), self.scaled.range);
-        let estimate = |value: f64, gradient: &[f64], scale: Scale| assessed.estimate(value, gradient, scale);
-        let mut parameters = self.direct(&values, &estimate);
-        parameters.extend(given_exponent(law));
-        parameters.extend(derived(law, self, &values, &estimate));
+        let quantities = self.quantities(law, solution.at());
+        let parameters = quantities.into_iter().map(|quantity| quantity.reported(&assessed)).collect();
         let residual_square = (solution.residual_square.sqrt() * scale * self.scaled.precision).powi(2);
         let samples = self.scaled.times.len();
         let mean_square = match &self.scaled.roots {
@@ -74,6 +68,8 @@ impl Fitted {
             residual_correlation: assessed.correlation,
             uneven_noise: assessed.uneven,
             noise: assessed.noise,
+            noise_p_value: assessed.noise_p_value,
+            interval_method: IntervalMethod::Curvature,
             uncertainty: assessed.uncertainty,
             samples,
             start: self.scaled.start,
@@ -99,67 +95,5 @@ impl Fitted {
     fn amplitudes(&self) -> Vec<f64> {
         let shapes = self.model.at(&self.scaled.times);
         (0..self.solution.nonlinear.len()).map(|i| self.solution.linear[shapes.column_of(i)]).collect()
-    }
-
-    /// The parameters that were searched, and those held, as they are reported: times for ln of rates.
-    pub(crate) fn direct(&self, values: &[f64], estimate: Estimating<'_>) -> Vec<Parameter> {
-        let model = &self.model;
-        let row =
-            |i: usize, entry: f64| -> Few { (0..values.len()).map(|j| if i == j { entry } else { 0.0 }).collect() };
-        let mut parameters = Vec::with_capacity(1 + model.form.shapes.len() + model.parameters.len());
-        let mut add = |name: &str, unit: ParameterUnit, estimate: Estimate, role: ParameterRole| {
-            parameters.extend(ParameterName::of_form(&model.form, name).map(|name| Parameter {
-                name,
-                unit,
-                estimate,
-                role,
-            }));
-        };
-        let level = |at: usize| estimate(values[at], &row(at, 1.0), Scale::Linear);
-        let constants = usize::from(model.constant);
-        let (constant, role) = match model.constant {
-            true => (level(0), ParameterRole::Estimated),
-            false => (Estimate::fixed(self.scaled.center), ParameterRole::Given),
-        };
-        // A law without a constant has none to report.
-        if model.constant || model.form.constant || self.scaled.center != 0.0 {
-            add(model.form.constant_name(), ParameterUnit::Signal, constant, role);
-        }
-        for (i, name) in model.form.amplitude_names().iter().enumerate() {
-            add(name, ParameterUnit::Signal, level(i + constants), ParameterRole::Estimated);
-        }
-        let mut at = model.linear();
-        for (parameter, value) in model.parameters.iter().zip(self.natural_parameters()) {
-            let (unit, value, slope) = match parameter.kind {
-                ShapeParameterKind::Pure { .. } => (ParameterUnit::One, value, 1.0 / value),
-                ShapeParameterKind::Time => (ParameterUnit::Second, (-value).exp(), -1.0),
-                ShapeParameterKind::Rate => (ParameterUnit::PerSecond, value.exp(), 1.0),
-                ShapeParameterKind::Reference => continue,
-            };
-            let (found, role) = match parameter.fixed {
-                Some(_) => (Estimate::fixed(value), ParameterRole::Given),
-                None => {
-                    at += 1;
-                    (estimate(value, &row(at - 1, slope), Scale::Log), ParameterRole::Estimated)
-                }
-            };
-            add(&parameter.name, unit, found, role);
-        }
-        parameters
-    }
-}
-
-/// The exponent of a latency law that has it in its name.
-pub(crate) fn given_exponent(law: Law) -> Option<Parameter> {
-    match law {
-        Law::Latency {
-            exponent: ExponentChoice::Fixed(n),
-        } => Some(Parameter {
-            name: ParameterKind::Exponent.into(),
-            unit: ParameterUnit::One,
-            estimate: Estimate::fixed(n),
-            role: ParameterRole::Given,
-        }),
-        _ => None,
     }
 }

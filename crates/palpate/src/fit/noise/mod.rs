@@ -32,6 +32,7 @@
 //! | `lagged.rs` | that of autoregressions |
 //! | `markov.rs` | white noise beside a random walk, or beside noise in time |
 //! | `estimation.rs` | which noise left the residuals |
+//! | `portmanteau.rs` | whether it accounts for them |
 //! | `spread.rs` | noise whose size changes along the hold |
 //! | `uncertainty.rs` | errors and intervals that follow |
 
@@ -42,6 +43,7 @@ mod lagged;
 mod likelihood;
 mod markov;
 pub(crate) mod model;
+mod portmanteau;
 mod rows;
 mod spread;
 pub(crate) mod uncertainty;

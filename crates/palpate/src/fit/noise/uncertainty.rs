@@ -5,6 +5,7 @@ use smallvec::SmallVec;
 
 use super::columns::Columns;
 use super::model::{Lags, Likely, Noise};
+use super::portmanteau::p_value;
 use super::spread::{Spread, by_residuals};
 use crate::fit::{Estimate, NoiseChoice, NoiseModel};
 use crate::optimise::{Cholesky, Effort, Few, Solution, Termination};
@@ -161,6 +162,8 @@ pub(crate) struct Assessed {
     pub(crate) white: Option<Vec<Vec<f64>>>,
     pub(crate) uncertainty: Option<Uncertainty>,
     pub(crate) noise: NoiseModel,
+    /// Probability that this noise leaves such residuals.
+    pub(crate) noise_p_value: Option<f64>,
     pub(crate) correlation: f64,
     /// The size of the noise changes along the samples.
     pub(crate) uneven: bool,
@@ -212,14 +215,20 @@ impl Assessed {
             .then(|| Spread::of(&solution.residuals, &fitted(solution), lags.correlations[0]))
             .flatten();
         effort.hear()?;
-        let noise = match (choice, &spread) {
-            (NoiseChoice::White, _) => Noise::white(&lags, freedom),
-            (NoiseChoice::FromResiduals, None) => Noise::of(&columns, &solution.residuals, &lags, times),
+        let (noise, noise_p_value) = match (choice, &spread) {
+            (NoiseChoice::White, _) => (Noise::white(&lags, freedom), None),
+            (NoiseChoice::FromResiduals, None) => {
+                let noise = Noise::of(&columns, &solution.residuals, &lags, times);
+                let p_value = times.is_none().then(|| p_value(&solution.residuals, noise.model)).flatten();
+                (noise, p_value)
+            }
             (NoiseChoice::FromResiduals, Some(spread)) => {
                 let even: Vec<Vec<f64>> = columns.iter().map(|column| spread.even(column)).collect();
                 let views: Vec<&[f64]> = even.iter().map(Vec::as_slice).collect();
                 let residuals = spread.even(&solution.residuals);
-                Noise::of(&views, &residuals, &Lags::of(&residuals), times)
+                let noise = Noise::of(&views, &residuals, &Lags::of(&residuals), times);
+                let p_value = p_value(&residuals, noise.model);
+                (noise, p_value)
             }
         };
         effort.hear()?;
@@ -277,6 +286,7 @@ impl Assessed {
             white,
             uncertainty: uncertainty.filter(|found| finite(&found.covariance)),
             noise: noise.model.in_unit(time_unit),
+            noise_p_value,
             correlation: lags.correlations[0],
             uneven: spread.is_some(),
         })
@@ -334,6 +344,7 @@ impl Assessed {
             white,
             uncertainty,
             noise,
+            noise_p_value: None,
             correlation,
             uneven: false,
         }
