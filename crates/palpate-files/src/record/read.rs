@@ -129,8 +129,8 @@ pub fn read_part(
         (column.role, values)
     });
     let (raw, bent) = assemble(series.collect());
-    progress(read.bytes, read.bytes).map_err(FileError::from)?;
-    let (signals, has_displacement) = (raw.report(), raw.displacement.is_some());
+    let signals = raw.report_heard(&mut || progress(read.bytes, read.bytes)).map_err(FileError::from)?;
+    let has_displacement = raw.displacement.is_some();
     let averaged = (read.averaged > 1).then(|| Correction::RowsAveraged {
         rows: read.rows(),
         averaged: read.averaged,

@@ -1,5 +1,7 @@
 //! Columns as a file holds them, before anything is checked.
 
+use std::convert::Infallible;
+
 use super::checks::{self, RecordError};
 use super::repair::{Repaired, repaired};
 use super::{Clock, Record, SignalReport};
@@ -36,8 +38,17 @@ impl RawColumns {
     /// What the columns are like.
     #[must_use]
     pub fn report(&self) -> SignalReport {
+        let Ok(report) = self.report_heard(&mut || Ok::<(), Infallible>(()));
+        report
+    }
+
+    /// The same, where `hear` says in between whether to go on: columns of millions of rows take a second.
+    ///
+    /// # Errors
+    /// What `hear` says.
+    pub fn report_heard<E>(&self, hear: &mut dyn FnMut() -> Result<(), E>) -> Result<SignalReport, E> {
         let force_time = self.force_time.as_deref().filter(|_| self.displacement.is_some());
-        SignalReport::of(&self.time, self.displacement.as_deref(), &self.force, force_time)
+        SignalReport::heard(&self.time, self.displacement.as_deref(), &self.force, force_time, hear)
     }
 
     /// The record of these columns, with time stamps repaired where that is safe.

@@ -81,15 +81,31 @@ impl<'a> Columns<'a> {
     /// JᵀMJ of a walk of steps of 1: Σ_k g_k S_k S_kᵀ with S_k the sums of the columns from sample k on, and g_k the time since the sample before
     /// it in mean times between samples.
     fn of_walk(&self) -> Vec<f64> {
+        /// Samples whose sums are kept at a time.
+        const BLOCK: usize = 4096;
         let size = self.columns.len();
         let samples = self.columns.first().map_or(0, |column| column.len());
-        let (mut sums, mut product) = (vec![0.0; size], vec![0.0; size * size]);
-        for k in (1..samples).rev() {
-            sums.iter_mut().zip(self.columns).for_each(|(sum, column)| *sum += column[k]);
-            let gap = steps_since(k, self.times) - steps_since(k - 1, self.times);
-            for (row, one) in product.chunks_exact_mut(size).zip(&sums) {
-                row.iter_mut().zip(&sums).for_each(|(entry, other)| *entry += gap * one * other);
+        let (mut product, mut of_block) = (vec![0.0; size * size], vec![0.0; size * size]);
+        let (mut sums, mut last) = (vec![Vec::new(); size], vec![0.0; size]);
+        let mut end = samples;
+        while end > 1 {
+            let start = end.saturating_sub(BLOCK).max(1);
+            let gaps = self.times.map(|times| {
+                let gap = |k: usize| steps_since(k, Some(times)) - steps_since(k - 1, Some(times));
+                (start..end).rev().map(|k| gap(k).sqrt()).collect::<Vec<f64>>()
+            });
+            for ((sums, column), last) in sums.iter_mut().zip(self.columns).zip(&mut last) {
+                sums.clear();
+                sums.extend(column[start..end].iter().rev().map(|entry| {
+                    *last += entry;
+                    *last
+                }));
+                let roots = gaps.iter().flatten();
+                sums.iter_mut().zip(roots).for_each(|(sum, root)| *sum *= root);
             }
+            cross_products(&sums, &sums, &mut of_block);
+            product.iter_mut().zip(&of_block).for_each(|(sum, entry)| *sum += entry);
+            end = start;
         }
         product
     }

@@ -11,11 +11,14 @@ mod stamps;
 mod values;
 
 pub use rounding::rounding_step;
+use rounding::rounding_step_heard;
 pub(super) use stamps::gap_rows;
 pub use stamps::{Gaps, Reversals, SampleInterval, Stamps};
 pub(super) use values::lost_rows;
 pub(crate) use values::stray_rows;
 pub use values::{Saturation, Strays, Values};
+
+use std::convert::Infallible;
 
 use serde::{Deserialize, Serialize};
 
@@ -52,13 +55,33 @@ impl SignalReport {
     /// ```
     #[must_use]
     pub fn of(time: &[f64], displacement: Option<&[f64]>, force: &[f64], force_time: Option<&[f64]>) -> Self {
+        let Ok(report) = Self::heard(time, displacement, force, force_time, &mut || Ok::<(), Infallible>(()));
+        report
+    }
+
+    /// The same, where `hear` says in between whether to go on: columns of millions of rows take a second.
+    ///
+    /// # Errors
+    /// What `hear` says.
+    pub(super) fn heard<E>(
+        time: &[f64],
+        displacement: Option<&[f64]>,
+        force: &[f64],
+        force_time: Option<&[f64]>,
+        hear: &mut dyn FnMut() -> Result<(), E>,
+    ) -> Result<Self, E> {
         // Columns of different lengths or clocks, or in another order than that of time, cannot judge each other.
         let together = displacement.filter(|values| values.len() == force.len() && force_time.is_none());
-        Self {
-            stamps: Stamps::of(time),
-            force_stamps: force_time.map(Stamps::of),
-            displacement: displacement.map(|values| Values::of(Column::Displacement, values, together.map(|_| force))),
-            force: Values::of(Column::Force, force, together),
-        }
+        hear()?;
+        let (stamps, force_stamps) = (Stamps::of(time), force_time.map(Stamps::of));
+        let beside = together.map(|_| force);
+        let displacement =
+            displacement.map(|values| Values::heard(Column::Displacement, values, beside, hear)).transpose()?;
+        Ok(Self {
+            stamps,
+            force_stamps,
+            displacement,
+            force: Values::heard(Column::Force, force, together, hear)?,
+        })
     }
 }

@@ -1,5 +1,7 @@
 //! The step that values were rounded to.
 
+use std::convert::Infallible;
+
 /// The smallest common step of values: all their differences are whole multiples of it. `None` where there is none that
 /// stands out from the rounding of floating-point numbers, as in values that were computed.
 ///
@@ -15,13 +17,25 @@
 /// ```
 #[must_use]
 pub fn rounding_step(values: &[f64]) -> Option<f64> {
+    let Ok(step) = rounding_step_heard(values, &mut || Ok::<(), Infallible>(()));
+    step
+}
+
+/// The same, where `hear` says in between whether to go on.
+pub(super) fn rounding_step_heard<E>(
+    values: &[f64],
+    hear: &mut dyn FnMut() -> Result<(), E>,
+) -> Result<Option<f64>, E> {
     /// Fewest differences that show a step.
     const FEWEST: usize = 4;
     /// A step below this share of the range is that of decimals that nobody measured.
     const FINEST: f64 = 1e-7;
     let mut sorted: Vec<f64> = values.iter().copied().filter(|value| value.is_finite()).collect();
     sorted.sort_unstable_by(f64::total_cmp);
-    let (low, high) = (*sorted.first()?, *sorted.last()?);
+    hear()?;
+    let (Some(&low), Some(&high)) = (sorted.first(), sorted.last()) else {
+        return Ok(None);
+    };
     let largest = low.abs().max(high.abs());
     // What a decimal loses on its way to a double and through a scaling, twice.
     let rounding = 8.0 * f64::EPSILON * largest;
@@ -32,17 +46,18 @@ pub fn rounding_step(values: &[f64]) -> Option<f64> {
         .filter(|difference| *difference > rounding)
         .collect();
     if differences.len() < FEWEST {
-        return None;
+        return Ok(None);
     }
     differences.sort_unstable_by(f64::total_cmp);
+    hear()?;
     let mut step = differences[0];
     for difference in &differences {
         step = divisor(*difference, step, rounding.max(0.02 * step.min(least)));
         if step < least {
-            return None;
+            return Ok(None);
         }
     }
-    Some(refined(&differences, step))
+    Ok(Some(refined(&differences, step)))
 }
 
 /// Greatest common divisor of two positive numbers that are multiples of it to within `tolerance`.

@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::{Column, rounding_step};
+use super::{Column, rounding_step_heard};
 use crate::statistics::{bounds, noise};
 
 /// What a measured column is like; its unit is that of the column.
@@ -58,8 +58,14 @@ const RUN: usize = 5;
 const LISTED: usize = 20;
 
 impl Values {
-    /// Examines a column; `other` was measured in the same rows.
-    pub(super) fn of(column: Column, values: &[f64], other: Option<&[f64]>) -> Self {
+    /// Examines a column; `other` was measured in the same rows. `hear` says in between whether to go on.
+    pub(super) fn heard<E>(
+        column: Column,
+        values: &[f64],
+        other: Option<&[f64]>,
+        hear: &mut dyn FnMut() -> Result<(), E>,
+    ) -> Result<Self, E> {
+        hear()?;
         let not_finite = values.iter().filter(|value| !value.is_finite()).count();
         let kept: Vec<f64>;
         // What is not finite would spoil every range; the rows of what is left count on.
@@ -71,19 +77,22 @@ impl Values {
         };
         let (low, high) = bounds(values);
         let rows = stray_rows(values);
+        hear()?;
         let repeats = values.windows(2).filter(|pair| pair[0] == pair[1]).count();
-        Self {
+        let saturation = saturation(column, values, other);
+        let step = rounding_step_heard(values, hear)?;
+        Ok(Self {
             not_finite,
             strays: Strays {
                 count: rows.len(),
                 zeros: rows.iter().filter(|row| values[**row] == 0.0).count(),
                 rows: rows.into_iter().take(LISTED).collect(),
             },
-            saturation: saturation(column, values, other),
-            step: rounding_step(values),
+            saturation,
+            step,
             repeating: repeats as f64 / values.len().saturating_sub(1).max(1) as f64,
             range: if high >= low { high - low } else { 0.0 },
-        }
+        })
     }
 }
 
@@ -223,6 +232,13 @@ fn noise_vanishes(values: &[f64], level: f64, longest: usize) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use std::convert::Infallible;
+
+    fn of(column: Column, values: &[f64], other: Option<&[f64]>) -> Values {
+        let Ok(found) = Values::heard(column, values, other, &mut || Ok::<(), Infallible>(()));
+        found
+    }
+
     use crate::random::Rng;
 
     /// A ramp and a relaxing hold.
@@ -237,18 +253,18 @@ mod tests {
     fn a_clipped_force_is_reported_from_a_held_displacement() {
         let (displacement, force) = squeeze();
         let clipped: Vec<f64> = force.iter().map(|f| f.min(8.0)).collect();
-        let found = Values::of(Column::Force, &clipped, Some(&displacement)).saturation.unwrap();
+        let found = of(Column::Force, &clipped, Some(&displacement)).saturation.unwrap();
         assert!(found.clipped && found.level == 8.0 && found.first_row == 80, "{found:?}");
-        let held = Values::of(Column::Displacement, &displacement, Some(&force)).saturation.unwrap();
+        let held = of(Column::Displacement, &displacement, Some(&force)).saturation.unwrap();
         assert!(!held.clipped && held.longest == 300, "{held:?}");
-        assert_eq!(Values::of(Column::Force, &force, Some(&displacement)).saturation, None);
+        assert_eq!(of(Column::Force, &force, Some(&displacement)).saturation, None);
     }
 
     #[test]
     fn rounding_of_a_slow_force_is_no_clipping() {
         let (displacement, force) = squeeze();
         let rounded: Vec<f64> = force.iter().map(|f| f.round()).collect();
-        let found = Values::of(Column::Force, &rounded, Some(&displacement));
+        let found = of(Column::Force, &rounded, Some(&displacement));
         assert!(found.saturation.is_none_or(|found| !found.clipped), "{found:?}");
         assert!((found.step.unwrap() - 1.0).abs() < 1e-12 && found.repeating > 0.8);
     }
@@ -258,9 +274,9 @@ mod tests {
         let (_, force) = squeeze();
         let mut random = Rng::new(5);
         let noisy: Vec<f64> = force.iter().map(|f| f + 0.05 * random.normal()).collect();
-        assert_eq!(Values::of(Column::Force, &noisy, None).saturation, None);
+        assert_eq!(of(Column::Force, &noisy, None).saturation, None);
         let clipped: Vec<f64> = noisy.iter().map(|f| f.min(8.0)).collect();
-        assert!(Values::of(Column::Force, &clipped, None).saturation.unwrap().clipped);
+        assert!(of(Column::Force, &clipped, None).saturation.unwrap().clipped);
     }
 
     #[test]
@@ -270,22 +286,22 @@ mod tests {
         let mut jaw: Vec<f64> = (0..300).map(|i| noisy(1e-5 * f64::from(i), &mut random)).collect();
         jaw.extend([0.004; 300]);
         jaw.extend((0..300).map(|_| noisy(0.002, &mut random)));
-        assert!(!Values::of(Column::Displacement, &jaw, None).saturation.unwrap().clipped);
-        assert!(Values::of(Column::Force, &jaw, None).saturation.unwrap().clipped);
+        assert!(!of(Column::Displacement, &jaw, None).saturation.unwrap().clipped);
+        assert!(of(Column::Force, &jaw, None).saturation.unwrap().clipped);
     }
 
     #[test]
     fn strays_are_found_beyond_noise_alone() {
         let (displacement, _) = squeeze();
-        assert_eq!(Values::of(Column::Displacement, &displacement, None).strays.count, 0);
+        assert_eq!(of(Column::Displacement, &displacement, None).strays.count, 0);
         let mut broken = displacement;
         broken[150] = 0.0;
         broken[200] = 0.03;
-        let strays = Values::of(Column::Force, &broken, None).strays;
+        let strays = of(Column::Force, &broken, None).strays;
         assert_eq!((strays.count, strays.zeros, strays.rows), (2, 1, vec![150, 200]));
         let mut random = Rng::new(7);
         let noise: Vec<f64> = (0..3000).map(|_| random.normal()).collect();
-        assert_eq!(Values::of(Column::Force, &noise, None).strays.count, 0);
+        assert_eq!(of(Column::Force, &noise, None).strays.count, 0);
     }
 
     #[test]
@@ -300,7 +316,7 @@ mod tests {
     #[test]
     fn columns_that_hold_nothing_do_no_harm() {
         for values in [&[][..], &[1.0], &[f64::NAN, f64::INFINITY], &[2.0; 40]] {
-            let found = Values::of(Column::Force, values, Some(values));
+            let found = of(Column::Force, values, Some(values));
             assert!(found.range == 0.0 && found.saturation.is_none() && found.step.is_none());
         }
     }
