@@ -57,7 +57,8 @@ mod _palpate {
         records::analysis::{Analysis, Finding},
         records::compare::{Comparison, RecordComparison, compare},
         records::forecast::forecast,
-        records::record::{Record, read, read_all},
+        records::read::{read, read_all},
+        records::record::Record,
         table::Table,
     };
 }

@@ -4,4 +4,5 @@ pub(crate) mod analysis;
 pub(crate) mod compare;
 pub(crate) mod forecast;
 pub(crate) mod kept;
+pub(crate) mod read;
 pub(crate) mod record;

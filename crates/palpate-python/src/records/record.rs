@@ -1,7 +1,5 @@
 //! A measured record.
 
-use std::path::PathBuf;
-
 use arrow_array::Array;
 use arrow_array::cast::AsArray;
 use arrow_array::types::Float64Type;
@@ -13,7 +11,7 @@ use palpate::calibrate::CalibrateError;
 use palpate::record::{Record as Measured, RecordError as Unlike};
 use palpate::simulate::SimulateError;
 use palpate::watch::{Unwatched, Watch};
-use palpate_jobs::input::{Described, Measurement, OpenedFile, record_sha256};
+use palpate_jobs::input::{Described, Measurement, record_sha256};
 use palpate_jobs::{Analyze, Calibrate, Compare, ErrorKind, JobError};
 use palpate_report::result::{Input, word};
 use pyo3::prelude::*;
@@ -23,7 +21,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::arrays::{array, doubles};
 use crate::errors::{OptionError, PalpateError, RecordError, choice, refused, refused_plainly};
-use crate::files::{self, Given, all_laws, described, described_with, read_or_parsed};
+use crate::files::{self, Given, all_laws, described, read_or_parsed};
 use crate::fits::fit;
 use crate::materials::calibration::Calibration;
 use crate::materials::material::{Material, rising_times};
@@ -70,92 +68,6 @@ impl PartialEq for Record {
     }
 }
 
-/// Read the record in a file of any format that is known, found out by its content.
-///
-/// Parameters
-/// ----------
-/// path
-///     Delimited text, workbook, Parquet, Arrow, AFM force curve or robot's log; packed by gzip or zip or not.
-/// test
-///     Test description that says what the file cannot know: path of a TOML file, or a mapping with its tables.
-/// part
-///     The one test of a file that holds several: its name (a sheet, a curve, a ``test_id``), or its number from 1.
-/// columns
-///     Columns with their units, before what ``test`` says of them: "force=Kraft:N,displacement=Weg:mm,time=Zeit:s", or a mapping
-///     ``{"force": "Kraft:N", ...}``.
-///
-/// Returns
-/// -------
-/// Record
-///     Time, force and displacement in SI, loading positive.
-///
-/// Raises
-/// ------
-/// RecordError
-///     The file holds no record, or it is not clear which column holds what: the message ends in the lines of a
-///     description that would clear it up.
-/// OptionError
-///     The description is wrong.
-/// OSError
-///     The operating system does not hand the file out.
-#[pyfunction]
-#[pyo3(signature = (path, *, test=None, part=None, columns=None))]
-pub(crate) fn read(
-    py: Python<'_>,
-    path: PathBuf,
-    test: Given<'_, '_>,
-    part: Given<'_, '_>,
-    columns: Given<'_, '_>,
-) -> PyResult<Record> {
-    Ok(read_parts(py, path, &described_with(test, part, columns)?, true)?.remove(0))
-}
-
-/// Read all tests in a file: the sheets of a workbook, the curves of a map, the ``test_id`` of a table.
-///
-/// Parameters
-/// ----------
-/// path, test, columns
-///     As for `read`.
-///
-/// Returns
-/// -------
-/// list of Record
-///     In the order of the file, each with the name of its test in ``title``.
-///
-/// Raises
-/// ------
-/// RecordError, OptionError, OSError
-///     As for `read`, for the first test that makes no record.
-#[pyfunction]
-#[pyo3(signature = (path, *, test=None, columns=None))]
-pub(crate) fn read_all(
-    py: Python<'_>,
-    path: PathBuf,
-    test: Given<'_, '_>,
-    columns: Given<'_, '_>,
-) -> PyResult<Vec<Record>> {
-    read_parts(py, path, &described_with(test, None, columns)?, false)
-}
-
-/// The records in a file, `only` one of them or all.
-fn read_parts(py: Python<'_>, path: PathBuf, described: &Described, only: bool) -> PyResult<Vec<Record>> {
-    let stated = described.clone();
-    let read = job(py, move |watch| {
-        let opened = OpenedFile::open(&path, &stated)?;
-        if only {
-            opened.only()?;
-        }
-        let parts = opened.tests.parts.iter();
-        parts.map(|part| opened.measurement(*part, watch)).collect::<Result<Vec<_>, _>>()
-    })?;
-    let record = |Measurement { record, input, .. }| Record {
-        record,
-        input,
-        described: described.clone(),
-    };
-    Ok(read.into_iter().map(record).collect())
-}
-
 /// A column of numbers by its name, none missing.
 fn column(table: &PyTable, name: &str) -> PyResult<Vec<f64>> {
     let mut values = Vec::new();
@@ -189,6 +101,15 @@ fn column(table: &PyTable, name: &str) -> PyResult<Vec<f64>> {
 const BRIEF: usize = 100_000;
 
 impl Record {
+    /// A record that was read, as it is described.
+    pub(super) fn new(record: Measured, input: Input, described: Described) -> Self {
+        Self {
+            record,
+            input,
+            described,
+        }
+    }
+
     /// A record of columns of Python: time, displacement, force.
     fn checked(
         py: Python<'_>,
@@ -392,7 +313,7 @@ shown! {
     /// confidence : float, optional
     ///     Coverage of the intervals, between 0 and 1.
     /// intervals : str, optional
-    ///     What the intervals of fits rest on: "curvature" (if left out), "profile", or "bootstrap", which takes long.
+    ///     Method of the intervals of fits: "automatic" (if left out), "curvature", "profile", or "bootstrap", which takes long.
     /// fit_until_s : float, optional
     ///     Longest stretch of a hold to fit, s.
     /// compare : bool
@@ -589,7 +510,7 @@ shown! {
     /// creep : bool
     ///     Whether laws of creep are compared: displacement in holds of constant force.
     /// intervals : str, optional
-    ///     What the intervals of fits rest on: "curvature" (if left out), "profile", or "bootstrap", which takes long.
+    ///     Method of the intervals of fits: "automatic" (if left out), "curvature", "profile", or "bootstrap", which takes long.
     /// fit_until_s : float, optional
     ///     Compare only over this long from the start of each hold, s.
     ///
