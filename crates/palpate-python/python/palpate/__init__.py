@@ -348,7 +348,8 @@ def fit_hold(
     intervals
         Method of the intervals: "curvature" at the optimum, "profile" of the residual square, asymmetric and open where the
         data do not close it, "bootstrap", residuals resampled in blocks, or "automatic": the profile where
-        an interval of curvature is wider than a third of its parameter to a side, or a time constant is longer than the hold.
+        an interval of curvature is wider than a third of its parameter to a side (a tenth, if a time constant is longer than
+        the hold), and where terms merge or vanish.
 
     Returns
     -------

@@ -103,8 +103,8 @@ impl Default for BootstrapOptions {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum IntervalMethod {
-    /// The curvature where it is to be trusted, else the profile: where the interval of a rate, a time or an exponent is wider than a third
-    /// of its value to a side, that of an amplitude wider than a third of its own, or a time constant is longer than the hold.
+    /// The curvature where it is to be trusted, else the profile: where the interval of a rate, a time, an exponent or an amplitude is wider
+    /// than a third of it to a side (a tenth, if a time constant is longer than the hold), and where terms of a series merge or vanish.
     #[default]
     Automatic,
     /// The curvature at the optimum: symmetric, in ln for parameters that cannot change sign.

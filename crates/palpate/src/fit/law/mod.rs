@@ -8,7 +8,7 @@
 //! | `quantities.rs` | all that are reported at a point |
 //! | `report.rs` | from both to the result |
 //! | `robust.rs` | outliers made to count less |
-//! | `profile.rs`, `bootstrap.rs` | intervals that may be asymmetric or open, and those from resampled residuals |
+//! | `profile/`, `bootstrap.rs` | intervals that may be asymmetric or open, and those from resampled residuals |
 //! | `fit_law.rs` | the whole way |
 //! | `prediction.rs` | the curve at a time, with its interval |
 

@@ -9,34 +9,23 @@
 //! with t the quantile of Student's distribution at N − p degrees of freedom: for white noise (w = 1) the F-test of
 //! `lmfit.conf_interval`. Where residuals correlate, w is the variance of the parameter for noise of their kind over that for
 //! white noise, and t has the degrees of freedom of that variance ([`Uncertainty`](super::Uncertainty)).
-
 //!
 //! A parameter that follows from those (v from λ, Δ and n) has the ends of the one that it correlates with most, ϱ: its value at an end,
 //! its distance from the best value divided by |ϱ|. Where the data leave one direction nearly open, that direction is what all parameters
 //! share, and |ϱ| is near 1; below 0.7 the interval of the curvature stays.
 
-use super::fitted::Point;
+mod path;
+
 use super::quantity::Quantity;
 use crate::fit::noise::uncertainty::variance_of;
 use crate::fit::{
-    Condensed, Fit, FitError, Fitted, Interval, IntervalMethod, LawOptions, Model, ParameterRole, RedundantTerm,
-    Samples, Scale, Uncertainty, condense,
+    Condensed, Fit, FitError, Fitted, Interval, IntervalMethod, LawOptions, ParameterRole, RedundantTerm, Samples,
+    Scale, Uncertainty, condense,
 };
 use crate::laws::{Law, ShapeParameterKind};
-use crate::optimise::{Effort, Ending, Few, Shapes, Target, refine};
+use crate::optimise::{Effort, Few};
 use crate::watch::{Cancelled, Progress};
-
-/// Valleys that an end is looked for in, one behind the other.
-const VALLEYS: usize = 6;
-
-/// Standard errors from the best value beyond which an end counts as open.
-const FARTHEST: f64 = 2000.0;
-
-/// Distance of an end, in standard errors, at which its search stops.
-const CLOSE: f64 = 1e-9;
-
-/// The same on condensed samples, which only show where to look.
-const ROUGH: f64 = 1e-3;
+use path::{Ends, Profile, Reached, Searched};
 
 /// Half an interval over the parameter beyond which its curvature is not to be trusted.
 const WIDE: f64 = 1.0 / 3.0;
@@ -210,11 +199,7 @@ impl Fitted {
         if !(profile.error > 0.0 && profile.target.is_finite()) {
             return Ok(Ends::default());
         }
-        let end = if profile.doubtful.is_empty() { Profile::end } else { Profile::end_among_valleys };
-        Ok(Ends {
-            low: end(&profile, -1.0, effort)?,
-            high: end(&profile, 1.0, effort)?,
-        })
+        profile.ends(effort)
     }
 }
 
@@ -251,277 +236,6 @@ struct Doubtful {
     terms: Vec<usize>,
     /// The largest amplitude over its standard error.
     z: f64,
-}
-
-/// Ends of a profile; `None` where it is open.
-#[derive(Default)]
-struct Ends {
-    low: Option<Reached>,
-    high: Option<Reached>,
-}
-
-/// Which of the searched parameters.
-#[derive(Clone, Copy)]
-enum Searched {
-    /// Place among the linear ones.
-    Linear(usize),
-    /// Place among all nonlinear ones, and among those that are free.
-    Nonlinear(usize, usize),
-}
-
-/// The profile of one parameter.
-struct Profile<'a> {
-    fitted: &'a Fitted,
-    nodes: &'a Condensed,
-    /// Places of the times of doubtful terms among the free nonlinear parameters.
-    doubtful: &'a [usize],
-    parameter: Searched,
-    /// Standard error for white noise, in the units of the fit.
-    error: f64,
-    /// z at the ends.
-    target: f64,
-    freedom: f64,
-    most_iterations: usize,
-}
-
-/// A point of a profile: its residual square, z, and the parameters there.
-#[derive(Clone)]
-struct Reached {
-    distance: f64,
-    square: f64,
-    z: f64,
-    linear: Vec<f64>,
-    /// All free nonlinear ones, that which is held with them.
-    nonlinear: Vec<f64>,
-    /// A free parameter lies at the edge of its range.
-    at_edge: bool,
-}
-
-impl Reached {
-    fn at(&self) -> Point<'_> {
-        Point {
-            linear: &self.linear,
-            nonlinear: &self.nonlinear,
-        }
-    }
-}
-
-/// Samples or the nodes that stand for them.
-struct Field<'a> {
-    times: &'a [f64],
-    target: Target<'a>,
-    /// Square that the nodes leave out.
-    inside: f64,
-    /// Residual square at the optimum.
-    least: f64,
-}
-
-impl Profile<'_> {
-    /// All samples.
-    fn all(&self) -> Field<'_> {
-        Field {
-            times: &self.fitted.scaled.times,
-            target: self.fitted.scaled.target(),
-            inside: 0.0,
-            least: self.fitted.solution.residual_square,
-        }
-    }
-
-    /// The nodes, if there are few of them beside the samples.
-    fn few(&self, effort: &mut Effort<'_>) -> Result<Option<Field<'_>>, Cancelled> {
-        let nodes = self.nodes;
-        if 4 * nodes.times.len() >= self.fitted.scaled.times.len() {
-            return Ok(None);
-        }
-        let field = Field {
-            times: &nodes.times,
-            target: nodes.target(),
-            inside: nodes.inside,
-            least: 1.0,
-        };
-        let least = self.at(&field, 1.0, 0.0, &self.start(), effort)?.square;
-        Ok(Some(Field { least, ..field }))
-    }
-
-    /// Where the profile meets its bound on one side.
-    fn end(&self, side: f64, effort: &mut Effort<'_>) -> Result<Option<Reached>, Cancelled> {
-        let start = self.start();
-        let guess = match self.few(effort)? {
-            Some(few) => self.meet(&few, side, &start, self.target, ROUGH, effort)?,
-            None => None,
-        };
-        let first = guess.as_ref().map_or(self.target, |guess| guess.distance);
-        let nonlinear = guess.map_or_else(|| start.nonlinear.clone(), |guess| guess.nonlinear);
-        let met = self.meet(&self.all(), side, &Reached { nonlinear, ..start }, first, CLOSE, effort)?;
-        Ok(met.filter(|met| !met.at_edge))
-    }
-
-    /// The same beside doubtful terms: each lies in one of many valleys, of which another may be the lowest when a parameter is held
-    /// elsewhere. The profile jumps from one to the next, and is followed roughly.
-    fn end_among_valleys(&self, side: f64, effort: &mut Effort<'_>) -> Result<Option<Reached>, Cancelled> {
-        let field = self.few(effort)?.unwrap_or_else(|| self.all());
-        let (mut from, mut first) = (self.start(), self.target);
-        let mut met = None;
-        for _ in 0..VALLEYS {
-            met = self.meet(&field, side, &from, first, ROUGH, effort)?.filter(|met| !met.at_edge);
-            let Some(end) = &met else { break };
-            let Some(lower) = self.elsewhere(&field, side, end, effort)? else {
-                break;
-            };
-            (first, from) = (1.2 * end.distance, lower);
-        }
-        Ok(met)
-    }
-
-    /// A lower point of the profile at the same place, with a doubtful term at another time; `None` if there is none below the bound.
-    fn elsewhere(
-        &self,
-        field: &Field<'_>,
-        side: f64,
-        met: &Reached,
-        effort: &mut Effort<'_>,
-    ) -> Result<Option<Reached>, Cancelled> {
-        /// ln of rates over that of the hold.
-        const PLACES: [f64; 5] = [-2.0, 0.0, 1.5, 3.0, 5.0];
-        /// Of the bound; below it is worth going on.
-        const LOWER: f64 = 0.98;
-        let mut lowest: Option<Reached> = None;
-        for &term in self.doubtful {
-            for place in PLACES {
-                let mut start = met.clone();
-                start.nonlinear[term] = place;
-                let found = self.at(field, side, met.distance, &start, effort)?;
-                if found.z < lowest.as_ref().map_or(LOWER * self.target, |lowest| lowest.z) {
-                    lowest = Some(found);
-                }
-            }
-        }
-        Ok(lowest)
-    }
-
-    /// The optimum.
-    fn start(&self) -> Reached {
-        Reached {
-            distance: 0.0,
-            square: self.fitted.solution.residual_square,
-            z: 0.0,
-            linear: self.fitted.solution.linear.clone(),
-            nonlinear: self.fitted.solution.nonlinear.clone(),
-            at_edge: false,
-        }
-    }
-
-    fn value(&self, side: f64, distance: f64) -> f64 {
-        let best = match self.parameter {
-            Searched::Linear(place) => self.fitted.solution.linear[place],
-            Searched::Nonlinear(_, free) => self.fitted.solution.nonlinear[free],
-        };
-        best + side * distance * self.error
-    }
-
-    /// The farthest distance to look at, in standard errors.
-    fn farthest(&self, side: f64) -> f64 {
-        let Searched::Nonlinear(place, _) = self.parameter else {
-            return FARTHEST;
-        };
-        let (low, high) = self.fitted.model.parameters[place].bounds;
-        let room = if side < 0.0 { self.value(side, 0.0) - low } else { high - self.value(side, 0.0) };
-        (room / self.error).min(FARTHEST)
-    }
-
-    /// Widens until z exceeds its bound, then closes in by regula falsi (Illinois): z is nearly straight in the parameter.
-    fn meet(
-        &self,
-        field: &Field<'_>,
-        side: f64,
-        start: &Reached,
-        first: f64,
-        close: f64,
-        effort: &mut Effort<'_>,
-    ) -> Result<Option<Reached>, Cancelled> {
-        /// Halvings of what is left, if no secant leads anywhere.
-        const ROUNDS: usize = 40;
-        let farthest = self.farthest(side);
-        let mut near = start.clone();
-        let mut far = self.at(field, side, first.min(farthest), &near, effort)?;
-        while far.z < self.target {
-            if far.distance >= farthest {
-                return Ok(None);
-            }
-            let growth = (1.05 * self.target / far.z).clamp(1.1, 2.0);
-            near = far;
-            far = self.at(field, side, (near.distance * growth).min(farthest), &near, effort)?;
-        }
-        // What is missing at the near end, what is over at the far one.
-        let (mut missing, mut over) = (self.target - near.z, far.z - self.target);
-        for _ in 0..ROUNDS {
-            let share = missing / (missing + over);
-            let middle = near.distance + share * (far.distance - near.distance);
-            let width = far.distance - near.distance;
-            let trial = self.at(field, side, middle, &far, effort)?;
-            let left = self.target - trial.z;
-            if width < close * (1.0 + middle) || left.abs() < close {
-                return Ok(Some(trial));
-            }
-            if left > 0.0 {
-                (near, missing, over) = (trial, left, 0.5 * over);
-            } else {
-                (far, over, missing) = (trial, -left, 0.5 * missing);
-            }
-        }
-        Ok(Some(far))
-    }
-
-    /// The profile at a distance in standard errors.
-    fn at(
-        &self,
-        field: &Field<'_>,
-        side: f64,
-        distance: f64,
-        near: &Reached,
-        effort: &mut Effort<'_>,
-    ) -> Result<Reached, Cancelled> {
-        let value = self.value(side, distance);
-        let model = self.held(value);
-        let shapes = model.at(field.times);
-        let mut theta = near.nonlinear.clone();
-        if let Searched::Nonlinear(_, free) = self.parameter {
-            theta.remove(free);
-        }
-        let point = refine(&shapes, field.target, &theta, Ending::tight(self.most_iterations), effort)?.point;
-        let square = point.square + field.inside;
-        let at_edge = point.theta.iter().enumerate().any(|(i, value)| {
-            let (low, high) = shapes.bounds(i);
-            let near = 1e-6 * (high - low);
-            *value <= low + near || *value >= high - near
-        });
-        let mut nonlinear = point.theta.to_vec();
-        if let Searched::Nonlinear(_, free) = self.parameter {
-            nonlinear.insert(free, value);
-        }
-        Ok(Reached {
-            distance,
-            square,
-            z: ((square / field.least - 1.0).max(0.0) * self.freedom).sqrt(),
-            linear: point.linear.to_vec(),
-            nonlinear,
-            at_edge,
-        })
-    }
-
-    /// The model with the parameter held: a nonlinear one fixed, a linear one between equal bounds.
-    fn held(&self, value: f64) -> Model {
-        let model = &self.fitted.model;
-        let (mut parameters, mut bounds) = (model.parameters.clone(), model.linear_bounds.clone());
-        match self.parameter {
-            Searched::Linear(place) => {
-                bounds.resize(model.linear(), (f64::NEG_INFINITY, f64::INFINITY));
-                bounds[place] = (value, value);
-            }
-            Searched::Nonlinear(place, _) => parameters[place].fixed = Some(value),
-        }
-        Model::new(model.form.clone(), model.constant, parameters, bounds)
-    }
 }
 
 #[cfg(test)]
