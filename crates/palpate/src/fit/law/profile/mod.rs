@@ -19,8 +19,8 @@ mod path;
 use super::quantity::Quantity;
 use crate::fit::noise::uncertainty::variance_of;
 use crate::fit::{
-    Condensed, Fit, FitError, Fitted, Interval, IntervalMethod, LawOptions, ParameterRole, RedundantTerm, Samples,
-    Scale, Uncertainty, condense,
+    Condensed, Fit, FitError, Fitted, Interval, IntervalMethod, LawOptions, Parameter, ParameterRole, RedundantTerm,
+    Samples, Scale, Uncertainty, condense,
 };
 use crate::laws::{Law, ShapeParameterKind};
 use crate::optimise::{Effort, Few};
@@ -90,9 +90,9 @@ impl Fitted {
     /// Whether the intervals of curvature are not to be trusted: a parameter beside the constant whose interval is wide, a time constant
     /// longer than the hold, terms that merge or vanish. The curve then bends within an interval.
     pub(crate) fn bends(&self, fit: &Fit) -> bool {
-        let (true, Some(uncertainty)) = (fit.termination.is_good(), &fit.uncertainty) else {
+        if !fit.termination.is_good() || fit.uncertainty.is_none() {
             return false;
-        };
+        }
         let is_constant = |quantity: &Quantity| self.model.constant && quantity.gradient[0] != 0.0;
         let lasts = |(kind, theta): (ShapeParameterKind, &f64)| match kind {
             ShapeParameterKind::Time | ShapeParameterKind::Rate => *theta < 0.0,
@@ -100,14 +100,17 @@ impl Fitted {
         };
         let kinds = self.model.free().map(|parameter| parameter.kind);
         let wide = if kinds.zip(&self.solution.nonlinear).any(lasts) { WIDE_IF_LONG } else { WIDE };
-        let half = |quantity: &Quantity| {
-            let error = variance_of(&quantity.gradient, &uncertainty.covariance).sqrt();
-            let unit = if quantity.scale == Scale::Log { 1.0 } else { quantity.value.abs() };
-            error * uncertainty.factor(&quantity.gradient, 0.0) / unit
+        let half = |(quantity, parameter): (&Quantity, &Parameter)| {
+            let high = parameter.estimate.interval.map_or(f64::INFINITY, |(_, high)| high);
+            match quantity.scale {
+                Scale::Log => (high / quantity.value).ln(),
+                Scale::Linear => (high - quantity.value) / quantity.value.abs(),
+            }
         };
         let quantities = self.quantities(fit.law, self.solution.at());
-        let mut shapes = quantities.iter().filter(|one| one.role == ParameterRole::Estimated && !is_constant(one));
-        !fit.redundant_terms.is_empty() || shapes.any(|quantity| half(quantity) > wide)
+        let estimated = |(one, _): &(&Quantity, &Parameter)| one.role == ParameterRole::Estimated && !is_constant(one);
+        let mut shapes = quantities.iter().zip(&fit.parameters).filter(estimated);
+        !fit.redundant_terms.is_empty() || shapes.any(|both| half(both) > wide)
     }
 
     /// Intervals of the parameters of this fit by their profiles, whose ends may be open; standard errors are those of curvature.
