@@ -77,7 +77,8 @@ pub fn profile_interval(
     let (Some(uncertainty), Some(quantity), true) = (&fit.uncertainty, quantity, fit.termination.is_good()) else {
         return Ok(Interval::OPEN);
     };
-    let ends = fitted.ends(place, &fit, uncertainty, &condense(&fitted.scaled), options, &mut Effort::default())?;
+    let about = About::new(&fitted, &fit, options);
+    let ends = fitted.ends(place, &fit, uncertainty, &about, &mut Effort::default())?;
     let value = |end: &Option<Reached>| end.as_ref().map(|end| fitted.quantities(law, end.at())[quantity].value);
     let [low, high] = [&ends.low, &ends.high].map(value);
     Ok(match quantities[quantity].gradient[place] < 0.0 {
@@ -119,9 +120,8 @@ impl Fitted {
         let (Some(uncertainty), true) = (fit.uncertainty.clone(), fit.termination.is_good()) else {
             return Ok(());
         };
-        let nodes = condense(&self.scaled);
-        let (size, known) = (fit.values.len(), fit.clone());
-        let all = (0..size).map(|place| self.ends(place, &known, &uncertainty, &nodes, options, effort));
+        let about = About::new(self, fit, options);
+        let all = (0..fit.values.len()).map(|place| self.ends(place, fit, &uncertainty, &about, effort));
         let all = all.collect::<Result<Vec<Ends>, Cancelled>>()?;
         let values_at = |end: &Option<Reached>| -> Option<Vec<f64>> {
             let quantities = self.quantities(fit.law, end.as_ref()?.at());
@@ -174,8 +174,7 @@ impl Fitted {
         place: usize,
         fit: &Fit,
         uncertainty: &Uncertainty,
-        nodes: &Condensed,
-        options: &LawOptions,
+        about: &About,
         effort: &mut Effort<'_>,
     ) -> Result<Ends, Cancelled> {
         effort.reach(Progress::open("following a profile", 0))?;
@@ -188,16 +187,15 @@ impl Fitted {
         let white = fit.white_covariance.as_ref().map_or(f64::NAN, |covariance| covariance[place][place]);
         let widening = (variance_of(&gradient, &uncertainty.covariance) / white).sqrt();
         let variance = self.solution.inverse_normal.as_ref().map_or(f64::NAN, |inverse| inverse[place * size + place]);
-        let doubtful = self.doubtful(fit);
         let profile = Profile {
             fitted: self,
-            nodes,
-            doubtful: &doubtful.terms,
+            nodes: &about.nodes,
+            doubtful: &about.doubtful.terms,
             parameter,
             error: (variance * self.solution.residual_square / uncertainty.freedom).sqrt(),
-            target: (uncertainty.factor(&gradient, 0.0) * widening).hypot(doubtful.z),
+            target: (uncertainty.factor(&gradient, 0.0) * widening).hypot(about.doubtful.z),
             freedom: uncertainty.freedom,
-            most_iterations: options.most_iterations,
+            most_iterations: about.most_iterations,
         };
         if !(profile.error > 0.0 && profile.target.is_finite()) {
             return Ok(Ends::default());
@@ -227,6 +225,23 @@ impl Quantity {
         match self.scale {
             Scale::Linear => self.value + (end - self.value) / correlation,
             Scale::Log => self.value * (end / self.value).powf(1.0 / correlation),
+        }
+    }
+}
+
+/// What the profiles of all parameters of a fit share.
+struct About {
+    nodes: Condensed,
+    doubtful: Doubtful,
+    most_iterations: usize,
+}
+
+impl About {
+    fn new(fitted: &Fitted, fit: &Fit, options: &LawOptions) -> Self {
+        Self {
+            nodes: condense(&fitted.scaled),
+            doubtful: fitted.doubtful(fit),
+            most_iterations: options.most_iterations,
         }
     }
 }

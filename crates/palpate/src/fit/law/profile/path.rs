@@ -83,10 +83,14 @@ struct Field<'a> {
 impl Profile<'_> {
     /// Both ends.
     pub(super) fn ends(&self, effort: &mut Effort<'_>) -> Result<Ends, Cancelled> {
-        let end = if self.doubtful.is_empty() { Self::end } else { Self::end_among_valleys };
+        let few = self.few(effort)?;
+        let mut end = |side: f64| match self.doubtful.is_empty() {
+            true => self.end(few.as_ref(), side, effort),
+            false => self.end_among_valleys(few.as_ref(), side, effort),
+        };
         Ok(Ends {
-            low: end(self, -1.0, effort)?,
-            high: end(self, 1.0, effort)?,
+            low: end(-1.0)?,
+            high: end(1.0)?,
         })
     }
 
@@ -117,10 +121,10 @@ impl Profile<'_> {
     }
 
     /// Where the profile meets its bound on one side.
-    fn end(&self, side: f64, effort: &mut Effort<'_>) -> Result<Option<Reached>, Cancelled> {
+    fn end(&self, few: Option<&Field<'_>>, side: f64, effort: &mut Effort<'_>) -> Result<Option<Reached>, Cancelled> {
         let start = self.start();
-        let guess = match self.few(effort)? {
-            Some(few) => self.meet(&few, side, &start, self.target, ROUGH, effort)?,
+        let guess = match few {
+            Some(few) => self.meet(few, side, &start, self.target, ROUGH, effort)?,
             None => None,
         };
         let first = guess.as_ref().map_or(self.target, |guess| guess.distance);
@@ -131,14 +135,20 @@ impl Profile<'_> {
 
     /// The same beside doubtful terms: each lies in one of many valleys, of which another may be the lowest when a parameter is held
     /// elsewhere. The profile jumps from one to the next, and is followed roughly.
-    fn end_among_valleys(&self, side: f64, effort: &mut Effort<'_>) -> Result<Option<Reached>, Cancelled> {
-        let field = self.few(effort)?.unwrap_or_else(|| self.all());
+    fn end_among_valleys(
+        &self,
+        few: Option<&Field<'_>>,
+        side: f64,
+        effort: &mut Effort<'_>,
+    ) -> Result<Option<Reached>, Cancelled> {
+        let all = self.all();
+        let field = few.unwrap_or(&all);
         let (mut from, mut first) = (self.start(), self.target);
         let mut met = None;
         for _ in 0..VALLEYS {
-            met = self.meet(&field, side, &from, first, ROUGH, effort)?.filter(|met| !met.at_edge);
+            met = self.meet(field, side, &from, first, ROUGH, effort)?.filter(|met| !met.at_edge);
             let Some(end) = &met else { break };
-            let Some(lower) = self.elsewhere(&field, side, end, effort)? else {
+            let Some(lower) = self.elsewhere(field, side, end, effort)? else {
                 break;
             };
             (first, from) = (1.2 * end.distance, lower);
