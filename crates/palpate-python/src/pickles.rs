@@ -4,9 +4,7 @@
 //! that bytes of hundreds of megabytes are many small objects here.
 
 use std::fmt::Display;
-use std::io::{self, BufReader, Read};
-use std::ops::Range;
-use std::sync::Arc;
+use std::io::{self, BufReader, BufWriter, Read, Write};
 
 use palpate::watch::Cancelled;
 use palpate_jobs::output::sha256_of_parts;
@@ -18,10 +16,10 @@ use serde::Serialize;
 use serde::de::DeserializeOwned;
 
 use crate::errors::{PalpateError, refused};
-use crate::work::{Heard, Long, at_length};
+use crate::work::{Heard, at_length};
 
 /// The format of pickles: another number where their content has another form.
-pub(crate) const PICKLE: u32 = 2;
+pub(crate) const PICKLE: u32 = 3;
 
 /// Bytes of a piece.
 const PIECE: usize = 1 << 20;
@@ -40,10 +38,7 @@ pub(crate) fn check_pickle(format: u32) -> PyResult<()> {
 
 /// A part of the bytes of a pickle.
 #[pyclass(frozen, name = "_Piece", module = "palpate._palpate")]
-pub(crate) struct Piece {
-    whole: Arc<Vec<u8>>,
-    part: Range<usize>,
-}
+pub(crate) struct Piece(PyBackedBytes);
 
 #[pymethods]
 impl Piece {
@@ -54,24 +49,78 @@ impl Piece {
         Ok(bytes)
     }
 
-    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Made<'py, (Bound<'py, PyBytes>,)>> {
+    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Made<'py, (PyBackedBytes,)>> {
         py.check_signals()?;
         let make = py.get_type::<Self>().getattr("_from_bytes")?;
-        Ok((make, (PyBytes::new(py, &self.whole[self.part.clone()]),)))
+        // The same object: a copy would be held until the pickle is whole.
+        Ok((make, (self.0.clone_ref(py),)))
     }
 }
 
-/// Bytes as pieces, for a pickle.
-pub(crate) fn in_pieces(bytes: Vec<u8>) -> Vec<Piece> {
-    let whole = Arc::new(bytes);
-    let part = |start: usize| start..whole.len().min(start + PIECE);
-    (0..whole.len())
-        .step_by(PIECE)
-        .map(|start| Piece {
-            whole: whole.clone(),
-            part: part(start),
-        })
-        .collect()
+/// What `write` writes as pieces, for a pickle; Ctrl-C is heard between them.
+pub(crate) fn in_pieces(
+    py: Python<'_>,
+    write: impl FnOnce(&mut PieceWriter<'_>) -> io::Result<()>,
+) -> PyResult<Vec<Piece>> {
+    let (pieces, begun, raised) = (Vec::new(), Vec::with_capacity(PIECE), None);
+    let mut writer = PieceWriter {
+        py,
+        pieces,
+        begun,
+        raised,
+    };
+    let written = write(&mut writer);
+    // What writes may make an error of its own of the exception of a signal.
+    writer.raised.take().map_or(Ok(()), Err)?;
+    written?;
+    writer.end_piece();
+    Ok(writer.pieces)
+}
+
+/// The digest of all pieces together, in hexadecimal digits; Ctrl-C is heard between them.
+pub(crate) fn digest(py: Python<'_>, pieces: &[Piece]) -> PyResult<String> {
+    let mut heard = Ok(());
+    let digest = sha256_of_parts(pieces.iter().map(|piece| &*piece.0).take_while(|_| {
+        heard = py.check_signals();
+        heard.is_ok()
+    }));
+    heard.map(|()| digest)
+}
+
+/// Cuts what is written into pieces.
+pub(crate) struct PieceWriter<'py> {
+    py: Python<'py>,
+    pieces: Vec<Piece>,
+    begun: Vec<u8>,
+    raised: Option<PyErr>,
+}
+
+impl PieceWriter<'_> {
+    fn end_piece(&mut self) {
+        if !self.begun.is_empty() {
+            self.pieces.push(Piece(PyBytes::new(self.py, &self.begun).into()));
+            self.begun.clear();
+        }
+    }
+}
+
+impl Write for PieceWriter<'_> {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        let count = bytes.len().min(PIECE - self.begun.len());
+        self.begun.extend_from_slice(&bytes[..count]);
+        if self.begun.len() == PIECE {
+            if let Err(exception) = self.py.check_signals() {
+                self.raised = Some(exception);
+                return Err(io::ErrorKind::Other.into());
+            }
+            self.end_piece();
+        }
+        Ok(count)
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        Ok(())
+    }
 }
 
 /// One of the [`Pieces`]; a copy of an object takes those that a pickle would be made of.
@@ -89,7 +138,7 @@ pub(crate) struct Pieces(Vec<Held>);
 impl Pieces {
     fn slices(&self) -> impl Iterator<Item = &[u8]> {
         self.0.iter().map(|held| match held {
-            Held::Piece(piece) => &piece.get().whole[piece.get().part.clone()],
+            Held::Piece(piece) => &*piece.get().0,
             Held::Bytes(bytes) => bytes,
         })
     }
@@ -176,6 +225,6 @@ pub(crate) fn made_again<'py, T: PyTypeInfo>(
     py: Python<'py>,
     parts: &impl Serialize,
 ) -> PyResult<Made<'py, (Vec<Piece>, u32)>> {
-    let json = Long::bytes(py, |out| Ok(serde_json::to_writer(out, parts)?))?;
-    Ok((py.get_type::<T>().getattr("_from_json")?, (in_pieces(json), PICKLE)))
+    let json = in_pieces(py, |out| Ok(serde_json::to_writer(BufWriter::new(out), parts)?))?;
+    Ok((py.get_type::<T>().getattr("_from_json")?, (json, PICKLE)))
 }

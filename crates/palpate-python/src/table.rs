@@ -1,16 +1,18 @@
 //! A table of results: Arrow inside, so that polars, pandas and pyarrow take it without copies.
 
+use std::io;
 use std::sync::Arc;
 
 use arrow_array::cast::AsArray;
 use arrow_array::types::{Float64Type, Int64Type};
 use arrow_array::{Array, ArrayRef, BooleanArray, Float64Array, Int64Array, RecordBatch, StringArray};
+use arrow_ipc::CompressionType;
 use arrow_ipc::reader::StreamReader;
-use arrow_ipc::writer::StreamWriter;
+use arrow_ipc::writer::{IpcWriteOptions, StreamWriter};
 use arrow_schema::{ArrowError, DataType};
+use arrow_select::concat::concat;
 use numpy::PyArrayMethods;
 use palpate::number::significant;
-use palpate_jobs::output::sha256;
 use palpate_report::result::{PARAMETER_COLUMNS, ParameterColumn, ParameterRow};
 use pyo3::IntoPyObjectExt;
 use pyo3::exceptions::{PyKeyError, PyRuntimeError, PyTypeError};
@@ -20,7 +22,7 @@ use pyo3_arrow::PyTable;
 
 use crate::arrays::array;
 use crate::errors::refused_plainly;
-use crate::pickles::{Made, PICKLE, Piece, Pieces, check_pickle, damaged, in_pieces};
+use crate::pickles::{Made, PICKLE, Piece, Pieces, check_pickle, damaged, digest, in_pieces};
 use crate::work::{Heard, at_length};
 
 /// Columns of results, each named with its unit.
@@ -109,6 +111,9 @@ const ENDS: usize = 5;
 /// Rows that become objects of Python in some milliseconds.
 const AT_ONCE: usize = 1 << 12;
 
+/// Rows that become bytes in some milliseconds.
+const PICKLED_AT_ONCE: usize = 1 << 16;
+
 /// A cell as a notebook shows it.
 fn cell(column: &ArrayRef, row: usize) -> String {
     if column.is_null(row) {
@@ -189,36 +194,50 @@ impl Table {
     fn _from_ipc(class: &Bound<'_, PyType>, bytes: Pieces, digest: &str, format: u32) -> PyResult<Self> {
         check_pickle(format)?;
         let digest = digest.to_owned();
+        let of_ours = |batch: RecordBatch| match batch.columns().iter().find(|of| !is_column_of_ours(of.data_type())) {
+            Some(column) => Err(format!("a column of {}", column.data_type())),
+            None => Ok(Self { batch }),
+        };
         let read = move |heard: Heard| -> Result<_, String> {
             // Lengths in the bytes are taken at their word by their reader.
             if bytes.sha256(&heard).map_err(|ended| ended.to_string())? != digest {
                 return Err("expected bytes of its digest, found others".to_owned());
             }
             let unread = |error: ArrowError| error.to_string();
-            let mut reader = StreamReader::try_new(bytes.reader(heard), None).map_err(unread)?;
+            let reader = StreamReader::try_new(bytes.reader(heard.clone()), None).map_err(unread)?;
             let schema = reader.schema();
-            let batch = reader.next().transpose().map_err(unread)?;
-            let batch = batch.unwrap_or_else(|| RecordBatch::new_empty(schema));
-            match batch.columns().iter().find(|column| !is_column_of_ours(column.data_type())) {
-                Some(column) => Err(format!("a column of {}", column.data_type())),
-                None => Ok(Self { batch }),
-            }
+            let batches: Vec<_> = reader.collect::<Result<_, _>>().map_err(unread)?;
+            let [first, _, ..] = &batches[..] else {
+                let batch = batches.into_iter().next().unwrap_or_else(|| RecordBatch::new_empty(schema));
+                return of_ours(batch);
+            };
+            let column = |index: usize| -> Result<ArrayRef, String> {
+                heard.look().map_err(|ended| ended.to_string())?;
+                let parts: Vec<&dyn Array> = batches.iter().map(|batch| batch.column(index).as_ref()).collect();
+                concat(&parts).map_err(unread)
+            };
+            let columns = (0..first.num_columns()).map(column).collect::<Result<_, _>>()?;
+            of_ours(RecordBatch::try_new(schema, columns).map_err(unread)?)
         };
         at_length(class.py(), read)?.map_err(damaged)
     }
 
     fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Made<'py, (Vec<Piece>, String, u32)>> {
-        let batch = self.batch.clone();
-        let write = move |_| -> Result<_, ArrowError> {
-            let mut writer = StreamWriter::try_new(Vec::new(), &batch.schema())?;
-            writer.write(&batch)?;
-            let bytes = writer.into_inner()?;
-            let digest = sha256(&bytes);
-            Ok((bytes, digest))
-        };
-        let (bytes, digest) = at_length(py, write)?.map_err(refused_plainly::<PyRuntimeError>)?;
+        let rows = self.batch.num_rows();
+        let pieces = in_pieces(py, |out| {
+            let failed = io::Error::other::<ArrowError>;
+            let smaller = IpcWriteOptions::default().try_with_compression(Some(CompressionType::LZ4_FRAME));
+            let schema = self.batch.schema();
+            let mut writer =
+                StreamWriter::try_new_with_options(out, &schema, smaller.map_err(failed)?).map_err(failed)?;
+            for begin in (0..rows).step_by(PICKLED_AT_ONCE) {
+                writer.write(&self.batch.slice(begin, PICKLED_AT_ONCE.min(rows - begin))).map_err(failed)?;
+            }
+            writer.finish().map_err(failed)
+        })?;
+        let digest = digest(py, &pieces)?;
         let make = py.get_type::<Self>().getattr("_from_ipc")?;
-        Ok((make, (in_pieces(bytes), digest, PICKLE)))
+        Ok((make, (pieces, digest, PICKLE)))
     }
 
     /// The first and the last rows as a notebook shows them.

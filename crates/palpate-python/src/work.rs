@@ -199,7 +199,7 @@ pub(crate) fn writing_job<T: Send + 'static>(
     writing(py, move |mut heard| run(&mut heard))?.map_err(failed)
 }
 
-/// Bytes that are put together piece by piece; Ctrl-C is heard in between.
+/// Text that is put together piece by piece; Ctrl-C is heard in between.
 pub(crate) struct Long<'py> {
     py: Python<'py>,
     bytes: Vec<u8>,
@@ -207,18 +207,13 @@ pub(crate) struct Long<'py> {
 }
 
 impl<'py> Long<'py> {
-    /// What `write` writes.
-    pub(crate) fn bytes(py: Python<'py>, write: impl FnOnce(&mut Self) -> io::Result<()>) -> PyResult<Vec<u8>> {
+    /// The text that `write` writes.
+    pub(crate) fn text(py: Python<'py>, write: impl FnOnce(&mut Self) -> io::Result<()>) -> PyResult<String> {
         let (bytes, heard) = (Vec::new(), 0);
         let mut long = Self { py, bytes, heard };
         // The exception of a signal is what an error of writing brings.
         write(&mut long)?;
-        Ok(long.bytes)
-    }
-
-    /// The text that `write` writes.
-    pub(crate) fn text(py: Python<'py>, write: impl FnOnce(&mut Self) -> io::Result<()>) -> PyResult<String> {
-        Ok(String::from_utf8(Self::bytes(py, write)?)?)
+        Ok(String::from_utf8(long.bytes)?)
     }
 }
 

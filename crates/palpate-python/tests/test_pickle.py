@@ -53,6 +53,15 @@ def test_results_come_back(record: palpate.Record) -> None:
         assert copy.copy(thing) == thing and copy.deepcopy(thing) == thing, thing
 
 
+def test_a_long_table_comes_back_whole() -> None:
+    # It is written in parts of 65,536 rows.
+    t = np.arange(150_000) * 1e-2
+    depth = 1e-3 * np.minimum(t % 20, 1)
+    table = palpate.Observer(slip_force_n=1.0).feed_many(t, 400 * depth * (1 + np.exp(-(t % 20))), depth)
+    back = again(table)
+    assert len(back) == 150_000 and back == table
+
+
 def test_a_record_keeps_its_description_and_its_corrections(record: palpate.Record) -> None:
     other = again(record)
     assert (other.title, other.corrections) == (record.title, record.corrections)

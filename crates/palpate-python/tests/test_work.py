@@ -81,6 +81,15 @@ record = palpate.Record.from_arrays(time_s=t, displacement_m=depth, force_n=forc
 work = record.segments
 """
 
+# It was an OSError where the writer of Arrow heard it.
+PICKLES = """
+import pickle
+t = np.linspace(0, 20_000, 400_000)
+depth = 1e-3 * np.minimum(t % 20, 1)
+table = palpate.Observer(slip_force_n=1.0).feed_many(t, 400 * depth * (1 + np.exp(-(t % 20))), depth)
+work = lambda: pickle.dumps(table)
+"""
+
 INTERRUPTED = """
 import numpy as np, palpate, threading, time, os, signal
 signal.signal(signal.SIGINT, signal.default_int_handler)
@@ -105,7 +114,7 @@ os._exit(0)
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="signals of POSIX")
-@pytest.mark.parametrize("work", [FITS, SEARCHES, PHASES, CALIBRATIONS, ANALYSES], ids=["fits", "searches", "phases", "calibrations", "analyses"])
+@pytest.mark.parametrize("work", [FITS, SEARCHES, PHASES, CALIBRATIONS, ANALYSES, PICKLES], ids=["fits", "searches", "phases", "calibrations", "analyses", "pickles"])
 def test_ctrl_c_ends_the_work(work: str) -> None:
     before = signal.getsignal(signal.SIGINT)
     script = INTERRUPTED.format(work=work)

@@ -15,7 +15,7 @@ use crate::errors::{ModelError, OptionError, of_mapping, refused_plainly, undesc
 use crate::files::stated;
 use crate::pickles::{Made, PICKLE, Piece, Pieces, check_pickle, in_pieces};
 use crate::shown::shown;
-use crate::work::{Long, briefly};
+use crate::work::briefly;
 
 /// A body and its law as a description has them: path of a file or mapping; and a text that makes them again anywhere.
 fn described(model: &Bound<'_, PyAny>) -> PyResult<(ContactModel, String)> {
@@ -393,9 +393,9 @@ shown! {
 
     #[expect(clippy::type_complexity, reason = "what pickle asks for")]
     fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Made<'py, (Vec<String>, Vec<Piece>, u32)>> {
-        let states = Long::bytes(py, |out| self.states.iter().try_for_each(|state| out.write_all(&state.to_bytes())))?;
+        let states = in_pieces(py, |out| self.states.iter().try_for_each(|state| out.write_all(&state.to_bytes())))?;
         let make = py.get_type::<Self>().getattr("_from_parts")?;
-        Ok((make, (self.texts.clone(), in_pieces(states), PICKLE)))
+        Ok((make, (self.texts.clone(), states, PICKLE)))
     }
 
     fn __repr__(&self) -> String {

@@ -27,6 +27,9 @@ documents! {
         error: f64 = forecast.rmse / change,
         /// Mean error as the same share; positive where the law exceeds the data.
         bias: f64 = forecast.bias / change,
+        /// Root mean square error in each eighth of the time from the cut to the end, as the same share; `null` where there are no samples.
+        error_by_eighth: Vec<Option<f64>> =
+            forecast.square_by_eighth.iter().map(|square| square.map(|square| square.sqrt() / change)).collect(),
     }
 
     /// A peak of the spectrum.

@@ -22,8 +22,8 @@ pub struct Forecast {
     pub rmse: f64,
     /// Mean error over those: above zero where the law runs above the data.
     pub bias: f64,
-    /// Mean square error within each eighth of the time from the cut to the end; 0 where there are no samples.
-    pub square_by_eighth: [f64; 8],
+    /// Mean square error within each eighth of the time from the cut to the end; `None` where there are no samples.
+    pub square_by_eighth: [Option<f64>; 8],
 }
 
 /// Fits `law` to the samples up to `cut` seconds after the first, and compares with those after it.
@@ -66,7 +66,7 @@ pub fn forecast(samples: &Samples<'_>, law: Law, options: &LawOptions, cut: f64)
     let weight: f64 = weights.iter().sum();
     // What nodes do not know of their samples is noise, everywhere alike.
     let inside = rest.inside / weight;
-    let mean = |(square, weight): (f64, f64)| if weight > 0.0 { square / weight + inside } else { 0.0 };
+    let mean = |(square, weight): (f64, f64)| (weight > 0.0).then(|| square / weight + inside);
     Ok(Forecast {
         cut,
         fitted,
