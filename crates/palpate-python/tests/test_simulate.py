@@ -173,6 +173,7 @@ def test_laws_are_compared_by_what_they_predict() -> None:
     t, y = relaxation(800, 1e-4)
     comparison = palpate.compare(t, y, laws=["latency:5", "standard-linear-solid", "prony:2"])
     assert comparison.law == "latency:5" and comparison.certainty == "clear"
+    assert comparison.probability is not None and comparison.probability >= 0.9
     assert comparison.sentence is not None and "n = 5" in comparison.sentence
     assert comparison.laws["law"][0] == "latency:5" and len(comparison.laws) == 3
     assert comparison.to_dict()["signal"] == "force"

@@ -44,7 +44,9 @@ fn a_folder_becomes_one_table_of_holds_and_laws() {
     );
     assert!(printed.contains("relative rate") && printed.contains("Median"), "{printed}");
     let table = lines(folder, "holds.csv");
-    assert!(table[0].starts_with("record,part,hold,law,recommended,formula,holdout_error,indistinguishable,"));
+    assert!(
+        table[0].starts_with("record,part,hold,law,recommended,formula,holdout_error,probability,indistinguishable,")
+    );
     assert_eq!(column(&table, "recommended")[..3], ["1", "0", "0"]);
     // Five exponents given and one free, in four records of one hold.
     assert_eq!(table.len(), 1 + 4 * 6, "{table:?}");

@@ -37,10 +37,11 @@ fn the_law_that_made_the_record_is_chosen_and_the_sentence_says_so() {
         assert_eq!((&comparison["ranking"], &comparison["signal"]), (&"forward".into(), &"strain".into()));
         assert_eq!(comparison["verdict"]["law"], "latency:5", "hold {}", hold["index"]);
         let sentence = comparison["verdict"]["sentence"].as_str().unwrap();
-        assert!(
-            sentence.starts_with("Use the nonlinear latency law with n = 5 (3 parameters); that is"),
-            "{sentence}"
-        );
+        assert!(sentence.contains("the nonlinear latency law with n = 5 (3 parameters)"), "{sentence}");
+        // The noise of these holds leaves open which of the laws about it predicts best.
+        let probability = comparison["verdict"]["probability"].as_f64().unwrap();
+        assert!((0.3..0.75).contains(&probability) && comparison["verdict"]["certainty"] == "open", "{probability}");
+        assert!(sentence.contains(&format!("With a probability of {:.0} % (", 100.0 * probability)), "{sentence}");
         let laws = comparison["laws"].as_array().unwrap();
         let made = laws.iter().find(|law| law["law"] == "latency:5").unwrap();
         let rate = &made["parameters"]["rate_coefficient_per_s"];

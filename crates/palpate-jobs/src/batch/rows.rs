@@ -2,7 +2,7 @@
 
 use palpate_files::parquet_table::Kind::{self, Count, Number, Text};
 use palpate_files::parquet_table::{Field, Rows, Values};
-use palpate_report::document::{AnalysisDocument, FitDocument, HoldDocument, LawDocument};
+use palpate_report::document::{AnalysisDocument, FitDocument, HoldDocument, LawDocument, VerdictDocument};
 use palpate_report::result::Parameters;
 use serde_json::Value;
 
@@ -49,7 +49,7 @@ const HOLD: [Column; 16] = [
 ];
 
 /// The answer: which hold of which record, its law with the values put in, and how well that predicts.
-const ANSWER: [Column; 8] = [
+const ANSWER: [Column; 9] = [
     (Text, "record", |line| line.document.input.path.clone().into()),
     (Text, "part", |line| line.document.input.part.clone().into()),
     (Count, "hold", |line| line.hold.index.into()),
@@ -59,6 +59,7 @@ const ANSWER: [Column; 8] = [
         line.of_law(|fit| fit.formula.clone().into(), |law| law.formula.clone().into())
     }),
     (Number, "holdout_error", |line| line.compared().and_then(|law| law.forward_score).into()),
+    (Number, "probability", |line| line.verdict().map(|verdict| verdict.probability).into()),
     (Text, "indistinguishable", |line| line.indistinguishable().into()),
 ];
 
@@ -166,9 +167,14 @@ impl Line<'_> {
         self.hold.comparison.as_ref()?.laws.iter().find(|law| law.law == name)
     }
 
+    /// What is judged of the hold, in the row of the recommended law.
+    fn verdict(&self) -> Option<&VerdictDocument> {
+        self.hold.comparison.as_ref()?.verdict.as_ref().filter(|_| self.is_recommended)
+    }
+
     /// Of the recommended law: the other laws that the data do not distinguish from the best.
     fn indistinguishable(&self) -> Option<String> {
-        let verdict = self.hold.comparison.as_ref()?.verdict.as_ref().filter(|_| self.is_recommended)?;
+        let verdict = self.verdict()?;
         let others: Vec<&str> =
             verdict.indistinguishable.iter().filter(|law| **law != verdict.law).map(String::as_str).collect();
         Some(others.join(" "))

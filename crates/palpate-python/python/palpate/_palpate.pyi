@@ -471,6 +471,7 @@ class Fit(_Value):
 class Comparison(_Value):
     law: Final[str | None]
     certainty: Final[str | None]
+    probability: Final[float | None]
     sentence: Final[str | None]
     reservation: Final[str | None]
     forecast: Final[Table | None]

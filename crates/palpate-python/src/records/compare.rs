@@ -107,10 +107,12 @@ impl Comparison {
 shown! {
     Comparison: self
     values {
-        /// The law to use: that with the fewest parameters among those not distinguishable from the best; None if none could be fitted.
+        /// The law to use: that with the lowest BIC among those not distinguishable from the best; None if none could be fitted.
         law: Option<&str> = self.verdict(|verdict| &verdict.law),
         /// How sure that is: "clear", "likely" or "open".
         certainty: Option<&str> = self.verdict(|verdict| &verdict.certainty),
+        /// Probability that no law that was compared predicts what follows better by more than a fifth.
+        probability: Option<f64> = self.document.verdict.as_ref().map(|verdict| verdict.probability),
         /// All that in one sentence.
         sentence: Option<&str> = self.verdict(|verdict| &verdict.sentence),
         /// What stands against every law, so that the one named is the best approximation and no recommendation: "refuted" by the hold

@@ -136,16 +136,20 @@ documents! {
 
     /// Which law to use.
     VerdictDocument(comparison: &Comparison, verdict: &Verdict) {
-        /// The law with the fewest parameters among those that are not distinguishable from the best.
+        /// The law with the lowest BIC among those that are not distinguishable from the best.
         law: String = verdict.law.to_string(),
-        /// `clear`, `likely` or `open`.
+        /// Probability that no law that was compared predicts what follows better by more than a fifth.
+        probability: f64 = verdict.probability,
+        /// Range of that probability: what measured holds alone and what simulated ones alone say.
+        probability_range: [f64; 2] = verdict.probability_range.into(),
+        /// `clear` from a probability of 0.9 on, `likely` from 0.75 on, or `open`.
         certainty: String = word(verdict.certainty),
         /// `refuted` or `unpredictive` where every law is; this one is then the best approximation and no recommendation.
         reservation: Option<String> = verdict.reservation.map(word),
         /// All laws that are not distinguishable from the best, this one included.
         indistinguishable: Vec<String> = verdict.indistinguishable.iter().map(ToString::to_string).collect(),
-        /// Number of cut points at which no law predicts distinguishably better.
-        cuts_won: usize = verdict.cuts_won,
+        /// Number of cut points at which its error is within a fifth of the smallest.
+        cuts_near_best: usize = verdict.cuts_near_best,
         /// Cost of each other law: the ratio of its error to that of the chosen one (`forward`), or its excess of BIC (`information`).
         costs: BTreeMap<String, Option<f64>> =
             verdict.costs.iter().map(|(law, cost)| (law.to_string(), finite(*cost))).collect(),

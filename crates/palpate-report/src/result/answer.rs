@@ -43,6 +43,8 @@ pub struct HoldAnswer {
     pub law: String,
     /// `clear`, `likely` or `open`.
     pub certainty: String,
+    /// Probability that no law that was compared predicts what follows better by more than a fifth.
+    pub probability: f64,
     /// The law with its values put in; t counts from the start of the fit. `null` for the spectrum.
     pub formula: Option<String>,
     /// Time of the record from which t counts, s.
@@ -89,6 +91,7 @@ impl HoldAnswer {
             title: hold.title(),
             law: verdict.law.to_string(),
             certainty: word(verdict.certainty),
+            probability: verdict.probability,
             formula: fit.map(|fit| formula(fit, hold.quantity)),
             fit_start_s: hold.fit_start,
             parameters: fit.map(|fit| parameters_of(fit, hold.quantity)).unwrap_or_default(),
@@ -144,8 +147,8 @@ fn alike(comparison: &Comparison) -> &[Law] {
     comparison.verdict.as_ref().map_or(&[], |verdict| &verdict.indistinguishable)
 }
 
-/// The law that is not distinguishable from the best on the most holds; of several the one with the fewest parameters, then the one
-/// whose forecasts miss least. The spectrum has no parameters to carry to another test and comes last.
+/// The law that is not distinguishable from the best on the most holds; of several the one for which the evidence of all holds together,
+/// the sum of their differences of BIC, is strongest. The spectrum has no parameters to carry to another test and comes last.
 pub(crate) fn law_of_record(record: &ComparedRecord) -> Option<Law> {
     let judged: Vec<_> = record.verdicts().collect();
     let mut laws: Vec<Law> = Vec::new();
@@ -156,14 +159,10 @@ pub(crate) fn law_of_record(record: &ComparedRecord) -> Option<Law> {
     }
     let holds = |law: Law| judged.iter().filter(|(_, found)| alike(found).contains(&law)).count();
     let rows = |law: Law| judged.iter().filter_map(move |(_, found)| found.rows.iter().find(|row| row.law == law));
-    let parameters = |law: Law| rows(law).map(|row| row.effective_parameters).fold(0.0, f64::max);
-    let error = |law: Law| rows(law).filter_map(|row| row.forward.score).sum::<f64>();
+    let evidence = |law: Law| rows(law).filter_map(|row| row.delta_bic).sum::<f64>();
     let order = |a: &Law, b: &Law| -> Ordering {
         let last = |law: &Law| *law == Law::Spectrum;
-        (last(a).cmp(&last(b)))
-            .then(holds(*b).cmp(&holds(*a)))
-            .then(parameters(*a).total_cmp(&parameters(*b)))
-            .then(error(*a).total_cmp(&error(*b)))
+        (last(a).cmp(&last(b))).then(holds(*b).cmp(&holds(*a))).then(evidence(*a).total_cmp(&evidence(*b)))
     };
     laws.into_iter().min_by(order)
 }

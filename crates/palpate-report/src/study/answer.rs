@@ -25,7 +25,13 @@ pub(super) fn answer_text(record: &ComparedRecord, findings: &[Gathered]) -> Str
     let few = answer.holds.len() <= FEW;
     for hold in &answer.holds {
         text.push('\n');
-        text.push_str(&wrapped(&format!("{}: {} ({})", hold.title, hold.law, hold.certainty)));
+        text.push_str(&wrapped(&format!(
+            "{}: {} ({}, {:.0} %)",
+            hold.title,
+            hold.law,
+            hold.certainty,
+            100.0 * hold.probability
+        )));
         for line in formula_line(hold).into_iter().chain([hold.statement()]) {
             text.push_str(&indented("  ", 4, width(), &line));
         }
@@ -81,6 +87,7 @@ pub(super) fn verdicts(answer: &Answer) -> Option<Table> {
         .column("Hold", "hold", "", |hold| Cell::Integer(hold.hold as i64))
         .column("Recommended law", "law", "", |hold| Cell::text(&hold.law))
         .column("Certainty", "certainty", "", |hold| Cell::text(&hold.certainty))
+        .column("Probability", "probability_percent", "%", |hold| Cell::Number(100.0 * hold.probability, 2))
         .column("Held-out error", "holdout_error_percent", "%", |hold| {
             let reason = "too short for a held-out error: chosen by BIC";
             Cell::number_or(hold.holdout_error.map(|error| 100.0 * error), 2, reason)

@@ -76,7 +76,7 @@ pub enum Finding {
     },
     /// Several laws are not distinguishable.
     LawsIndistinguishable {
-        /// Those laws, the one with the fewest parameters first.
+        /// Those laws, the one with the lowest BIC first.
         laws: Vec<Law>,
     },
     /// The force rises again in a hold after loading.

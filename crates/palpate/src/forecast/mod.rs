@@ -6,12 +6,16 @@
 //! | `options.rs`, `result.rs` | options and results |
 //! | `compare.rs` | all laws on one hold, ranked |
 //! | `stacked/` | what the hold will show next, from all laws together |
+//! | `confidence_set.rs` | the laws that a test of their forecasts does not distinguish from the best |
+//! | `probability.rs` | how probable it is that none predicts better |
 //! | `verdict.rs` | the law to use, its certainty, the cost of others |
 //! | `sentence.rs` | that in one sentence |
 
 mod compare;
+mod confidence_set;
 mod criteria;
 mod options;
+mod probability;
 mod result;
 mod sentence;
 mod stacked;

@@ -72,17 +72,15 @@ pub struct Comparison {
     pub verdict: Option<Verdict>,
 }
 
-/// Certainty of a verdict.
+/// Certainty of a verdict, by its [probability](Verdict::probability).
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Certainty {
-    /// Not distinguishable from the best at every cut point, as is no other law but its generalisations; the error of every other law is
-    /// at least twice as large, and its own is that of the noise.
+    /// 90 % and more.
     Clear,
-    /// Best in the mean, and its forecasts miss by no more than the noise.
+    /// 75 % and more.
     Likely,
-    /// Nothing is held out, forecasts miss by more than the noise, every law is refuted, or most that are no generalisation of the chosen one
-    /// are not distinguishable from it.
+    /// Less, nothing is held out, or every law is refuted.
     Open,
 }
 
@@ -100,16 +98,22 @@ pub enum Reservation {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[non_exhaustive]
 pub struct Verdict {
-    /// The law with the fewest parameters among those that are not distinguishable from the best; the spectrum only if it is the only one.
+    /// The law with the lowest BIC among those that are not distinguishable from the best; the spectrum only if it is the only one.
     pub law: Law,
-    /// All laws that are not distinguishable from the best, this one included, best first.
+    /// All laws that are not distinguishable from the best, this one included, best first: by a test of their forecasts, or, where nothing
+    /// is held out, with a BIC at most 6 above the lowest.
     pub indistinguishable: Vec<Law>,
+    /// Probability that no law of those compared predicts what follows, up to two or three times the duration of the hold, with an error
+    /// that is smaller by more than a fifth; from what came of measured and of simulated holds.
+    pub probability: f64,
+    /// Range of that probability: what measured holds alone and what simulated ones alone say.
+    pub probability_range: (f64, f64),
     /// Certainty of the verdict.
     pub certainty: Certainty,
     /// What stands against this law and every other, so that it is the best approximation and no recommendation.
     pub reservation: Option<Reservation>,
-    /// Cut points at which it was best or alike.
-    pub cuts_won: usize,
+    /// Cut points at which its error was within a fifth of the smallest.
+    pub cuts_near_best: usize,
     /// What every other law costs: its error over that of the chosen one (forward), or its excess of BIC (information).
     pub costs: Vec<(Law, f64)>,
 }

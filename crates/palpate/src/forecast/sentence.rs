@@ -59,7 +59,7 @@ impl Comparison {
     /// let laws = vec![Law::Latency { exponent: ExponentChoice::Fixed(2.0) }, Law::StandardLinearSolid];
     /// let options = CompareOptions { laws, ..CompareOptions::default() };
     /// let sentence = compare_laws(&Samples::new(&times, &values), &options)?.sentence().unwrap();
-    /// assert!(sentence.starts_with("Use the nonlinear latency law with n = 2 (3 parameters); that is clear."));
+    /// assert!(sentence.starts_with("Use the nonlinear latency law with n = 2 (3 parameters); that is clear."), "{sentence}");
     /// # Ok::<(), palpate::fit::FitError>(())
     /// ```
     #[must_use]
@@ -74,7 +74,9 @@ impl Comparison {
             (Some(Reservation::Unpredictive), _) => format!("{UNPREDICTIVE}; the closest is {named}"),
             (None, Certainty::Clear) => format!("Use {named}; that is clear"),
             (None, Certainty::Likely) => format!("Use {named}; that is likely"),
-            (None, Certainty::Open) => format!("Use {named}; that is open, since {}", self.why_open(verdict)),
+            (None, Certainty::Open) => format!(
+                "Which law to use is open; {named} has the lowest BIC of those not distinguishable from the best"
+            ),
         });
         if self.ranking == Ranking::Forward {
             text.push_str(&self.predicted(verdict));
@@ -93,18 +95,13 @@ impl Comparison {
         if !row.is_good() {
             text.push_str("; no law found an optimum inside its range, so its parameters are not determined");
         }
-        text.push('.');
+        let (low, high) = verdict.probability_range;
+        let percents = [verdict.probability, low, high].map(|share| format!("{:.0}", 100.0 * share));
+        let [probability, low, high] = percents;
+        text.push_str(&format!(
+            ". With a probability of {probability} % ({low} to {high} %) no law that was compared predicts what follows better by more than a fifth."
+        ));
         Some(text)
-    }
-
-    fn why_open(&self, verdict: &Verdict) -> &'static str {
-        if 2 * verdict.indistinguishable.len() > self.rows.len() {
-            "most laws are not distinguishable from it"
-        } else if self.ranking == Ranking::Information {
-            "no forecast was tried"
-        } else {
-            "its forecasts miss by more than the noise"
-        }
     }
 
     /// What the chosen law predicts, and where it is best.
@@ -112,14 +109,14 @@ impl Comparison {
         let row = self.rows.iter().find(|row| row.law == verdict.law);
         let score = row.and_then(|row| row.forward.score).unwrap_or(f64::NAN);
         let parts: Vec<String> = self.cuts.iter().map(|cut| part_in_words(cut / self.duration)).collect();
-        let (won, all) = (verdict.cuts_won, self.cuts.len());
-        let won = match (won, all) {
-            (1, 1) => "where no law predicts distinguishably better".to_owned(),
-            (0, _) => "though another law predicts better at every cut point".to_owned(),
-            _ => format!("and no law predicts distinguishably better at {won} of {all} cut points"),
+        let (near, all) = (verdict.cuts_near_best, self.cuts.len());
+        let near = match (near, all) {
+            (1, 1) => "within a fifth of the best law".to_owned(),
+            (0, _) => "with another law better by more than a fifth at every cut point".to_owned(),
+            _ => format!("within a fifth of the best law at {near} of {all} cut points"),
         };
         format!(
-            ". Fitted to the first {} of the hold it predicts the rest to {} of the change, {won}",
+            ". Fitted to the first {} of the hold it predicts the rest to {} of the change, {near}",
             listed(&parts),
             percent(score)
         )
@@ -255,7 +252,7 @@ mod tests {
         let text = sentence(20, &["latency:5", "sls", "diffusion"]);
         assert!(text.contains("BIC") && !text.contains("predicts the rest"), "{text}");
         // It was stated behind the choice, as if that rested on a prediction all the same.
-        let (reason, choice) = (text.find("too short, or").unwrap(), text.find("Use ").unwrap());
+        let (reason, choice) = (text.find("too short, or").unwrap(), text.find("Which law to use is open").unwrap());
         assert!(reason < choice, "{text}");
     }
 

@@ -1,6 +1,6 @@
 //! Tables of compared laws.
 
-use palpate::forecast::{Certainty, Comparison, Ranking, Row, Verdict};
+use palpate::forecast::{Comparison, Ranking, Row, Verdict};
 use palpate::laws::Law;
 
 use crate::number::significant;
@@ -238,8 +238,9 @@ fn overview(comparison: &Comparison, law: Law) -> Option<String> {
 }
 
 fn sure(verdict: &Verdict) -> String {
-    match (verdict.certainty, verdict.indistinguishable.len()) {
-        (Certainty::Clear | Certainty::Likely, 1) => word(verdict.certainty),
-        (certainty, alike) => format!("{}, {} not distinguishable", word(certainty), alike - 1),
+    let sure = format!("{}, {:.0} %", word(verdict.certainty), 100.0 * verdict.probability);
+    match verdict.indistinguishable.len() {
+        1 => sure,
+        alike => format!("{sure}, {} not distinguishable", alike - 1),
     }
 }

@@ -115,7 +115,7 @@ impl Finding {
                 "laws_indistinguishable",
                 format!("{} are not distinguishable", listed(laws)),
                 "these data do not determine which of the laws applies; their predictions beyond the hold differ",
-                "use the one with the fewest parameters, or hold longer",
+                "use the first of them, which has the lowest BIC, or hold longer",
             ),
             Self::DriftInsteadOfRelaxation { rise, fall } => caution(
                 "drift_instead_of_relaxation",

@@ -1,0 +1,188 @@
+//! Contacts of a calibrated material.
+
+use super::*;
+
+/// The ball of `model`, with numbers 10 % off on average and errors that say so.
+pub(super) fn material(stiffer: f64) -> palpate::calibrate::Material {
+    use palpate::calibrate::{
+        Body, CalibrationRange, Candidate, EquilibriumLaw, Material, MaterialParameter, MaterialParts,
+        MaterialUncertainty, MaterialUnit,
+    };
+    use palpate::laws::{ExponentChoice, Law};
+    let model = model();
+    let thickness = model.layers.thickness(model.specimen.depth());
+    let number = |name: &str, unit, value: f64, share: f64| MaterialParameter {
+        name: name.to_owned(),
+        unit,
+        estimate: Estimate {
+            value,
+            standard_error: Some(share * value),
+            white_standard_error: None,
+            interval: Some((value * (1.0 - 2.0 * share), value * (1.0 + 2.0 * share))),
+        },
+    };
+    let variance = |share: f64| share * share;
+    let mut covariance = vec![vec![0.0; 4]; 4];
+    (covariance[0][0], covariance[1][1], covariance[2][2], covariance[3][3]) =
+        (variance(0.02), variance(0.01), variance(0.1), variance(0.02));
+    Material::new(MaterialParts {
+        body: Body {
+            shape: model.specimen.shape().clone(),
+            sides: model.specimen.sides(),
+            separation: Separation::Unilateral,
+            levels: Vec::new(),
+        },
+        candidate: Candidate::new(
+            Law::Latency {
+                exponent: ExponentChoice::Free,
+            },
+            EquilibriumLaw::UniformStrain,
+        ),
+        parameters: vec![
+            number("modulus_pa", MaterialUnit::Pascal, stiffer * model.specimen.modulus(), 0.02),
+            number("exponent", MaterialUnit::One, 5.03, 0.01),
+            number("rate_coefficient_per_s", MaterialUnit::PerSecond, 2.1e4, 0.1),
+            number("layer_thickness_m", MaterialUnit::Metre, 1.01 * thickness, 0.02),
+        ],
+        uncertainty: Some(MaterialUncertainty {
+            confidence: 0.95,
+            freedom: 2000.0,
+            covariance,
+        }),
+        noise: 0.05,
+        range: CalibrationRange {
+            longest_hold: 60.0,
+            deepest: 0.01,
+            fastest: 0.01,
+            slowest: 0.001,
+            largest_force: 5.0,
+        },
+    })
+    .unwrap()
+}
+
+#[test]
+fn a_material_tells_the_excess_at_once_and_the_time_to_slip_early() {
+    let slip_after = 30.0;
+    let course = squeeze(slip_after);
+    // The exponent known as well as the material knows it.
+    let plain = ObserverOptions {
+        exponent_standard_error: 0.05,
+        ..slipping_at(force_after(slip_after))
+    };
+    let informed = ObserverOptions {
+        material: Some(material(1.03)),
+        ..plain.clone()
+    };
+    let end = model().law.excess_after(0.133_032_479_302, 0.3);
+    for after in [0.3, 3.0, 20.0] {
+        let (mut inside, mut widths, seeds) = (0, [0.0; 2], repeats(12, 50));
+        for seed in 0..seeds {
+            let until = ((STOP + after) * RATE) as usize;
+            let truth = slip_after - after;
+            for (width, options) in widths.iter_mut().zip([&plain, &informed]) {
+                let observed = *watched(&course[..until], seed, options).last().unwrap();
+                let Some(SlipForecast::Known {
+                    low: TimeToSlip::After(low),
+                    high: TimeToSlip::After(high),
+                    ..
+                }) = observed.time_to_slip
+                else {
+                    continue;
+                };
+                *width += (high / low.max(1e-3)).ln() / seeds as f64;
+                if options.material.is_some() {
+                    inside += u64::from(low <= truth * 1.001 && truth <= high * 1.001);
+                    if after == 0.3 {
+                        let strain = observed.excess_strain.unwrap();
+                        assert!(
+                            (strain.value - end).abs() < 5.0 * error(strain) && error(strain) < 0.1 * end,
+                            "{strain:?} {end}"
+                        );
+                    }
+                }
+            }
+        }
+        println!("observed at {after} s: inside {inside} of {seeds}, ln(high/low) {widths:?}");
+        assert!(inside >= least_inside(seeds), "{after}: {inside}");
+        // Readings that follow closely count as fewer, so that later the hold alone tells as much.
+        assert!(widths[1] < if after < 1.0 { 0.3 } else { 1.3 } * widths[0], "{after}: {widths:?}");
+    }
+}
+
+#[test]
+fn a_material_whose_rate_depends_on_the_strain_is_watched_by_that() {
+    use palpate::calibrate::{Material, MaterialParameter, MaterialUnit, RateLaw};
+    use palpate::simulate::{Motion, Sampling, simulate};
+    let mut parts = material(1.0).into_parts();
+    parts.candidate.rate = RateLaw::ByStrain;
+    parts.parameters.push(MaterialParameter {
+        name: "strain_factor".to_owned(),
+        unit: MaterialUnit::One,
+        estimate: Estimate::fixed(0.02),
+    });
+    let covariance = &mut parts.uncertainty.as_mut().unwrap().covariance;
+    covariance.iter_mut().for_each(|row| row.push(0.0));
+    covariance.push(vec![0.0; 5]);
+    let varying = Material::new(parts).unwrap();
+    let truth = varying.contact();
+    let motion = Motion::new(vec![0.0, STOP, 8.0], vec![0.0, 5e-3, 5e-3]).unwrap();
+    let times = (1..(8.0 * RATE) as usize).map(|i| i as f64 / RATE).collect();
+    let course = simulate(&motion, truth, &Sampling::Times(times)).unwrap();
+    let ticks: Vec<_> = (0..course.len()).map(|i| (course.time[i], course.displacement[i], course.force[i])).collect();
+    let informed = |material| ObserverOptions {
+        material: Some(material),
+        ..ObserverOptions::default()
+    };
+    let observed = watched(&ticks, 3, &informed(varying));
+    // Right after the stop, when the hold itself tells little, and later.
+    for at in [0.8, 2.0, 7.9] {
+        let index = (at * RATE) as usize - 1;
+        let strain = observed[index].excess_strain.unwrap();
+        let exact = course.excess_strain[index];
+        assert!(
+            (strain.value - exact).abs() < 4.0 * error(strain) + 1e-4 && error(strain) < 0.1 * exact,
+            "{at} s: {strain:?} {exact}"
+        );
+    }
+    // A body with one rate coefficient is not this one.
+    let plain = watched(&ticks, 3, &informed(material(1.0)));
+    let last = plain.last().unwrap();
+    let exact = course.excess_strain.last().unwrap();
+    assert!(
+        last.excess_strain.is_none_or(|strain| (strain.value - exact).abs() > 4.0 * error(strain)),
+        "{last:?} {exact}"
+    );
+}
+
+#[test]
+fn forces_of_another_body_are_fitted_as_they_are() {
+    let course = squeeze(10.0);
+    let options = ObserverOptions {
+        material: Some(material(3.0)),
+        ..slipping_at(0.5)
+    };
+    let observed = *watched(&course, 1, &options).last().unwrap();
+    assert!(observed.excess_strain.is_none() && observed.equilibrium_force.is_some());
+    let mut observer = Observer::new(options).unwrap();
+    assert!(matches!(observer.feed(0.0, Some(1.0), 0.0), Err(ObserveError::Displacement { .. })));
+    assert!(observer.feed(0.0, Some(0.0), 0.0).is_ok());
+}
+
+/// A material that never saw the jaw stated that there is no force, and that what is held slips.
+#[test]
+fn a_material_says_nothing_where_no_displacement_is_read() {
+    let (course, mut noise) = (squeeze(10.0), Rng::new(5));
+    let forces: Vec<(f64, f64)> = course.iter().map(|tick| (tick.0, tick.2 + 0.02 * noise.normal())).collect();
+    let informed = ObserverOptions {
+        material: Some(material(1.0)),
+        ..slipping_at(0.5)
+    };
+    let [mut with, mut without] = [informed, slipping_at(0.5)].map(|options| Observer::new(options).unwrap());
+    for (time, force) in forces {
+        let (a, b) = (with.feed(time, None, force).unwrap(), without.feed(time, None, force).unwrap());
+        // What it knows of the exponent goes into the fit of the force alone.
+        assert!((a.force - b.force).abs() < 0.02 * (0.5 + b.force.abs()), "{time}: {a:?} {b:?}");
+        assert!(a.excess_strain.is_none() && a.slip != Slip::Slipping || time < 0.5, "{time}: {a:?}");
+    }
+}
