@@ -59,7 +59,7 @@ pickle. Answers without an object have to be an error of palpate, ValueError, Ty
 {requested.patience_s:g} s and 1 GB. Failures: {len(failures)}. One command writes this page:
 
 ```sh
-python validation/damaged_states.py --most {requested.most} --seed {requested.seed} --write
+python validation/damaged_states.py --most {requested.most} --seed {requested.seed} --patience-s {requested.patience_s:g} --write
 ```
 
 | example | damaged states | objects made | panics | other exceptions | no answer | ends of the process |

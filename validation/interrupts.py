@@ -5,9 +5,10 @@
 PALPATE is the command; the Python package has to be installed for the Python that runs this. Every job gets an input that takes more than
 2 s, found by trying larger ones. Commands hear SIGINT and SIGTERM at random times, calls of Python SIGINT. From the signal until the process
 has ended, or KeyboardInterrupt has been raised, at most --limit-s may pass; one second later the process may use no more than --busy-ms of
-processor time within 0.3 s, no file may have changed since, and no temporary file may be left. After parallel work in a process, a fork
-of it has to do the same work with the same result within 10 s. With --write the table goes to docs/validation/interrupts.md, where rows of
-jobs that did not run stay as they are. Exit code 1 if anything is not as required. The limits are those of a release build on an idle machine.
+processor time within 0.3 s (six times the median of six windows of 0.05 s), no file may have changed since, and no temporary file may be
+left. After parallel work in a process, a fork of it has to do the same work with the same result within 10 s. With --write the table goes to
+docs/validation/interrupts.md, where rows of jobs that did not run stay as they are. Exit code 1 if anything is not as required. The limits are
+those of a release build on an idle machine.
 """
 
 import argparse
@@ -87,11 +88,15 @@ print(json.dumps([kind, begin, ended]), flush=True)
 if len(sys.argv) > 5:
     at_once = files()
     time.sleep(1.0)
-    used = time.process_time()
-    time.sleep(0.3)
+    windows = []
+    for _ in range(6):
+        used = time.process_time()
+        time.sleep(0.05)
+        windows.append(time.process_time() - used)
     now = files()
     changed = sorted(str(pathlib.Path(name).relative_to(out)) for name in {*now, *at_once} if now.get(name) != at_once.get(name))
-    print(json.dumps([1e3 * (time.process_time() - used), changed, sorted(now)]), flush=True)
+    # Work that goes on is in every window; what a virtual machine takes at a waking is charged to one or two.
+    print(json.dumps([3e3 * sum(sorted(windows)[2:4]), changed, sorted(now)]), flush=True)
 os._exit(0)
 '''
 
@@ -434,9 +439,12 @@ for _ in range(10):
     freed = np.ones(200_000_000)
     del freed
     time.sleep(1.0)
-    used = time.process_time()
-    time.sleep(0.3)
-    worst = max(worst, time.process_time() - used)
+    windows = []
+    for _ in range(6):
+        used = time.process_time()
+        time.sleep(0.05)
+        windows.append(time.process_time() - used)
+    worst = max(worst, 3 * sum(sorted(windows)[2:4]))
 print(1e3 * worst)
 """
 
@@ -477,7 +485,7 @@ def main():
     parser.add_argument("--times", type=int, default=5, help="interrupts of each job and signal")
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--limit-s", type=float, default=0.2)
-    parser.add_argument("--busy-ms", type=float, default=30.0, help="processor time within 0.3 s that no work is")
+    parser.add_argument("--busy-ms", type=float, default=10.0, help="processor time within 0.3 s that no work is")
     parser.add_argument("--patience-s", type=float, default=60.0, help="when what does not end is killed")
     parser.add_argument("--only", action="append", help="only jobs whose name begins like this; may be repeated")
     parser.add_argument("--skip", action="append", default=[], choices=["commands", "calls", "forks"])

@@ -171,7 +171,12 @@ def of_argument(value: Any, at: str, places: Callable[[int, int], Iterator[int]]
     elif isinstance(value, list):
         yield f"{at} without the last", partial(_same, value[:-1])
         yield f"{at} twice", partial(_same, value * 2)
-        for place, one in enumerate(value):
+        # A part of a text is none: its pieces are damaged together, and come back as one.
+        is_text = len(value) > 1 and isinstance(value[0], bytes) and value[0].startswith((b"{", b"["))
+        if is_text:
+            for what, make in of_text(b"".join(value).decode(), at, places):
+                yield what, partial(inside, [b""], 0, partial(_encoded, make))
+        for place, one in enumerate([] if is_text else value):
             # One piece is the whole.
             alone = isinstance(one, bytes) and len(value) == 1
             for what, make in of_argument(one, at if alone else f"{at}[{place}]", places):

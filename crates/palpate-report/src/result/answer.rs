@@ -4,7 +4,7 @@ use std::cmp::Ordering;
 
 use palpate::analysis::{Finding, Severity};
 use palpate::fit::Fit;
-use palpate::forecast::{Comparison, Ranking, name_in_words};
+use palpate::forecast::{Comparison, PooledVerdict, Ranking, name_in_words, pooled};
 use palpate::laws::Law;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -22,6 +22,8 @@ const MOST_FINDINGS: usize = 2;
 pub struct Answer {
     /// The law for the record as a whole; `null` where none could be fitted.
     pub law: Option<String>,
+    /// Other laws that all holds together do not distinguish from the best; `null` for fewer than three holds.
+    pub indistinguishable: Option<Vec<String>>,
     /// Holds on which that law is not distinguishable from the best.
     pub holds_agreeing: usize,
     /// Holds on which laws could be compared.
@@ -70,12 +72,16 @@ impl Answer {
     pub fn new(record: &ComparedRecord) -> Self {
         let judged: Vec<_> = record.verdicts().collect();
         let law = law_of_record(record);
+        let together = pooled_of(record)
+            .map(|found| found.indistinguishable.into_iter().filter(|other| *other != found.law).collect::<Vec<Law>>());
         let agreeing = judged.iter().filter(|(_, found)| law.is_some_and(|law| alike(found).contains(&law))).count();
         Self {
             law: law.map(|law| law.to_string()),
+            indistinguishable: together.as_ref().map(|of| of.iter().map(Law::to_string).collect()),
             holds_agreeing: agreeing,
             holds_compared: judged.len(),
-            sentence: sentence(law, agreeing, &judged.iter().map(|(_, found)| *found).collect::<Vec<_>>()),
+            sentence: sentence(law, agreeing, &judged.iter().map(|(_, found)| *found).collect::<Vec<_>>())
+                + &together.as_deref().map_or_else(String::new, sentence_of_all),
             holds: judged.iter().filter_map(|(hold, found)| HoldAnswer::new(hold, found)).collect(),
         }
     }
@@ -147,9 +153,17 @@ fn alike(comparison: &Comparison) -> &[Law] {
     comparison.verdict.as_ref().map_or(&[], |verdict| &verdict.indistinguishable)
 }
 
-/// The law that is not distinguishable from the best on the most holds; of several the one for which the evidence of all holds together,
+/// The verdict of three holds or more together.
+fn pooled_of(record: &ComparedRecord) -> Option<PooledVerdict> {
+    pooled(&record.verdicts().map(|(_, found)| found).collect::<Vec<_>>())
+}
+
+/// The law by all holds together. Of fewer than three the law that is not distinguishable from the best on the most holds; of several the one for which the evidence of all holds together,
 /// the sum of their differences of BIC, is strongest. The spectrum has no parameters to carry to another test and comes last.
 pub(crate) fn law_of_record(record: &ComparedRecord) -> Option<Law> {
+    if let Some(found) = pooled_of(record) {
+        return Some(found.law);
+    }
     let judged: Vec<_> = record.verdicts().collect();
     let mut laws: Vec<Law> = Vec::new();
     for law in judged.iter().flat_map(|(_, found)| alike(found)) {
@@ -189,6 +203,15 @@ fn sentence(law: Option<Law>, agreeing: usize, judged: &[&Comparison]) -> String
         (agreeing, compared) => format!("On {agreeing} of {compared} holds"),
     };
     format!("{what}: {law}, {name}. {which} it is the best law or not distinguishable from the best.")
+}
+
+/// Which other laws all holds together do not distinguish from the best.
+fn sentence_of_all(others: &[Law]) -> String {
+    if others.is_empty() {
+        return " All holds together distinguish it from every other law.".to_owned();
+    }
+    let names: Vec<String> = others.iter().map(Law::to_string).collect();
+    format!(" All holds together do not distinguish it from: {}.", names.join(", "))
 }
 
 /// The most severe findings in words, cautions and warnings alone.

@@ -19,7 +19,7 @@ use crate::statistics::{coverage_factor, mean};
 const LEVEL: f64 = 0.05;
 
 /// Larger errors by less than this factor do not matter.
-const MARGIN: f64 = 1.05;
+pub(super) const MARGIN: f64 = 1.05;
 
 /// Errors below this share of the change count as this large: what is left there is rounding.
 const LEAST: f64 = 1e-4;
@@ -38,9 +38,9 @@ pub(super) fn losses(forward: &ForwardScore, change: f64) -> Vec<Option<f64>> {
         .collect()
 }
 
-/// Whether `losses` are larger than those of the best by more than chance and 5 % of the error, one of `others` tests.
-pub(super) fn is_worse(losses: &[Option<f64>], best: &[Option<f64>], others: usize) -> bool {
-    let margin = 2.0 * MARGIN.ln();
+/// Whether `losses` are larger than those of the best by more than chance and this factor of the error, one of `others` tests.
+pub(super) fn is_worse(losses: &[Option<f64>], best: &[Option<f64>], margin: f64, others: usize) -> bool {
+    let margin = 2.0 * margin.ln();
     let differences: Vec<f64> =
         losses.iter().zip(best).filter_map(|(one, best)| Some((*one)? - (*best)? - margin)).collect();
     let count = differences.len() as f64;
@@ -67,15 +67,15 @@ mod tests {
         let spread = (5.0_f64 / 6.0).sqrt();
         let losses = [1.0, -1.0, 1.0, -1.0, 1.0, -1.0].map(|sign| Some(1.0 + margin + sign * spread));
         // Student's t, 5 degrees of freedom, one-sided: 2.015 at 0.05, 2.571 at 0.025 (standard table).
-        assert!(is_worse(&losses, &best, 1));
-        assert!(!is_worse(&losses, &best, 2));
+        assert!(is_worse(&losses, &best, MARGIN, 1));
+        assert!(!is_worse(&losses, &best, MARGIN, 2));
     }
 
     #[test]
     fn a_difference_of_less_than_a_twentieth_never_counts() {
         let best = [Some(0.0); 6];
-        assert!(!is_worse(&[Some(2.0 * 1.049_f64.ln()); 6], &best, 1));
-        assert!(is_worse(&[Some(2.0 * 1.051_f64.ln()); 6], &best, 1));
-        assert!(!is_worse(&[Some(9.0), None], &best[..2], 1), "one stretch says nothing of its scatter");
+        assert!(!is_worse(&[Some(2.0 * 1.049_f64.ln()); 6], &best, MARGIN, 1));
+        assert!(is_worse(&[Some(2.0 * 1.051_f64.ln()); 6], &best, MARGIN, 1));
+        assert!(!is_worse(&[Some(9.0), None], &best[..2], MARGIN, 1), "one stretch says nothing of its scatter");
     }
 }

@@ -1,6 +1,6 @@
 //! The law to use, its certainty, and the cost of others.
 
-use super::confidence_set::{is_worse, losses};
+use super::confidence_set::{MARGIN, is_worse, losses};
 use super::probability::{NEAR, Signs, probability};
 use super::result::{Certainty, Comparison, Ranking, Reservation, Row, Verdict};
 use crate::laws::Law;
@@ -9,7 +9,7 @@ use crate::laws::Law;
 const EVIDENCE: f64 = 6.0;
 
 /// A difference of BIC beyond which a law is refuted ("very strong" evidence in the scale of Kass and Raftery).
-const REFUTED: f64 = 10.0;
+pub(super) const REFUTED: f64 = 10.0;
 
 /// A law whose forecasts miss by more than this share of the change predicts nothing.
 const UNPREDICTIVE: f64 = 1.0 / 3.0;
@@ -38,7 +38,7 @@ impl Comparison {
             Ranking::Information => figure(row) - figure(&best) <= EVIDENCE,
             Ranking::Forward => {
                 let of = |row: &Row| losses(&row.forward, self.change);
-                !is_worse(&of(row), &of(best), rows.len() - 1)
+                !is_worse(&of(row), &of(best), MARGIN, rows.len() - 1)
             }
         };
         rows.iter().filter(alike).copied().collect()

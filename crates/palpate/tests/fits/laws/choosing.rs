@@ -3,7 +3,7 @@
 #![allow(clippy::unwrap_used, reason = "in a test a panic is the verdict")]
 
 use palpate::fit::{LawOptions, Samples, forecast};
-use palpate::forecast::{Certainty, CompareOptions, Comparison, Ranking, compare_laws};
+use palpate::forecast::{Certainty, CompareOptions, Comparison, Ranking, compare_laws, pooled};
 use palpate::laws::Law;
 use palpate::test_problems::Rng;
 
@@ -89,6 +89,28 @@ fn a_noisy_hold_is_given_the_simplest_law_that_does() {
         "{verdict:?}"
     );
     assert_ne!(verdict.law, Law::Spectrum);
+}
+
+#[test]
+fn holds_together_distinguish_what_one_leaves_open() {
+    let mut random = Rng::new(5);
+    let truth: Law = "latency:5".parse().unwrap();
+    let holds: Vec<Comparison> = (0..8)
+        .map(|_| {
+            let times: Vec<f64> = (0..400).map(|i| 0.1 * f64::from(i)).collect();
+            let values: Vec<f64> =
+                times.iter().map(|t| 1.0 + (1.0 + 4.0 * t).powf(-0.25) + 0.02 * random.normal()).collect();
+            compared(&times, &values)
+        })
+        .collect();
+    let alone: usize = holds.iter().map(|hold| hold.verdict.as_ref().unwrap().indistinguishable.len()).sum();
+    let together = pooled(&holds.iter().collect::<Vec<_>>()).unwrap();
+    println!("{:.1} laws of one hold, together {together:?}", alone as f64 / 8.0);
+    assert!(together.indistinguishable.contains(&truth), "{together:?}");
+    assert!(8 * together.indistinguishable.len() < alone, "{together:?} {alone}");
+    assert_eq!(together.law, truth);
+    // Two holds say nothing of the scatter between holds.
+    assert!(pooled(&holds.iter().take(2).collect::<Vec<_>>()).is_none());
 }
 
 /// The claim that the project rests on, on a record measured by others.
