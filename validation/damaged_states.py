@@ -54,7 +54,7 @@ def main():
 """
     page = f"""# Damaged states
 
-{states:,} damaged pickles of the Python package, each read and the object asked everything: text, properties, methods, equality, a
+{states:,} damaged pickles of the Python package, each read, and every answer of the object taken: text, properties, methods, equality, a
 pickle. Answers without an object have to be an error of palpate, ValueError, TypeError, OverflowError, UnpicklingError or EOFError, within
 {requested.patience_s:g} s and 1 GB. Failures: {len(failures)}. One command writes this page:
 

@@ -536,7 +536,8 @@ KeyboardInterrupt is raised, within {1e3 * requested.limit_s:.0f} ms; one second
 no file; no temporary file is left. (A process of NumPy alone that holds 3.2 GB, frees 1.6 GB and sleeps used up to {idle:.0f} ms.)
 After parallel work a fork of the process does the same work again with the same result within {FORK_S:.0f} s. Jobs that are not as required:
 {failed} of {len(rows)}. What Python makes of a result is Python's: it frees a list of all rows (millions of dicts) before it raises KeyboardInterrupt,
-so that iterations keep no row here. One command writes this page:
+so that iterations keep no row here. One command writes this page; with `--only` it measures some jobs again and leaves the rows of others, so that
+rows may be of several runs:
 
 ```sh
 python validation/interrupts.py PALPATE --times {requested.times} --seed {requested.seed} --write

@@ -43,8 +43,9 @@ validation/real_records.sh "$PALPATE_DATA"
 Each law is fitted to the first quarter, third and half of a hold. The columns give its root mean square held-out error on the
 rest, averaged over the three, **in % of the change of the signal over the hold**; the smallest is bold. Brackets mark a fit to
 the whole hold that ended at the edge of its range, or whose terms merge. Δ: the hold is too short for a prediction, and the
-column is the BIC difference from the best law. *Law to use* is the law with the fewest parameters among those not
-distinguishable from the best, with its certainty and the number of other laws not distinguishable from the best.
+column is the BIC difference from the best law. *Law to use* is the law with the lowest BIC among those not distinguishable from the
+best, with its certainty, the probability that none predicts better by more than a fifth, and the number of other laws not
+distinguishable from the best.
 The columns and findings are explained in [Choose a law](../guides/choose-a-law.md) and
 [Read the report](../guides/reading-the-report.md#findings).
 

@@ -45,9 +45,9 @@ pub struct PooledVerdict {
 /// assert_eq!((verdict.law.to_string(), verdict.indistinguishable.len(), verdict.holds), ("latency:5".to_owned(), 1, 4));
 /// ```
 #[must_use]
-pub fn pooled(comparisons: &[&Comparison]) -> Option<PooledVerdict> {
-    let judged: Vec<&Comparison> = comparisons.iter().filter(|found| found.verdict.is_some()).copied().collect();
-    let with_forecasts: Vec<&Comparison> =
+pub fn pooled<'a>(comparisons: &[&'a Comparison]) -> Option<PooledVerdict> {
+    let judged: Vec<&'a Comparison> = comparisons.iter().filter(|found| found.verdict.is_some()).copied().collect();
+    let with_forecasts: Vec<&'a Comparison> =
         judged.iter().filter(|found| found.ranking == Ranking::Forward).copied().collect();
     let (counted, forward) = match with_forecasts.len() >= FEWEST {
         true => (with_forecasts, true),
@@ -63,11 +63,9 @@ pub fn pooled(comparisons: &[&Comparison]) -> Option<PooledVerdict> {
         let known: Vec<f64> = losses(&row.forward, hold.change).into_iter().flatten().collect();
         (!known.is_empty()).then(|| mean(&known))
     };
-    let row_of = |hold: &'_ Comparison, law: Law| hold.rows.iter().position(|row| row.law == law && row.is_good());
     let pooled = counted[0].rows.iter().filter_map(|first| {
-        let rows: Option<Vec<&Row>> =
-            counted.iter().map(|hold| row_of(hold, first.law).map(|index| &hold.rows[index])).collect();
-        let rows = rows?;
+        let fitted = |hold: &&'a Comparison| hold.rows.iter().find(|row| row.law == first.law && row.is_good());
+        let rows: Vec<&Row> = counted.iter().map(fitted).collect::<Option<_>>()?;
         let figures: Option<Vec<f64>> = counted.iter().zip(&rows).map(|(hold, row)| figure(hold, row)).collect();
         let evidence: f64 = rows.iter().filter_map(|row| row.delta_bic).sum();
         let refuted = rows.iter().filter(|row| row.delta_bic.is_none_or(|bic| bic > REFUTED)).count();
