@@ -29,7 +29,8 @@ pub(super) fn answer_text(record: &ComparedRecord, findings: &[Gathered]) -> Str
             "{}: {} ({}, {:.0} %)",
             hold.title,
             hold.law,
-            hold.certainty,
+            // What stands against every law goes before how this one compares with the others.
+            hold.reservation.as_ref().unwrap_or(&hold.certainty),
             100.0 * hold.probability
         )));
         for line in formula_line(hold).into_iter().chain([hold.statement()]) {

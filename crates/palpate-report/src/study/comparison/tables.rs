@@ -238,7 +238,9 @@ fn overview(comparison: &Comparison, law: Law) -> Option<String> {
 }
 
 fn sure(verdict: &Verdict) -> String {
-    let sure = format!("{}, {:.0} %", word(verdict.certainty), 100.0 * verdict.probability);
+    // What stands against every law goes before how this one compares with the others.
+    let reserved = verdict.reservation.map_or_else(|| word(verdict.certainty), word);
+    let sure = format!("{reserved}, {:.0} %", 100.0 * verdict.probability);
     match verdict.indistinguishable.len() {
         1 => sure,
         alike => format!("{sure}, {} not distinguishable", alike - 1),
