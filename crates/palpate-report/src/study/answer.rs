@@ -84,7 +84,8 @@ fn listed(parameters: &Parameters) -> String {
 
 /// Which law to use, hold by hold.
 pub(super) fn verdicts(answer: &Answer) -> Option<Table> {
-    Table::of("answer", "Law to use for each hold.", &answer.holds)
+    const CAPTION: &str = "Law to use for each hold. Probability: that no law that was compared predicts what follows better by more than a fifth.";
+    Table::of("answer", CAPTION, &answer.holds)
         .column("Hold", "hold", "", |hold| Cell::Integer(hold.hold as i64))
         .column("Recommended law", "law", "", |hold| Cell::text(&hold.law))
         .column("Certainty", "certainty", "", |hold| Cell::text(&hold.certainty))
