@@ -69,7 +69,19 @@ def material():
 TEST = {"specimen": SPECIMEN}
 '''
 
-CHILD = '''
+BUSY = '''
+import time
+def busy_ms():
+    # Work that goes on is in every window; what a virtual machine takes at a waking is charged to one or two.
+    windows = []
+    for _ in range(6):
+        used = time.process_time()
+        time.sleep(0.05)
+        windows.append(time.process_time() - used)
+    return 3e3 * sum(sorted(windows)[2:4])
+'''
+
+CHILD = BUSY + '''
 print("ready", flush=True)
 begin = time.monotonic()
 kind = "returned"
@@ -88,15 +100,10 @@ print(json.dumps([kind, begin, ended]), flush=True)
 if len(sys.argv) > 5:
     at_once = files()
     time.sleep(1.0)
-    windows = []
-    for _ in range(6):
-        used = time.process_time()
-        time.sleep(0.05)
-        windows.append(time.process_time() - used)
+    busy = busy_ms()
     now = files()
     changed = sorted(str(pathlib.Path(name).relative_to(out)) for name in {*now, *at_once} if now.get(name) != at_once.get(name))
-    # Work that goes on is in every window; what a virtual machine takes at a waking is charged to one or two.
-    print(json.dumps([3e3 * sum(sorted(windows)[2:4]), changed, sorted(now)]), flush=True)
+    print(json.dumps([busy, changed, sorted(now)]), flush=True)
 os._exit(0)
 '''
 
@@ -431,21 +438,16 @@ def forks(bench, names):
 
 
 # A process without palpate, after work with as much memory as the largest jobs have.
-CONTROL = """
-import time, numpy as np
+CONTROL = f"""{BUSY}
+import numpy as np
 worst = 0.0
 for _ in range(10):
     held = np.ones(400_000_000)
     freed = np.ones(200_000_000)
     del freed
     time.sleep(1.0)
-    windows = []
-    for _ in range(6):
-        used = time.process_time()
-        time.sleep(0.05)
-        windows.append(time.process_time() - used)
-    worst = max(worst, 3 * sum(sorted(windows)[2:4]))
-print(1e3 * worst)
+    worst = max(worst, busy_ms())
+print(worst)
 """
 
 

@@ -71,17 +71,18 @@ impl Answer {
     #[must_use]
     pub fn new(record: &ComparedRecord) -> Self {
         let judged: Vec<_> = record.verdicts().collect();
-        let law = law_of_record(record);
-        let together = pooled_of(record)
+        let together = pooled_of(record);
+        let law = together.as_ref().map_or_else(|| law_of_few(record), |found| Some(found.law));
+        let others = together
             .map(|found| found.indistinguishable.into_iter().filter(|other| *other != found.law).collect::<Vec<Law>>());
         let agreeing = judged.iter().filter(|(_, found)| law.is_some_and(|law| alike(found).contains(&law))).count();
         Self {
             law: law.map(|law| law.to_string()),
-            indistinguishable: together.as_ref().map(|of| of.iter().map(Law::to_string).collect()),
+            indistinguishable: others.as_ref().map(|of| of.iter().map(Law::to_string).collect()),
             holds_agreeing: agreeing,
             holds_compared: judged.len(),
             sentence: sentence(law, agreeing, &judged.iter().map(|(_, found)| *found).collect::<Vec<_>>())
-                + &together.as_deref().map_or_else(String::new, sentence_of_all),
+                + &others.as_deref().map_or_else(String::new, sentence_of_all),
             holds: judged.iter().filter_map(|(hold, found)| HoldAnswer::new(hold, found)).collect(),
         }
     }
@@ -158,12 +159,14 @@ fn pooled_of(record: &ComparedRecord) -> Option<PooledVerdict> {
     pooled(&record.verdicts().map(|(_, found)| found).collect::<Vec<_>>())
 }
 
-/// The law by all holds together. Of fewer than three the law that is not distinguishable from the best on the most holds; of several the one for which the evidence of all holds together,
-/// the sum of their differences of BIC, is strongest. The spectrum has no parameters to carry to another test and comes last.
+/// The law for a record: by all holds together, if there are enough.
 pub(crate) fn law_of_record(record: &ComparedRecord) -> Option<Law> {
-    if let Some(found) = pooled_of(record) {
-        return Some(found.law);
-    }
+    pooled_of(record).map_or_else(|| law_of_few(record), |found| Some(found.law))
+}
+
+/// The law that is not distinguishable from the best on the most holds; of several the one for which the evidence of all holds, the sum of
+/// their differences of BIC, is strongest. The spectrum has no parameters to carry to another test and comes last.
+fn law_of_few(record: &ComparedRecord) -> Option<Law> {
     let judged: Vec<_> = record.verdicts().collect();
     let mut laws: Vec<Law> = Vec::new();
     for law in judged.iter().flat_map(|(_, found)| alike(found)) {

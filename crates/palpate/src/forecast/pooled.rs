@@ -6,7 +6,7 @@
 
 use super::confidence_set::{MARGIN, is_worse, losses};
 use super::result::{Comparison, Ranking, Row};
-use super::verdict::REFUTED;
+use super::verdict::{REFUTED, preferred};
 use crate::laws::Law;
 use crate::statistics::mean;
 
@@ -85,10 +85,7 @@ pub fn pooled<'a>(comparisons: &[&'a Comparison]) -> Option<PooledVerdict> {
     let margin = if forward { MARGIN } else { 1.0 };
     let alike = usable.iter().filter(|law| !is_worse(&law.figures, &best.figures, margin, usable.len() - 1));
     let alike: Vec<&Pooled> = alike.copied().collect();
-    let chosen = alike.iter().min_by(|a, b| {
-        let spectrum = |law: &Pooled| law.law == Law::Spectrum;
-        spectrum(a).cmp(&spectrum(b)).then(a.evidence.total_cmp(&b.evidence))
-    })?;
+    let chosen = alike.iter().min_by(|a, b| preferred((a.law, a.evidence), (b.law, b.evidence)))?;
     Some(PooledVerdict {
         law: chosen.law,
         indistinguishable: alike.iter().map(|law| law.law).collect(),

@@ -1,5 +1,7 @@
 //! The law to use, its certainty, and the cost of others.
 
+use std::cmp::Ordering;
+
 use super::confidence_set::{MARGIN, is_worse, losses};
 use super::probability::{NEAR, Signs, probability};
 use super::result::{Certainty, Comparison, Ranking, Reservation, Row, Verdict};
@@ -55,6 +57,13 @@ impl Comparison {
     }
 }
 
+/// Of laws that are not distinguishable the one with the lower difference of BIC goes first; the spectrum, which has no parameters to carry to
+/// another test, last.
+pub(super) fn preferred(a: (Law, f64), b: (Law, f64)) -> Ordering {
+    let spectrum = |law: Law| law == Law::Spectrum;
+    spectrum(a.0).cmp(&spectrum(b.0)).then(a.1.total_cmp(&b.1))
+}
+
 /// Judges ranked rows.
 pub(super) fn judge(comparison: &Comparison) -> Option<Verdict> {
     let with_figure = || comparison.rows.iter().filter(|row| comparison.figure(row).is_some());
@@ -70,10 +79,7 @@ pub(super) fn judge(comparison: &Comparison) -> Option<Verdict> {
         .collect();
     let alike = comparison.indistinguishable(&usable, may_be_chosen);
     let evidence = |row: &Row| row.delta_bic.unwrap_or(f64::INFINITY);
-    let chosen = *alike.iter().min_by(|a, b| {
-        let spectrum = |row: &Row| row.law == Law::Spectrum;
-        spectrum(a).cmp(&spectrum(b)).then(evidence(a).total_cmp(&evidence(b)))
-    })?;
+    let chosen = *alike.iter().min_by(|a, b| preferred((a.law, evidence(a)), (b.law, evidence(b))))?;
     let figure = comparison.figure(chosen)?;
     let others = with_figure().filter(|row| row.law != chosen.law);
     let costs = others.filter_map(|row| {
