@@ -1,5 +1,6 @@
 //! Thousands of simulations at once on all cores: what each of many runs comes to, under any drive and law.
 
+use crate::parallel::for_each;
 use crate::simulate::{ContactRef, Drive, RunSummary, Sampling, SimulateError, run_summary};
 use crate::watch::{Cancelled, Progress, Watch};
 
@@ -60,15 +61,4 @@ pub fn summaries(runs: &[Run<'_>], watch: &mut dyn Watch) -> Result<Vec<Result<R
     }
     watch.report(Progress::counted("simulating", runs.len(), runs.len()))?;
     Ok(found)
-}
-
-/// What `of` makes of every number below `count`, in their order.
-fn for_each<T: Send>(count: usize, of: impl Fn(usize) -> T + Sync + Send) -> Vec<T> {
-    #[cfg(feature = "rayon")]
-    {
-        use rayon::prelude::{IntoParallelIterator, ParallelIterator};
-        (0..count).into_par_iter().map(of).collect()
-    }
-    #[cfg(not(feature = "rayon"))]
-    (0..count).map(of).collect()
 }

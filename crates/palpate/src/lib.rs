@@ -107,6 +107,8 @@ mod ode;
 #[cfg(feature = "std")]
 mod optimise;
 #[cfg(feature = "std")]
+mod parallel;
+#[cfg(feature = "std")]
 pub mod prelude;
 #[cfg(feature = "std")]
 #[doc(hidden)]

@@ -26,6 +26,7 @@ pub use finding::{Finding, Severity};
 pub use holds::{CreepError, CreepHold, HoldAnalysis, HoldoutError, RateBias, Signal, creep_holds};
 pub use options::{AnalysisOptions, Geometry, LayersChoice};
 pub use pipeline::{Analysis, analyze, analyze_watched, examine};
+pub(crate) use prepare::measured_motion;
 pub use prepare::{
     ClockSkew, Corrected, Prepared, clock_skew, corrected, corrected_watched, prepared, suspicious_signs,
 };

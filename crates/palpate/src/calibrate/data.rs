@@ -1,10 +1,10 @@
 //! What a model is fitted to: the motion of the jaw and the force it met.
 
 use super::CalibrateError;
-use crate::analysis::{AnalysisOptions, Geometry, Prepared, prepared};
+use crate::analysis::{AnalysisOptions, Geometry, Prepared, measured_motion, prepared};
 use crate::contact::{Specimen, SpecimenError};
 use crate::record::Record;
-use crate::simulate::{Motion, Separation};
+use crate::simulate::{MeasuredMotion, Motion, Separation};
 
 /// Samples of force along a motion of the jaw that starts at first touch, ready to be fitted; SI units, loading positive.
 #[derive(Debug, Clone, PartialEq)]
@@ -12,6 +12,8 @@ pub struct CalibrationData {
     pub(super) geometry: Geometry,
     pub(super) separation: Separation,
     motion: Motion,
+    /// How the motion was measured; `None` where it is exact.
+    measured: Option<MeasuredMotion>,
     times: Vec<f64>,
     forces: Vec<f64>,
     /// Samples that are fitted; the rest is held out.
@@ -90,6 +92,7 @@ impl CalibrationData {
             geometry,
             separation,
             motion,
+            measured: None,
             times,
             forces,
             samples,
@@ -105,19 +108,20 @@ impl CalibrationData {
         let Prepared {
             record, segmentation, ..
         } = prepared(record, options)?;
-        let displacement = record.displacement().ok_or(CalibrateError::NoDisplacement)?;
-        // A bonded ball has no area before first touch; noise there is no pull.
         let body = Specimen::new(geometry.shape.clone(), 1.0, geometry.sides)?;
-        let is_strip = body.contact_area(0.0) > 0.0;
-        let lowest = if options.separation == Separation::Bonded && !is_strip { 0.0 } else { f64::NEG_INFINITY };
-        let clean: Vec<f64> = displacement.iter().map(|d| d.max(lowest)).collect();
+        let measured = measured_motion(&record, &segmentation, &body, options.separation)
+            .ok_or(CalibrateError::NoDisplacement)??;
+        let displacement = record.displacement().unwrap_or_default();
         let held: Vec<f64> = segmentation
             .holds()
-            .map(|hold| crate::statistics::median(&mut clean[hold.start..hold.end].to_vec()))
+            .map(|hold| crate::statistics::median(&mut displacement[hold.start..hold.end].to_vec()))
             .collect();
-        let motion = Motion::new(record.time().to_vec(), clean)?.simplified(0.5 * segmentation.settings.tolerance);
         let (times, forces) = (record.time().to_vec(), record.force().to_vec());
-        Self::new(geometry, options.separation, motion, times, forces, &held)
+        let motion = measured.motion.clone();
+        Ok(Self {
+            measured: Some(measured),
+            ..Self::new(geometry, options.separation, motion, times, forces, &held)?
+        })
     }
 
     /// The same, fitted up to a time (s) and predicted from there on.
@@ -161,6 +165,11 @@ impl CalibrationData {
     #[must_use]
     pub fn motion(&self) -> &Motion {
         &self.motion
+    }
+
+    /// How the motion was measured; `None` where it is exact.
+    pub(super) fn measured(&self) -> Option<&MeasuredMotion> {
+        self.measured.as_ref()
     }
 
     /// Times of all samples, s.

@@ -1,5 +1,6 @@
 //! One candidate fitted to a whole record.
 
+use super::displacement::from_displacement;
 use super::prepared::Prepared;
 use super::problem::Problem;
 use super::search::search;
@@ -100,18 +101,23 @@ pub fn calibrate(
     let open: Vec<usize> = (0..free)
         .filter(|i| found.theta[*i] > prepared.searched[*i].low && found.theta[*i] < prepared.searched[*i].high)
         .collect();
-    let jacobian = problem.jacobian(&found.theta, &mut stages)?;
+    let jacobian = problem.jacobian(&found.theta, &found.residuals, &mut stages)?;
     if let (Some(missing), Some(factor)) =
         (candidate.rate.needs(), jacobian.as_ref().and_then(|columns| columns.last()))
         && factor.iter().all(|slope| *slope == 0.0)
     {
         return Err(CalibrateError::FactorUnseen { missing });
     }
-    let assessed = jacobian.as_ref().map(|jacobian| {
-        let columns: Vec<Vec<f64>> = open.iter().map(|i| jacobian[*i].clone()).collect();
-        Assessed::of_columns(columns, found.residuals.clone(), confidence)
-    });
-    let assessed = assessed.transpose()?;
+    let assessed = match &jacobian {
+        Some(jacobian) => {
+            let columns: Vec<Vec<f64>> = open.iter().map(|i| jacobian[*i].clone()).collect();
+            let of_displacement = from_displacement(&problem, data, &found.theta, &columns, &mut stages)?;
+            let mut assessed = Assessed::of_columns(columns, found.residuals.clone(), confidence)?;
+            of_displacement.iter().for_each(|covariance| assessed.add(covariance));
+            Some(assessed)
+        }
+        None => None,
+    };
     let is_reported = assessed.as_ref().is_some_and(|assessed| assessed.uncertainty.is_some());
     let termination = match found.termination {
         Termination::Converged

@@ -8,6 +8,7 @@
 //! | `candidate.rs` | a law of the layer and one of the equilibrium force | (10), (11) |
 //! | `prepared.rs` | the parameters of a candidate that are searched | |
 //! | `search.rs`, `problem.rs` | a grid, then damped steps | |
+//! | `displacement.rs` | what the noise of the displacement adds to their errors | |
 //! | `fit.rs` | from there to parameters with intervals | |
 //! | `profile.rs` | intervals by the profile of the residual sum of squares | |
 //! | `material.rs` | the body with its parameters | |
@@ -16,6 +17,7 @@
 
 mod candidate;
 mod data;
+mod displacement;
 mod error;
 mod fit;
 mod material;

@@ -1,8 +1,9 @@
 //! Residuals of a candidate, and damped steps to where they are least.
 
-use super::CalibrationData;
 use super::prepared::Prepared;
+use super::{CalibrationData, RateLaw};
 use crate::optimise::{Cholesky, Termination, distance};
+use crate::parallel::for_each;
 use crate::simulate::{Motion, simulate_force};
 use crate::watch::{Cancelled, Stages};
 
@@ -15,6 +16,17 @@ pub(super) struct Problem<'a> {
     pub(super) forces: &'a [f64],
     /// A parameter that is held, which one of the searched follows.
     pub(super) held: Option<Held>,
+    /// How closely optima are sought.
+    pub(super) precision: Precision,
+}
+
+/// How closely optima are sought.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) enum Precision {
+    /// As closely as tells valleys apart: differences on one side.
+    Coarse,
+    /// To rounding.
+    Full,
 }
 
 /// A point of the search.
@@ -37,6 +49,7 @@ impl<'a> Problem<'a> {
             times: &data.times()[..data.fitted()],
             forces: &data.forces()[..data.fitted()],
             held: None,
+            precision: Precision::Full,
         }
     }
 
@@ -59,33 +72,57 @@ impl<'a> Problem<'a> {
         Some(forces)
     }
 
-    /// Derivatives of the simulated forces by every parameter, column by column, from differences on both sides.
-    pub(super) fn jacobian(&self, theta: &[f64], stages: &mut Stages<'_>) -> Result<Option<Vec<Vec<f64>>>, Cancelled> {
-        let mut columns = Vec::with_capacity(theta.len());
-        for index in 0..theta.len() {
-            stages.hear()?;
-            match self.slope(theta, index) {
-                Some(column) => columns.push(column),
-                None => return Ok(None),
-            }
+    /// Derivatives of the simulated forces by every parameter, column by column, at parameters that leave these residuals.
+    pub(super) fn jacobian(
+        &self,
+        theta: &[f64],
+        residuals: &[f64],
+        stages: &mut Stages<'_>,
+    ) -> Result<Option<Vec<Vec<f64>>>, Cancelled> {
+        stages.hear()?;
+        let simulated: Vec<f64> = self.forces.iter().zip(residuals).map(|(force, residual)| force - residual).collect();
+        let columns = for_each(theta.len(), |index| self.slope(theta, &simulated, index));
+        Ok(columns.into_iter().collect())
+    }
+
+    /// Simulations of a Jacobian.
+    fn simulations(&self, size: usize) -> u64 {
+        let sides = if self.precision == Precision::Full { 2 } else { 1 };
+        sides * (size as u64 - u64::from(self.held.is_none()))
+    }
+
+    /// Step of the differences, of a logarithm: a part of what moves the forces, and far more than their error. Closed forms are good to 10⁻¹²; a rate
+    /// that depends on the strain is integrated, and its errors over a short step would pass for information.
+    fn step(&self) -> f64 {
+        match self.prepared.candidate.rate {
+            RateLaw::ByStrain => 3e-3,
+            RateLaw::Constant | RateLaw::ByDirection => 1e-4,
         }
-        Ok(Some(columns))
     }
 
     /// Derivatives of the simulated forces by one parameter.
-    fn slope(&self, theta: &[f64], index: usize) -> Option<Vec<f64>> {
-        /// Of the logarithm; the error of the difference is some 10⁻⁸ of the derivative.
-        const STEP: f64 = 1e-4;
+    fn slope(&self, theta: &[f64], simulated: &[f64], index: usize) -> Option<Vec<f64>> {
+        // The first is the logarithm of a stiffness that multiplies all forces.
+        if index == 0 && self.held.is_none() {
+            return Some(simulated.to_vec());
+        }
         if self.follows(index) {
             return Some(vec![0.0; self.times.len()]);
         }
         let bounds = &self.prepared.searched[index];
+        let by = self.step();
         let moved = |by: f64| {
             let mut beside = theta.to_vec();
             beside[index] = (theta[index] + by).clamp(bounds.low, bounds.high);
             Some((beside[index], self.forces_with(&beside)?))
         };
-        let ((low, below), (high, above)) = (moved(-STEP)?, moved(STEP)?);
+        if self.precision == Precision::Coarse {
+            let step = if theta[index] + by > bounds.high { -by } else { by };
+            let (there, forces) = moved(step)?;
+            let per_step = 1.0 / (there - theta[index]);
+            return Some(forces.iter().zip(simulated).map(|(there, here)| (there - here) * per_step).collect());
+        }
+        let ((low, below), (high, above)) = (moved(-by)?, moved(by)?);
         let per_step = 1.0 / (high - low);
         Some(above.iter().zip(&below).map(|(a, b)| (a - b) * per_step).collect())
     }
@@ -110,12 +147,16 @@ impl<'a> Problem<'a> {
         let mut square = sum_of_squares(&residuals);
         let (mut damping, mut simulations) = (1e-3, 1);
         let mut termination = Termination::IterationLimit;
+        let (enough, near) = match self.precision {
+            Precision::Coarse => (1e-8, 1e-4),
+            Precision::Full => (GAIN, 1e-4),
+        };
         'search: for step in 0..most {
             stages.reach(step as f64 / most as f64)?;
-            let Some(jacobian) = self.jacobian(&theta, stages)? else {
+            let Some(jacobian) = self.jacobian(&theta, &residuals, stages)? else {
                 return Ok(None);
             };
-            simulations += 2 * theta.len() as u64;
+            simulations += self.simulations(theta.len());
             let gradient: Vec<f64> = jacobian.iter().map(|column| dot(column, &residuals)).collect();
             let pinned = |i: usize| {
                 self.follows(i)
@@ -183,7 +224,7 @@ impl<'a> Problem<'a> {
                         share if share > 0.25 => damping,
                         _ => (damping * 8.0).max(1e-6),
                     };
-                    if gain <= GAIN * square && moved < 1e-4 {
+                    if gain <= enough * square && moved < near {
                         termination = Termination::Converged;
                         break 'search;
                     }

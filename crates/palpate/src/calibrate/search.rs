@@ -5,11 +5,12 @@
 //! 10⁻¹².
 
 use super::prepared::{Prepared, Searched};
-use super::problem::{Found, Problem, dot, sum_of_squares};
+use super::problem::{Found, Precision, Problem, dot, sum_of_squares};
 use super::{CalibrateError, CalibrationData};
 use crate::fit::{combinations, distinct};
 use crate::laws::{ExponentChoice, Law};
 use crate::optimise::{Termination, distance};
+use crate::parallel::for_each;
 use crate::simulate::{Motion, simulate_force};
 use crate::watch::{Cancelled, Stages};
 
@@ -42,6 +43,7 @@ pub(super) fn search(
         motion,
         times,
         forces,
+        precision: Precision::Coarse,
         ..whole
     };
     let few = few(whole.times, whole.motion);
@@ -117,6 +119,9 @@ fn few(times: &[f64], motion: &Motion) -> Vec<usize> {
     chosen
 }
 
+/// Points of the grid between two looks at the watch.
+const AT_ONCE: usize = 32;
+
 /// Exponents that are tried where n is to be found.
 const EXPONENTS: [f64; 6] = [1.0, 1.6, 2.5, 4.0, 6.0, 10.0];
 
@@ -130,13 +135,16 @@ pub(super) fn starts(
     let mut found: Vec<(f64, Vec<f64>)> = Vec::new();
     let grid = laws(prepared);
     let count = grid.len() as f64;
-    for (index, law) in grid.into_iter().enumerate() {
-        stages.reach(index as f64 / count)?;
-        *simulations += 1;
-        if let Some((square, modulus)) = scaled(prepared, problem, &law) {
-            let mut theta = prepared.stiffnesses_like(modulus);
-            theta.extend(law);
-            found.push((square, theta));
+    for (part, laws) in grid.chunks(AT_ONCE).enumerate() {
+        stages.reach((part * AT_ONCE) as f64 / count)?;
+        *simulations += laws.len() as u64;
+        let scaled = for_each(laws.len(), |index| scaled(prepared, problem, &laws[index]));
+        for (law, scaled) in laws.iter().zip(scaled) {
+            if let Some((square, modulus)) = scaled {
+                let mut theta = prepared.stiffnesses_like(modulus);
+                theta.extend(law);
+                found.push((square, theta));
+            }
         }
     }
     found.sort_by(|a, b| a.0.total_cmp(&b.0));

@@ -55,7 +55,7 @@ pub use {
     crate::contact::SimulationWork,
     contact::{Contact, ContactRef},
     cycles::{Cycle, StepWork, cycles, work_by_step, work_by_step_watched},
-    drive::{Drive, ForceHistory, Motion, MotionError, ProgramStep, ProtocolStep, protocol},
+    drive::{Drive, ForceHistory, MeasuredMotion, Motion, MotionError, ProgramStep, ProtocolStep, protocol},
     energy::{Energy, EnergySplit, energy, energy_watched},
     error::SimulateError,
     linear::{LinearContact, LinearLaw, LinearLawError, LinearTerm, Memory},

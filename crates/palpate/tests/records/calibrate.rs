@@ -3,12 +3,13 @@
 
 use std::time::{Duration, Instant};
 
-use palpate::analysis::Geometry;
+use palpate::analysis::{AnalysisOptions, Geometry};
 use palpate::calibrate::{
     CalibrateError, Calibration, CalibrationData, Candidate, EquilibriumLaw, Extrapolation, MaterialParameter, RateLaw,
     calibrate, profile,
 };
 use palpate::contact::{RateDependence, Shape, Sides};
+use palpate::record::Record;
 use palpate::simulate::{Contact, Motion, ProtocolStep, Sampling, Separation, protocol, simulate_force};
 use palpate::test_problems::{PAPER_RATE, Rng, paper_ball, paper_test_a, paper_test_b};
 use palpate::watch::{Cancelled, Progress, Unwatched, Watch};
@@ -152,20 +153,56 @@ fn what_was_not_fitted_is_not_stated_to_be_shown() {
     assert!(first < 0.5 * a.forces().iter().copied().fold(0.0, f64::max));
 }
 
+/// Differences over a short step of an integrated rate passed for information: 18 of 40 intervals of the factor contained it.
 #[test]
 fn a_constant_rate_is_not_stated_to_vary() {
-    let data = measured(&there_and_back(), 4, 0.2);
     for rate in [RateLaw::ByStrain, RateLaw::ByDirection] {
-        let requested = Candidate {
-            rate,
-            ..candidate("latency", EVEN)
-        };
-        let found = calibrate(&data, requested, 0.95, &mut Unwatched).unwrap();
-        let (low, high) = found.material.estimate(rate.factor_name().unwrap()).unwrap().interval.unwrap();
-        assert!(low < 1.0 && high > 1.0, "{rate:?}: {low} to {high}");
-        let plain = calibrate(&data, candidate("latency", EVEN), 0.95, &mut Unwatched).unwrap();
-        assert!(found.criteria.bic > plain.criteria.bic, "{rate:?}");
+        let (mut covered, mut worse) = (0, 0);
+        for seed in 1..=12 {
+            let data = measured(&there_and_back(), seed, 0.2);
+            let requested = Candidate {
+                rate,
+                ..candidate("latency", EVEN)
+            };
+            let found = calibrate(&data, requested, 0.95, &mut Unwatched).unwrap();
+            let (low, high) = found.material.estimate(rate.factor_name().unwrap()).unwrap().interval.unwrap();
+            covered += u32::from(low < 1.0 && high > 1.0);
+            let plain = calibrate(&data, candidate("latency", EVEN), 0.95, &mut Unwatched).unwrap();
+            worse += u32::from(found.criteria.bic > plain.criteria.bic);
+        }
+        // 95 % of 12 are 11.4.
+        assert!(covered >= 10 && worse >= 10, "{rate:?}: {covered} {worse}");
     }
+}
+
+/// The swinging door picked the samples farthest off as knots: of 20 intervals of ℓ 6 contained the truth at 500 Hz.
+#[test]
+fn noise_of_the_displacement_does_not_move_the_layer_thickness() {
+    let (motion, model) = (paper_test_a(), paper_ball(Separation::Unilateral));
+    let options = AnalysisOptions {
+        geometry: Some(ball()),
+        ..AnalysisOptions::default()
+    };
+    let time: Vec<f64> = (0..).map(|i| 0.005 * f64::from(i)).take_while(|t| *t <= motion.end()).collect();
+    let force = simulate_force(&motion, &model, &time).unwrap();
+    let truth = [("rate_coefficient_per_s", 2e4), ("layer_thickness_m", 0.035 / 8.0)];
+    let (mut covered, mut off) = ([0; 2], 0.0);
+    for seed in 1..=10 {
+        let mut random = Rng::new(seed);
+        let force = force.iter().map(|force| force + 0.2 * random.normal()).collect();
+        let displacement = time.iter().map(|t| motion.displacement_at(*t) + 1e-5 * random.normal()).collect();
+        let record = Record::new(time.clone(), Some(displacement), force).unwrap();
+        let data = CalibrationData::of_record(&record, &options).unwrap();
+        // Corners and no more.
+        assert!(data.motion().times().len() <= motion.times().len() + 2, "{:?}", data.motion());
+        let found = calibrate(&data, candidate("latency:5", EVEN), 0.95, &mut Unwatched).unwrap();
+        for (covered, (name, truth)) in covered.iter_mut().zip(truth) {
+            let (low, high) = found.material.estimate(name).unwrap().interval.unwrap();
+            *covered += u32::from(low <= truth && truth <= high);
+        }
+        off += found.material.estimate("layer_thickness_m").unwrap().value / truth[1].1 - 1.0;
+    }
+    assert!(covered.iter().all(|covered| *covered >= 8) && (off / 10.0).abs() < 5e-3, "{covered:?} {off}");
 }
 
 /// z² is the rise of the squared residual by its own definition: with the parameter held by another way, a law of a given exponent.

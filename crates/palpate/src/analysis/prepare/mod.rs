@@ -6,14 +6,17 @@
 //! |---|---|
 //! | `corrected.rs` | the requested corrections, in order, then zero at first touch |
 //! | `skew.rs`, `kink.rs` | how much later the force is stamped than the displacement |
+//! | `motion.rs` | the motion of the jaw, its noise taken out |
 //! | `signals.rs` | what the columns, and what was done to them, give cause to say |
 
 mod corrected;
 mod kink;
+mod motion;
 mod signals;
 mod skew;
 
 pub use corrected::{Corrected, Prepared, corrected, corrected_watched, prepared};
+pub(crate) use motion::measured_motion;
 pub(super) use signals::signal_findings;
 pub use signals::suspicious_signs;
 pub use skew::{ClockSkew, clock_skew};

@@ -1,12 +1,12 @@
 //! The same displacement simulated with the fitted parameters.
 
-use crate::analysis::{AnalysisOptions, HoldAnalysis};
+use crate::analysis::{AnalysisOptions, HoldAnalysis, measured_motion};
 use crate::contact::{Layers, Specimen};
 use crate::fit::LatencyFit;
 use crate::latency::LatencyLaw;
 use crate::record::Record;
 use crate::segment::{After, Segmentation};
-use crate::simulate::{ContactModel, Motion, Separation, simulate_force};
+use crate::simulate::{ContactModel, simulate_force};
 use crate::statistics::{median, rms};
 
 /// Samples of the record that are compared, at most.
@@ -57,7 +57,10 @@ pub(in crate::analysis) fn overlay(
         return Err("no hold gave a rate coefficient".to_owned());
     }
     let law = LatencyLaw::new(n, median(&mut coefficients)).map_err(|error| error.to_string())?;
-    let motion = motion(record, segmentation, specimen, options.separation)?;
+    let motion = measured_motion(record, segmentation, specimen, options.separation)
+        .ok_or("the record has no displacement")?
+        .map_err(|error| error.to_string())?
+        .motion;
     let samples: Vec<usize> = (0..record.len()).step_by(record.len().div_ceil(MOST_SAMPLES)).collect();
     let time: Vec<f64> = samples.iter().map(|i| record.time()[*i]).collect();
     let measured: Vec<f64> = samples.iter().map(|i| record.force()[*i]).collect();
@@ -90,22 +93,6 @@ pub(in crate::analysis) fn overlay(
         rmse,
         relative: rmse / largest,
     })
-}
-
-/// The measured motion with its noise taken out: straight lines that stay within half the tolerance of a hold.
-fn motion(
-    record: &Record,
-    segmentation: &Segmentation,
-    specimen: &Specimen,
-    separation: Separation,
-) -> Result<Motion, String> {
-    let displacement = record.displacement().ok_or("the record has no displacement")?;
-    // A bonded ball has no area before first touch; noise there is no pull.
-    let bonded_ball = separation == Separation::Bonded && specimen.contact_area(0.0) == 0.0;
-    let lowest = if bonded_ball { 0.0 } else { f64::NEG_INFINITY };
-    let clean = displacement.iter().map(|d| d.max(lowest)).collect();
-    let motion = Motion::new(record.time().to_vec(), clean).map_err(|error| error.to_string())?;
-    Ok(motion.simplified(0.5 * segmentation.settings.tolerance))
 }
 
 /// The number of layers with the smallest error: a grid over ln (m − 1), then golden-section search.

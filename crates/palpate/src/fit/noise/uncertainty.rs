@@ -321,6 +321,20 @@ impl Assessed {
         Self::new(&solution, &[], &vec![1.0; size], 1.0, &trust, &Effort::default())
     }
 
+    /// Adds a covariance of the parameters from another, independent cause.
+    pub(crate) fn add(&mut self, covariance: &[Vec<f64>]) {
+        let add = |rows: &mut Vec<Vec<f64>>| {
+            for (row, by) in rows.iter_mut().zip(covariance) {
+                row.iter_mut().zip(by).for_each(|(entry, by)| *entry += by);
+            }
+        };
+        self.white.iter_mut().for_each(add);
+        if let Some(uncertainty) = &mut self.uncertainty {
+            add(&mut uncertainty.covariance);
+            uncertainty.models.iter_mut().for_each(|model| add(&mut model.covariance));
+        }
+    }
+
     /// From a covariance for white noise of this `deviation`, intervals widened by a factor for samples that count as fewer.
     pub(crate) fn widened(
         white: Option<Vec<Vec<f64>>>,

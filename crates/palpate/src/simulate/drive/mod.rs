@@ -3,13 +3,16 @@
 //! | file | what |
 //! |---|---|
 //! | `motion.rs` | the displacement of the jaw: a protocol's steps, or a measured series; straight between its knots |
+//! | `measured.rs` | the motion that noisy samples of a displacement show |
 //! | `history.rs` | the force on the contact, straight between its knots |
 //! | `any.rs` | steps in displacement and in force, one after the other; any of the three |
 
 mod any;
 mod history;
+mod measured;
 mod motion;
 
 pub use any::{Drive, ProgramStep};
 pub use history::ForceHistory;
+pub use measured::MeasuredMotion;
 pub use motion::{Motion, MotionError, ProtocolStep, protocol};

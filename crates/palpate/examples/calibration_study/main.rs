@@ -1,20 +1,19 @@
 //! How often the 95 % intervals of calibrations contain the truth; prints a table in Markdown (`validation/calibration.sh` keeps it).
 //!
 //! The paper's ball through the paper's tests (a) and (b), as its machine would have recorded them: 20 Hz, the force within 0.2 N, the
-//! displacement within 1 µm (standard deviations). Run it with `cargo run --release -p palpate --example calibration_study [records]`.
+//! displacement within 1 µm (standard deviations), or noise and rate as given. Run it with
+//! `cargo run --release -p palpate --example calibration_study [records] [displacement noise, µm] [Hz]`.
+
+mod instrument;
 
 use std::collections::BTreeMap;
 
-use palpate::analysis::{AnalysisOptions, Geometry};
-use palpate::calibrate::{CalibrationData, Candidate, EquilibriumLaw, calibrate};
-use palpate::record::Record;
-use palpate::simulate::{Motion, Separation, simulate_force};
-use palpate::test_problems::{Rng, paper_ball, paper_test_a, paper_test_b};
+use instrument::Instrument;
+use palpate::calibrate::{Candidate, EquilibriumLaw, calibrate};
+use palpate::simulate::Motion;
+use palpate::test_problems::{paper_test_a, paper_test_b};
 use palpate::watch::Unwatched;
 
-const RATE: f64 = 20.0;
-const FORCE_NOISE: f64 = 0.2;
-const DISPLACEMENT_NOISE: f64 = 1e-6;
 const TRUTH: [(&str, &str, f64); 4] = [
     ("modulus_pa", "E", 28e3),
     ("exponent", "n", 5.0),
@@ -35,14 +34,22 @@ struct Count {
 }
 
 fn main() {
-    let records: u64 = std::env::args().nth(1).and_then(|text| text.parse().ok()).unwrap_or(1000);
+    let argument = |place| std::env::args().nth(place);
+    let records: u64 = argument(1).and_then(|text| text.parse().ok()).unwrap_or(1000);
+    let micrometres: f64 = argument(2).and_then(|text| text.parse().ok()).unwrap_or(1.0);
+    let rate_hz: f64 = argument(3).and_then(|text| text.parse().ok()).unwrap_or(20.0);
+    let instrument = Instrument {
+        rate_hz,
+        displacement_noise: 1e-6 * micrometres,
+        ..Instrument::default()
+    };
     println!("| test | fitted | parameter | covered | truth below | truth above | mean half width | mean error |");
     println!("|---|---|---|---:|---:|---:|---:|---:|");
     for (name, motion) in [("(a)", paper_test_a()), ("(b)", paper_test_b())] {
         for (law, fitted) in [("latency", "n found"), ("latency:5", "n = 5")] {
             let halves = std::thread::scope(|scope| {
                 let halves = [0..records / 2, records / 2..records];
-                let work = halves.map(|seeds| scope.spawn(|| counts(&motion, law, seeds)));
+                let work = halves.map(|seeds| scope.spawn(|| counts(&motion, instrument, law, seeds)));
                 work.map(|half| half.join().expect("a half"))
             });
             report((name, fitted), &halves, records);
@@ -67,11 +74,17 @@ fn report((test, fitted): (&str, &str), halves: &[BTreeMap<&str, Count>; 2], rec
     }
 }
 
-fn counts(motion: &Motion, law: &str, seeds: std::ops::Range<u64>) -> BTreeMap<&'static str, Count> {
+fn counts(
+    motion: &Motion,
+    instrument: Instrument,
+    law: &str,
+    seeds: std::ops::Range<u64>,
+) -> BTreeMap<&'static str, Count> {
     let mut counts: BTreeMap<&str, Count> = BTreeMap::new();
     let candidate = Candidate::new(law.parse().expect("a law"), EquilibriumLaw::UniformStrain);
     for seed in seeds {
-        let found = calibrate(&data(motion, seed), candidate, 0.95, &mut Unwatched).expect("a calibration");
+        let found =
+            calibrate(&instrument.record(motion, seed), candidate, 0.95, &mut Unwatched).expect("a calibration");
         for (name, _, truth) in TRUTH {
             let estimate = found.material.estimate(name).expect("a parameter");
             if estimate.standard_error.is_none() && law != "latency" && name == "exponent" {
@@ -87,26 +100,4 @@ fn counts(motion: &Motion, law: &str, seeds: std::ops::Range<u64>) -> BTreeMap<&
         }
     }
     counts
-}
-
-/// A record of the motion, cut and prepared as that of a machine is.
-fn data(motion: &Motion, seed: u64) -> CalibrationData {
-    let model = paper_ball(Separation::Unilateral);
-    let mut random = Rng::new(seed + 1);
-    let count = (motion.end() * RATE) as u32;
-    let time: Vec<f64> = (0..=count).map(|i| f64::from(i) / RATE).collect();
-    let force = simulate_force(motion, &model, &time).expect("a simulation");
-    let force = force.iter().map(|force| force + FORCE_NOISE * random.normal()).collect();
-    let place = |t: &f64| motion.displacement_at(*t) + DISPLACEMENT_NOISE * random.normal();
-    let displacement = time.iter().map(place).collect();
-    let record = Record::new(time, Some(displacement), force).expect("a record");
-    let options = AnalysisOptions {
-        geometry: Some(Geometry {
-            shape: model.specimen.shape().clone(),
-            sides: model.specimen.sides(),
-            modulus: None,
-        }),
-        ..AnalysisOptions::default()
-    };
-    CalibrationData::of_record(&record, &options).expect("data")
 }

@@ -1,0 +1,410 @@
+//! The motion that a measured displacement shows: standstills by their mean, ramps by their line.
+
+use super::motion::{Motion, MotionError};
+
+/// A motion estimated from noisy displacements, with the covariance of its knots.
+///
+/// A motion through the samples themselves would pass on their noise: a jaw that trembles drives a contact that no jaw drove. Here the knots
+/// are least-squares estimates. Corners are where the lines of adjacent stretches meet, so that they may lie between two samples.
+///
+/// ```
+/// use palpate::simulate::MeasuredMotion;
+/// // 2 mm/s for 1.005 s, then a hold, at 100 Hz with ±10 µm.
+/// let time: Vec<f64> = (0..=400).map(|i| 0.01 * f64::from(i)).collect();
+/// let noise = |i: usize| 1e-5 * [1.0, -1.0, 0.3, -0.3][i % 4];
+/// let measured = time.iter().enumerate().map(|(i, t)| 2e-3 * t.min(1.005) + noise(i)).collect();
+/// let found = MeasuredMotion::of(time, measured, 5e-5)?;
+/// assert_eq!(found.motion.times().len(), 3);
+/// assert!((found.motion.times()[1] - 1.005).abs() < 2e-3);              // s
+/// assert!((found.motion.displacements()[2] - 2.01e-3).abs() < 1e-6);    // m
+/// # Ok::<(), palpate::simulate::MotionError>(())
+/// ```
+#[derive(Debug, Clone, PartialEq)]
+pub struct MeasuredMotion {
+    /// Straight between its knots.
+    pub motion: Motion,
+    /// Standard deviation of the samples about it, m.
+    pub noise: f64,
+    /// HᵀH of the hat functions H of its knots; `None` where the knots are samples.
+    normal: Option<Tridiagonal>,
+}
+
+/// Samples of a stretch from which its line is known well enough to meet another.
+const FEWEST: usize = 4;
+
+/// Knots that are looked at together.
+const TOGETHER: usize = 6;
+
+/// How often corners are moved to where lines meet.
+const ROUNDS: usize = 3;
+
+impl MeasuredMotion {
+    /// The motion that samples of displacement (m) at rising times (s) show. What stays within `tolerance` (m) of a straight line is taken as
+    /// straight.
+    ///
+    /// # Errors
+    /// [`MotionError`] as of [`Motion::new`].
+    pub fn of(times: Vec<f64>, displacements: Vec<f64>, tolerance: f64) -> Result<Self, MotionError> {
+        let samples = Motion::new(times, displacements)?;
+        let rough = samples.simplified(tolerance);
+        let sums = Sums::new(&samples);
+        let mut knots = rough.times().to_vec();
+        for _ in 0..ROUNDS {
+            sums.with_single_corners(&mut knots, tolerance);
+            sums.without_needless(&mut knots, tolerance);
+            sums.meet(&mut knots);
+        }
+        let Some((values, normal)) = hats(&samples, &knots) else {
+            return Ok(Self {
+                motion: rough,
+                noise: 0.0,
+                normal: None,
+            });
+        };
+        let motion = Motion::new(knots, values)?;
+        let square: f64 = residuals(&samples, &motion).map(|off| off * off).sum();
+        let freedom = samples.times().len().saturating_sub(motion.times().len());
+        Ok(Self {
+            noise: if freedom > 0 { (square / freedom as f64).sqrt() } else { 0.0 },
+            motion,
+            normal: Some(normal),
+        })
+    }
+
+    /// With knots below this displacement (m) raised to it.
+    #[must_use]
+    pub(crate) fn at_least(mut self, lowest: f64) -> Self {
+        let raised = self.motion.displacements().iter().map(|d| d.max(lowest)).collect();
+        if let Ok(motion) = Motion::new(self.motion.times().to_vec(), raised) {
+            self.motion = motion;
+        }
+        self
+    }
+
+    /// Covariance of the displacements at these knots, m², row by row, for white noise and corners at known times.
+    #[must_use]
+    pub fn covariance(&self, knots: &[usize]) -> Vec<Vec<f64>> {
+        let variance = self.noise * self.noise;
+        let row = |knot: &usize| match &self.normal {
+            None => vec![0.0; knots.len()],
+            Some(normal) => {
+                let mut unit = vec![0.0; self.motion.times().len()];
+                unit[*knot] = variance;
+                normal.solve(&mut unit);
+                knots.iter().map(|other| unit[*other]).collect()
+            }
+        };
+        knots.iter().map(row).collect()
+    }
+}
+
+/// A straight line d = a + s (t − t₀) through some samples.
+struct Line {
+    slope: f64,
+    /// Time and displacement in the middle of the samples.
+    middle: (f64, f64),
+    /// Sum of the squared distances.
+    square: f64,
+    samples: usize,
+    /// Σ (t − t₀)².
+    spread: f64,
+}
+
+impl Line {
+    fn at(&self, time: f64) -> f64 {
+        self.middle.1 + self.slope * (time - self.middle.0)
+    }
+
+    /// Variance at a time over that of the noise.
+    fn variance_at(&self, time: f64) -> f64 {
+        1.0 / self.samples as f64 + (time - self.middle.0).powi(2) / self.spread
+    }
+}
+
+/// Running sums over the samples, which give the line through any stretch of them at once.
+struct Sums<'a> {
+    times: &'a [f64],
+    displacements: &'a [f64],
+    /// Σ of t, d, t², t d, d² before each sample, both less their mean.
+    before: Vec<[f64; 5]>,
+    middle: (f64, f64),
+}
+
+impl<'a> Sums<'a> {
+    fn new(samples: &'a Motion) -> Self {
+        let (times, displacements) = (samples.times(), samples.displacements());
+        let count = times.len() as f64;
+        let middle = (times.iter().sum::<f64>() / count, displacements.iter().sum::<f64>() / count);
+        let mut before = vec![[0.0; 5]];
+        for (time, displacement) in times.iter().zip(displacements) {
+            let (t, d) = (time - middle.0, displacement - middle.1);
+            let last = before[before.len() - 1];
+            before.push([last[0] + t, last[1] + d, last[2] + t * t, last[3] + t * d, last[4] + d * d]);
+        }
+        Self {
+            times,
+            displacements,
+            before,
+            middle,
+        }
+    }
+
+    /// The line through the samples of a stretch, without `spare` samples at either end.
+    fn line(&self, from: f64, until: f64, spare: usize) -> Option<Line> {
+        let first = self.times.partition_point(|time| *time < from) + spare;
+        let end = self.times.partition_point(|time| *time <= until).checked_sub(spare)?;
+        if end < first + FEWEST {
+            return None;
+        }
+        let sum = |which: usize| self.before[end][which] - self.before[first][which];
+        let count = (end - first) as f64;
+        let (t, d) = (sum(0) / count, sum(1) / count);
+        let spread = sum(2) - count * t * t;
+        let slope = (sum(3) - count * t * d) / spread;
+        let square = (sum(4) - count * d * d - slope * slope * spread).max(0.0);
+        (spread > 0.0 && slope.is_finite()).then_some(Line {
+            slope,
+            middle: (t + self.middle.0, d + self.middle.1),
+            square,
+            samples: end - first,
+            spread,
+        })
+    }
+
+    /// Variance of the samples about the lines between knots.
+    fn variance(&self, knots: &[f64], tolerance: f64) -> f64 {
+        /// Share of the tolerance that counts as noise where there is none.
+        const LEAST: f64 = 1e-3;
+        let lines: Vec<Line> = knots.windows(2).filter_map(|pair| self.line(pair[0], pair[1], 1)).collect();
+        let freedom: usize = lines.iter().map(|line| line.samples - 2).sum();
+        let square: f64 = lines.iter().map(|line| line.square).sum();
+        (square / freedom.max(1) as f64).max((LEAST * tolerance).powi(2))
+    }
+
+    /// One corner for knots that are a few samples apart, where the lines beside them meet near there and serve the samples between: a corner
+    /// between two samples leaves two knots or three.
+    fn with_single_corners(&self, knots: &mut Vec<f64>, tolerance: f64) {
+        let variance = self.variance(knots, tolerance);
+        let mut at = 1;
+        while at + 2 < knots.len() {
+            let together = (2..=TOGETHER.min(knots.len() - 1 - at)).rev();
+            let single = together
+                .filter_map(|count| Some((count, self.single_corner(&knots[at - 1..=at + count], variance)?)))
+                .next();
+            if let Some((count, corner)) = single {
+                knots[at] = corner;
+                knots.drain(at + 1..at + count);
+            }
+            at += 1;
+        }
+    }
+
+    /// The corner that stands for all of these knots but the first and the last.
+    fn single_corner(&self, knots: &[f64], variance: f64) -> Option<f64> {
+        /// The square of a normal number is above it in one of 10,000.
+        const BEYOND: f64 = 15.1;
+        let last = knots.len() - 1;
+        let (first, second) = (knots[1], knots[last - 1]);
+        let from = self.times.partition_point(|time| *time < first);
+        let end = self.times.partition_point(|time| *time <= second);
+        if end > from + 2 * FEWEST {
+            return None;
+        }
+        let (a, b) = (self.line(knots[0], first, 1)?, self.line(second, knots[last], 1)?);
+        let corner = first + (b.at(first) - a.at(first)) / (a.slope - b.slope);
+        let serves = |index: usize| {
+            let time = self.times[index];
+            let line = if time < corner { &a } else { &b };
+            (self.displacements[index] - line.at(time)).powi(2) <= BEYOND * variance * (1.0 + line.variance_at(time))
+        };
+        let width = second - first;
+        (corner > first - width && corner < second + width && (from..end).all(serves)).then_some(corner)
+    }
+
+    /// Leaves out knots that only noise has set, alone or a few together: where one line serves the stretches on both sides as well as two.
+    fn without_needless(&self, knots: &mut Vec<f64>, tolerance: f64) {
+        /// χ² of two degrees of freedom is above it in one of 1,000 stretches.
+        const BEYOND: f64 = 13.8;
+        /// Square that a sample at a knot may have, which noise has put there because it is far off.
+        const OFF: f64 = 16.0;
+        let variance = self.variance(knots, tolerance);
+        let mut at = 1;
+        while at + 1 < knots.len() {
+            let is_needless = |count: &usize| {
+                let (start, end) = (knots[at - 1], knots[at + count]);
+                let a = self.line(start, knots[at], 1);
+                let b = self.line(knots[at + count - 1], end, 1);
+                a.zip(b).zip(self.line(start, end, 1)).is_some_and(|((a, b), one)| {
+                    let between = (one.samples - a.samples - b.samples) as f64;
+                    one.square - a.square - b.square < (BEYOND + OFF * between) * variance
+                })
+            };
+            match (1..=TOGETHER.min(knots.len() - 1 - at)).rev().find(is_needless) {
+                Some(count) => drop(knots.drain(at..at + count)),
+                None => at += 1,
+            }
+        }
+    }
+
+    /// Moves corners to where the lines of the stretches beside them meet, if these say where within a part of the stretches.
+    fn meet(&self, knots: &mut [f64]) {
+        /// Share of the shorter stretch that a corner may be moved by, and be uncertain by.
+        const FARTHEST: f64 = 0.4;
+        const VAGUE: f64 = 0.1;
+        let before = knots.to_vec();
+        for at in 1..before.len() - 1 {
+            let lines = self.line(before[at - 1], before[at], 1).zip(self.line(before[at], before[at + 1], 1));
+            let Some((a, b)) = lines else { continue };
+            let apart = a.slope - b.slope;
+            let time = before[at] + (b.at(before[at]) - a.at(before[at])) / apart;
+            let variance = (a.square + b.square) / (a.samples + b.samples - 4).max(1) as f64;
+            let error = (variance * (a.variance_at(time) + b.variance_at(time))).sqrt() / apart.abs();
+            let shorter = (before[at] - before[at - 1]).min(before[at + 1] - before[at]);
+            if (time - before[at]).abs() < FARTHEST * shorter && error < VAGUE * shorter {
+                knots[at] = time;
+            }
+        }
+    }
+}
+
+/// Displacements at knots of the motion that is straight between them and nearest to the samples; `None` where samples do not say.
+fn hats(samples: &Motion, knots: &[f64]) -> Option<(Vec<f64>, Tridiagonal)> {
+    let mut normal = Tridiagonal {
+        diagonal: vec![0.0; knots.len()],
+        beside: vec![0.0; knots.len() - 1],
+    };
+    let mut values = vec![0.0; knots.len()];
+    let mut at = 0;
+    for (time, displacement) in samples.times().iter().zip(samples.displacements()) {
+        while at + 2 < knots.len() && *time >= knots[at + 1] {
+            at += 1;
+        }
+        let share = (time - knots[at]) / (knots[at + 1] - knots[at]);
+        normal.diagonal[at] += (1.0 - share) * (1.0 - share);
+        normal.diagonal[at + 1] += share * share;
+        normal.beside[at] += share * (1.0 - share);
+        values[at] += (1.0 - share) * displacement;
+        values[at + 1] += share * displacement;
+    }
+    let factored = normal.factored()?;
+    factored.solve(&mut values);
+    values.iter().all(|value| value.is_finite()).then_some((values, factored))
+}
+
+/// Measured displacements less those of the motion.
+fn residuals<'a>(samples: &'a Motion, motion: &'a Motion) -> impl Iterator<Item = f64> + 'a {
+    let (knots, values) = (motion.times(), motion.displacements());
+    let mut at = 0;
+    samples.times().iter().zip(samples.displacements()).map(move |(time, displacement)| {
+        while at + 2 < knots.len() && *time >= knots[at + 1] {
+            at += 1;
+        }
+        let share = (time - knots[at]) / (knots[at + 1] - knots[at]);
+        displacement - values[at] - share * (values[at + 1] - values[at])
+    })
+}
+
+/// A symmetric matrix with entries on its diagonal and beside it alone, or its factors L D Lᵀ.
+#[derive(Debug, Clone, PartialEq)]
+struct Tridiagonal {
+    diagonal: Vec<f64>,
+    beside: Vec<f64>,
+}
+
+impl Tridiagonal {
+    /// Its factors; `None` where it is singular.
+    fn factored(mut self) -> Option<Self> {
+        /// Share of an entry below which rounding has left it.
+        const SINGULAR: f64 = 1e-10;
+        for i in 0..self.diagonal.len() {
+            let own = self.diagonal[i];
+            if i > 0 {
+                let factor = self.beside[i - 1] / self.diagonal[i - 1];
+                self.diagonal[i] -= factor * self.beside[i - 1];
+                self.beside[i - 1] = factor;
+            }
+            if self.diagonal[i].is_nan() || self.diagonal[i] <= SINGULAR * own.max(SINGULAR) {
+                return None;
+            }
+        }
+        Some(self)
+    }
+
+    /// Solves for a right side, from the factors.
+    fn solve(&self, right: &mut [f64]) {
+        for i in 1..right.len() {
+            right[i] -= self.beside[i - 1] * right[i - 1];
+        }
+        right.iter_mut().zip(&self.diagonal).for_each(|(entry, pivot)| *entry /= pivot);
+        for i in (1..right.len()).rev() {
+            right[i - 1] -= self.beside[i - 1] * right[i];
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::simulate::{ProtocolStep, protocol};
+    use crate::test_problems::Rng;
+
+    /// A squeeze in two steps with corners between samples.
+    fn steps() -> Motion {
+        let step = |to, hold| ProtocolStep { to, rate: 8.3e-3, hold };
+        protocol(&[step(5.03e-3, 10.0), step(9.01e-3, 8.0), step(1.0e-3, 5.0)]).unwrap()
+    }
+
+    fn sampled(motion: &Motion, rate: f64, noise: f64, seed: u64) -> (Vec<f64>, Vec<f64>) {
+        let mut random = Rng::new(seed);
+        let times: Vec<f64> = (0..=(motion.end() * rate) as u32).map(|i| f64::from(i) / rate).collect();
+        let displacements = times.iter().map(|t| motion.displacement_at(*t) + noise * random.normal()).collect();
+        (times, displacements)
+    }
+
+    #[test]
+    fn corners_between_samples_are_found_under_noise() {
+        let truth = steps();
+        for (rate, noise) in [(20.0, 1e-5), (100.0, 1e-5), (500.0, 1e-5), (500.0, 0.0)] {
+            let (times, displacements) = sampled(&truth, rate, noise, 3);
+            let found = MeasuredMotion::of(times, displacements, (4.0 * noise).max(2e-5)).unwrap();
+            assert_eq!(found.motion.times().len(), truth.times().len(), "{rate} {noise}: {:?}", found.motion);
+            for (knot, true_knot) in found.motion.times().iter().zip(truth.times()).skip(1).take(5) {
+                assert!((knot - true_knot).abs() < 1e-3 + 2.0 * noise / 8.3e-3, "{rate} {noise}: {knot} {true_knot}");
+            }
+            assert!((found.noise - noise).abs() < 0.06 * noise + 1e-12);
+            let off = |t: f64| found.motion.displacement_at(t) - truth.displacement_at(t);
+            for held in [5.0, 15.0, 21.0] {
+                assert!(off(held).abs() < 0.3 * noise + 1e-12, "{rate} {noise} at {held}: {}", off(held));
+            }
+        }
+    }
+
+    #[test]
+    fn covariances_of_knots_are_those_of_repeats() {
+        let truth = steps();
+        let (mut square, repeats) = (0.0, 400);
+        let mut expected = 0.0;
+        for seed in 0..repeats {
+            let (times, displacements) = sampled(&truth, 50.0, 1e-5, seed + 1);
+            let found = MeasuredMotion::of(times, displacements, 5e-5).unwrap();
+            square += (found.motion.displacement_at(5.0) - truth.displacement_at(5.0)).powi(2);
+            // The middle of the hold between the second and the third knot.
+            let knots = found.covariance(&[1, 2]);
+            expected += 0.25 * (knots[0][0] + 2.0 * knots[0][1] + knots[1][1]);
+        }
+        assert!((square / expected).sqrt() > 0.85 && (square / expected).sqrt() < 1.2, "{square} {expected}");
+    }
+
+    #[test]
+    fn samples_without_noise_and_curves_keep_their_course() {
+        let times: Vec<f64> = (0..400).map(|i| 0.01 * f64::from(i)).collect();
+        let curve: Vec<f64> = times.iter().map(|t| 2e-3 * (2.0 * t).sin()).collect();
+        let found = MeasuredMotion::of(times.clone(), curve.clone(), 1e-5).unwrap();
+        for (time, displacement) in times.iter().zip(&curve) {
+            assert!((found.motion.displacement_at(*time) - displacement).abs() < 1.5e-5, "{time}");
+        }
+        let two = MeasuredMotion::of(vec![0.0, 1.0], vec![0.0, 1e-3], 1e-6).unwrap();
+        assert_eq!(two.motion.displacements(), [0.0, 1e-3]);
+        assert_eq!(two.covariance(&[0, 1]), vec![vec![0.0; 2]; 2]);
+    }
+}
