@@ -45,7 +45,7 @@ documents! {
     CalibratedLawDocument(
         candidate: &Candidate,
         made: &Result<Calibration, CalibrateError>,
-        least: f64,
+        delta_bic: Option<f64>,
         profiles: &[ParameterProfile]
     ) with {
         let good = made.as_ref().ok();
@@ -61,8 +61,8 @@ documents! {
         rmse_n: Option<f64> = good.map(|made| made.rmse),
         /// The same as a share of the largest force.
         relative: Option<f64> = good.map(|made| made.relative),
-        /// BIC less the lowest of the laws.
-        delta_bic: Option<f64> = good.map(|made| made.criteria.bic - least).filter(|delta| delta.is_finite()),
+        /// BIC less the lowest of the laws whose search ended at an optimum; `null` where it did not.
+        delta_bic: Option<f64> = delta_bic,
         /// The held-out error; `null` where all samples were fitted.
         holdout: Option<HoldoutDocument> = good.and_then(|made| made.holdout).map(HoldoutDocument::new),
         /// The law with its values put in; `null` where there is none.
@@ -80,10 +80,10 @@ documents! {
 
     /// Laws calibrated on a whole record.
     CalibrationDocument(record: &CalibratedRecord, confidence: f64) with {
-        let least = record.made().map(|made| made.criteria.bic).fold(f64::INFINITY, f64::min);
         let law = |(index, (candidate, made)): (usize, &(Candidate, Result<Calibration, CalibrateError>))| {
             let profiles = if index == 0 { &record.profiles[..] } else { &[] };
-            CalibratedLawDocument::new(candidate, made, least, profiles)
+            let delta_bic = made.as_ref().ok().and_then(|made| record.delta_bic(made));
+            CalibratedLawDocument::new(candidate, made, delta_bic, profiles)
         };
     } {
         /// Always `palpate.calibration/1`.

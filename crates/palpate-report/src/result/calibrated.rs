@@ -35,27 +35,36 @@ impl CalibratedRecord {
         self.rows.first().and_then(|(_, made)| made.as_ref().ok())
     }
 
-    /// The error by which candidates are ranked: of what was predicted, else by the information criterion; less is better.
+    /// BIC less the lowest of those candidates whose search ended at an optimum; `None` where it did not: there is no telling how low it would be.
     #[must_use]
-    pub fn score(&self, calibration: &Calibration) -> f64 {
-        calibration.holdout.map_or(calibration.criteria.bic, |holdout| holdout.rmse)
+    pub fn delta_bic(&self, made: &Calibration) -> Option<f64> {
+        let least = self.ranked().map(|made| made.criteria.bic).fold(f64::INFINITY, f64::min);
+        Some(made.criteria.bic - least).filter(|delta| made.termination.is_good() && delta.is_finite())
     }
 
-    /// What the table says in a sentence.
+    /// Candidates whose search ended at an optimum.
+    fn ranked(&self) -> impl Iterator<Item = &Calibration> {
+        self.made().filter(|made| made.termination.is_good())
+    }
+
+    /// What the table says in a sentence: the same figures rank.
     #[must_use]
     pub fn sentence(&self) -> Option<String> {
         let chosen = self.chosen().filter(|_| self.made().count() > 1)?;
-        // A law that found no optimum is none to recommend.
-        let sound = |made: &&Calibration| made.termination.is_good() || std::ptr::eq(*made, chosen);
-        let best = self.made().filter(sound).min_by(|a, b| self.score(a).total_cmp(&self.score(b)))?;
+        let score = |made: &Calibration| made.holdout.map_or(made.criteria.bic, |holdout| holdout.rmse);
+        let best = self.ranked().min_by(|a, b| score(a).total_cmp(&score(b)))?;
         let (law, other) = (chosen.material.candidate(), best.material.candidate());
         let by = if chosen.holdout.is_some() { "predicts the rest of the record best" } else { "has the lowest BIC" };
         Some(if law == other {
             format!("Of the laws tried, {law} {by}.")
+        } else if !chosen.termination.is_good() {
+            format!(
+                "Of the laws tried, {other} {by}; the search of {law} did not end at an optimum, so that it has no rank."
+            )
         } else {
             let cost = match (chosen.holdout, best.holdout) {
                 (Some(mine), Some(least)) => format!("{:.2} times its error", mine.rmse / least.rmse),
-                _ => format!("{:.0} more", self.score(chosen) - self.score(best)),
+                _ => format!("{:.0} more", self.delta_bic(chosen).unwrap_or(0.0)),
             };
             format!("Of the laws tried, {other} {by}; {law} has {cost}.")
         })

@@ -20,13 +20,17 @@ fn laws(record: &CalibratedRecord) -> Table {
     let until = record.data.times()[fitted - 1] - record.data.times()[0];
     let rest = if fitted < all { format!("; {} held out", counted(all - fitted, "sample")) } else { String::new() };
     let caption = format!("Calibrated on {} over {} s{rest}.", counted(fitted, "sample"), significant(until, 4));
-    let least = record.made().map(|made| made.criteria.bic).fold(f64::INFINITY, f64::min);
     let mut table = Table::of("laws", caption, &record.rows)
         .column("Law", "law", "", |(candidate, _)| Cell::text(candidate.to_string()))
         .column("p", "parameters", "", of_made(|made| Cell::Integer(made.free_parameters as i64)))
         .column("RMSE", "rmse_n", "N", of_made(|made| Cell::Number(made.rmse, 3)))
         .column("of peak", "rmse_percent", "%", of_made(|made| Cell::Number(100.0 * made.relative, 3)))
-        .column("ΔBIC", "delta_bic", "", of_made(|made| Cell::Number(made.criteria.bic - least, 3)));
+        .column(
+            "ΔBIC",
+            "delta_bic",
+            "",
+            of_made(|made| Cell::number_or(record.delta_bic(made), 3, "the search did not end at an optimum")),
+        );
     if fitted < all {
         let holdout = |figure: fn(&HoldoutError) -> f64| {
             of_made(move |made| made.holdout.as_ref().map_or(Cell::text(""), |found| Cell::Number(figure(found), 3)))
