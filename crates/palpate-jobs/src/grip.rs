@@ -151,14 +151,13 @@ pub struct PlanGrip {
         requires = "band_n", help_heading = "Question",
     ))]
     pub shortest_pause_s: f64,
-    /// Level at which the verdict has to hold, between 0 and 1, such as 0.95: the lower end of the interval decides; if not given, the best
-    /// estimate does, and intervals are of 95 %.
+    /// Probability with which the verdict has to hold, between 0 and 1; 0.5 for the best estimate. Intervals are of 95 %.
     #[cfg_attr(feature = "clap", arg(
         long, value_name = "SHARE", value_parser = crate::typed::coverage, allow_hyphen_values = true,
-        help_heading = "Question",
-        help = "Level at which the verdict has to hold, such as 0.95; the best estimate decides if not given",
+        default_value_t = PlanGrip::default().confidence, help_heading = "Question",
+        help = "Probability with which the verdict has to hold; 0.5 for the best estimate",
     ))]
-    pub confidence: Option<f64>,
+    pub confidence: f64,
 }
 
 /// What a schedule should have least of.
@@ -198,7 +197,7 @@ impl Default for PlanGrip {
             band_n: None,
             regrip: RegripFor::Moves,
             shortest_pause_s: 1.0,
-            confidence: None,
+            confidence: Question::CONFIDENCE,
         }
     }
 }
@@ -234,7 +233,7 @@ impl MaterialSource {
     }
 }
 
-/// Level of the intervals where the best estimate decides.
+/// Coverage of the intervals.
 const INTERVALS: f64 = 0.95;
 
 impl PlanGrip {
@@ -267,7 +266,7 @@ impl PlanGrip {
             force: self.force_n,
             duration: if self.hold_always { Some(f64::INFINITY) } else { self.hold_s },
             objective: self.objective,
-            confidence: self.confidence,
+            confidence: Some(self.confidence),
             band: self.band_n.map(|(low, high)| Band { low, high }),
             regrip: match self.regrip {
                 RegripFor::Moves => Regrip::FewestMoves,
@@ -292,7 +291,7 @@ impl PlanGrip {
         limits.stroke = self.stroke_m;
         limits.force = self.most_force_n;
         limits.closing = self.close_within_s;
-        Grip::new(material, grasp, limits, self.confidence.unwrap_or(INTERVALS))
+        Grip::new(material, grasp, limits, INTERVALS)
     }
 
     /// Plans the grip of a material.
@@ -305,7 +304,7 @@ impl PlanGrip {
         watch: &mut dyn Watch,
     ) -> Result<Outcome<GrippedBody<'a>>, JobError> {
         let question = self.question()?;
-        self.confidence.map(checked_confidence).transpose()?;
+        checked_confidence(self.confidence)?;
         let grip = self.gripper(&source.file.material).map_err(|error| ungripped(&error))?;
         let answer = grip.answer_watched(&question, watch).map_err(|error| ungripped(&error))?;
         let (holds, notes) = match answer.holds() {

@@ -108,6 +108,8 @@ def test_every_number_of_the_document_is_an_attribute(least: palpate.Grip) -> No
                 assert found.time_to_slip_s == seconds(value)
             elif key == "interval":
                 assert found.time_to_slip_interval_s == tuple(seconds(end) for end in value)
+            elif key == "assured":
+                assert found.assured_time_s == (None if value is None else seconds(value))
             else:
                 assert getattr(found, key) == value, key
 
@@ -117,6 +119,8 @@ def test_every_number_of_the_document_is_an_attribute(least: palpate.Grip) -> No
     held(least.back_off.plain, document["back_off"]["plain"])
     assert least.squeeze_m == least.squeeze.displacement_m and least.time_to_slip_s == least.squeeze.time_to_slip_s
     assert least.time_to_slip_interval_s == least.squeeze.time_to_slip_interval_s
+    assert least.assured_time_s == least.squeeze.assured_time_s
+    assert (least.probability, least.assured_squeeze_m) == (document["probability"], document["assured_squeeze_m"])
     for key in ("duration_s", "drift_n", "plain_drift_n"):
         assert getattr(least.back_off, key) == document["back_off"][key]
     for key, value in document["force_held"].items():
@@ -159,7 +163,8 @@ def test_it_slips_where_the_predicted_force_falls_below_the_needed_one(material:
 
 
 def test_the_least_squeeze_holds_exactly_as_long_as_is_requested(material: palpate.Material, least: palpate.Grip) -> None:
-    assert least.holds and least.time_to_slip_s == pytest.approx(60.0, rel=1e-6) and least.squeeze_m is not None
+    assert least.holds and least.assured_time_s == pytest.approx(60.0, rel=1e-3) and least.squeeze_m is not None
+    assert least.probability == pytest.approx(0.95, abs=1e-6)
     less = material.grip(**LOAD, squeeze_m=0.99 * least.squeeze_m, hold_s=60.0)
     assert not less.holds and less.time_to_slip_s is not None and 0 < less.time_to_slip_s < 60
     back_off, schedule, pressed = least.back_off, least.schedule, least.force_held
@@ -185,12 +190,17 @@ def test_that_none_holds_is_an_answer(material: palpate.Material) -> None:
     assert pickle.loads(pickle.dumps(always)).time_to_slip_s == math.inf
 
 
-def test_a_confidence_is_the_level_of_the_verdict(material: palpate.Material) -> None:
-    best, sure = material.grip(**LOAD, hold_s=20.0), material.grip(**LOAD, hold_s=20.0, confidence=0.9)
-    assert (best.confidence, sure.confidence) == (0.95, 0.9)
+def test_a_confidence_is_the_probability_of_the_verdict(material: palpate.Material) -> None:
+    best, sure = material.grip(**LOAD, hold_s=20.0, confidence=0.5), material.grip(**LOAD, hold_s=20.0, confidence=0.9)
+    assert (best.confidence, sure.confidence) == (0.95, 0.95)
     assert best.squeeze_m is not None and sure.squeeze_m is not None and sure.squeeze_m > best.squeeze_m
-    assert sure.time_to_slip_interval_s is not None and sure.time_to_slip_interval_s[0] == pytest.approx(20.0, rel=1e-3)
-    assert "holds for 20.0 s with 90 % confidence" in sure.verdict and "confidence" not in best.verdict
+    assert sure.assured_time_s == pytest.approx(20.0, rel=1e-3) and best.time_to_slip_s == pytest.approx(20.0, rel=1e-6)
+    assert "holds for 20.0 s with a probability of 90 %" in sure.verdict and best.verdict.startswith("Yes (best estimate)")
+    # The squeeze of the best estimate slips with a probability of a half; the one that is better is stated.
+    doubtful = material.grip(**LOAD, squeeze_m=best.squeeze_m, hold_s=20.0)
+    assert not doubtful.holds and doubtful.probability == pytest.approx(0.5, abs=0.02)
+    assert doubtful.assured_squeeze_m is not None
+    assert material.grip(**LOAD, squeeze_m=1.000001 * doubtful.assured_squeeze_m, hold_s=20.0).holds
     for grip, uncertain in ((best, True), (sure, False)):
         assert grip.back_off is not None
         assert ("uncertain" in repr(grip.back_off.backed)) is uncertain and ("always" in repr(grip.back_off.backed)) is not uncertain

@@ -156,6 +156,24 @@ pub(crate) fn coverage_factor(level: f64, freedom: f64) -> f64 {
     factor
 }
 
+/// The factor of a bound that holds on one side with a probability of `level`: below 0 for a level below a half.
+pub(crate) fn one_sided_factor(level: f64, freedom: f64) -> f64 {
+    let factor = coverage_factor((2.0 * level - 1.0).abs(), freedom);
+    if level < 0.5 { -factor } else { factor }
+}
+
+/// The probability that a number with Student's distribution is at most `t`.
+pub(crate) fn student_probability(t: f64, freedom: f64) -> f64 {
+    if t.is_infinite() {
+        return if t > 0.0 { 1.0 } else { 0.0 };
+    }
+    // Of so many degrees of freedom it is the normal one to five digits.
+    match StudentsT::new(0.0, 1.0, freedom.max(1.0)) {
+        Ok(student) if freedom < 1e4 => student.cdf(t),
+        _ => Normal::standard().cdf(t),
+    }
+}
+
 /// The same for a normal number of known variance.
 pub(crate) fn normal_factor(level: f64) -> f64 {
     Normal::standard().inverse_cdf(0.5 + 0.5 * level)
@@ -182,6 +200,17 @@ fn student_factor(level: f64, freedom: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// SciPy: stats.t.ppf(0.95, 7), stats.t.cdf(-1.2, 7), stats.norm.cdf(1.5).
+    #[test]
+    fn probabilities_on_one_side_are_those_of_scipy() {
+        assert!((one_sided_factor(0.95, 7.0) - 1.894_578_605_090_007).abs() < 1e-9);
+        assert_eq!(one_sided_factor(0.5, 7.0).abs(), 0.0);
+        assert!((one_sided_factor(0.05, 7.0) + one_sided_factor(0.95, 7.0)).abs() < 1e-12);
+        assert!((student_probability(-1.2, 7.0) - 0.134_585_968_413_603_3).abs() < 1e-9);
+        assert!((student_probability(1.5, f64::INFINITY) - 0.933_192_798_731_141_9).abs() < 1e-9);
+        assert_eq!([f64::INFINITY, f64::NEG_INFINITY].map(|t| student_probability(t, 7.0)), [1.0, 0.0]);
+    }
 
     #[test]
     fn noise_does_not_count_ramps() {

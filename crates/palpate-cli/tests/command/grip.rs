@@ -40,7 +40,7 @@ fn the_verdict_is_the_exit_code() {
     assert_eq!((code, found["holds"].as_bool()), (Some(1), Some(false)));
     let (code, found) = json(&["--hold", "10 s"]);
     assert_eq!(code, Some(0));
-    assert!((number(&found["squeeze"]["time_to_slip"], "seconds") / 10.0 - 1.0).abs() < 1e-6);
+    assert!((number(&found["squeeze"]["assured"], "seconds") / 10.0 - 1.0).abs() < 1e-3);
     let (code, found) = json(&["--hold", "always", "--objective", "peak-force"]);
     assert_eq!((code, found["squeeze"]["time_to_slip"]["always"].as_bool()), (Some(0), Some(true)));
     let (code, found) = json(&["--hold", "10 s", "--most-force", "2.5 N", "--close-within", "0.5 s"]);
@@ -49,28 +49,34 @@ fn the_verdict_is_the_exit_code() {
 }
 
 #[test]
-fn a_verdict_holds_with_a_confidence_or_by_the_best_estimate() {
-    let (code, best) = json(&["--hold", "60 s"]);
-    assert_eq!((code, number(&best, "confidence"), best["verdict_confidence"].as_f64()), (Some(0), 0.95, None));
+fn a_verdict_holds_with_a_probability_or_by_the_best_estimate() {
+    let (code, best) = json(&["--hold", "60 s", "--confidence", "0.5"]);
+    assert_eq!((code, number(&best, "confidence"), best["verdict_confidence"].as_f64()), (Some(0), 0.95, Some(0.5)));
+    assert!((number(&best, "probability") - 0.5).abs() < 1e-6);
+    assert!(best["verdict"].as_str().unwrap().starts_with("Yes (best estimate):"), "{best}");
     let (code, found) = json(&["--hold", "60 s", "--confidence", "0.9"]);
-    assert_eq!((code, number(&found, "confidence"), number(&found, "verdict_confidence")), (Some(0), 0.9, 0.9));
+    assert_eq!((code, number(&found, "confidence"), number(&found, "verdict_confidence")), (Some(0), 0.95, 0.9));
     let verdict = found["verdict"].as_str().unwrap();
-    assert!(verdict.contains("holds for 60.0 s with 90 % confidence"), "{verdict}");
-    assert!((number(&found["squeeze"]["interval"][0], "seconds") / 60.0 - 1.0).abs() < 1e-3);
+    assert!(verdict.contains("holds for 60.0 s with a probability of 90 %"), "{verdict}");
+    assert!((number(&found["squeeze"]["assured"], "seconds") / 60.0 - 1.0).abs() < 1e-3);
     assert!(number(&found["squeeze"], "displacement_m") > number(&best["squeeze"], "displacement_m"));
     // The least squeeze by the best estimate does not hold with a confidence.
     let squeeze = format!("{} m", number(&best["squeeze"], "displacement_m"));
-    let (code, short) = json(&["--squeeze", &squeeze, "--hold", "60 s", "--confidence", "0.9"]);
+    let (code, short) = json(&["--squeeze", &squeeze, "--hold", "60 s"]);
     let verdict = short["verdict"].as_str().unwrap();
     assert_eq!(code, Some(1));
-    assert!(verdict.starts_with("No:") && verdict.contains("requested: 60.0 s"), "{verdict}");
+    assert!(verdict.starts_with("No:") && verdict.contains("; 95 % are required"), "{verdict}");
+    // The squeeze that reaches it does.
+    let enough = format!("{} m", number(&short, "assured_squeeze_m") * (1.0 + 1e-6));
+    let (code, found) = json(&["--squeeze", &enough, "--hold", "60 s"]);
+    assert_eq!((code, found["assured_squeeze_m"].as_f64()), (Some(0), None), "{found}");
 }
 
 /// Half of the parameters that the test allows let a hold slip that begins with just the equilibrium force that is needed.
 #[test]
 fn a_hold_that_may_slip_at_once_is_not_stated_to_hold_always() {
     let (folder, ball) = (tempdir().unwrap(), ball());
-    let text = done(folder.path(), &load(&ball));
+    let text = done(folder.path(), &[&load(&ball)[..], &["--confidence", "0.5"]].concat());
     let row = text.lines().find(|line| line.starts_with("overshoot and back off")).unwrap();
     assert!(row.contains("uncertain") && !row.contains("always"), "{row}");
     let remarks = text.split_whitespace().collect::<Vec<_>>().join(" ");
@@ -78,8 +84,8 @@ fn a_hold_that_may_slip_at_once_is_not_stated_to_hold_always() {
         remarks.contains("It may still slip at once: the interval of the time to slip starts at 0 s"),
         "{text}"
     );
-    // With a confidence there is a margin.
-    let text = done(folder.path(), &[&load(&ball)[..], &["--confidence", "0.95"]].concat());
+    // With the usual one there is a margin.
+    let text = done(folder.path(), &load(&ball));
     let row = text.lines().find(|line| line.starts_with("overshoot and back off")).unwrap();
     assert!(!row.contains("uncertain") && !text.contains("It may slip at once"), "{text}");
 }
@@ -103,7 +109,7 @@ fn the_report_has_all_of_it() {
     let more = ["--hold", "1 h", "--band", "2.1..3 N", "--out", "plan", "--figure", "grip.svg"];
     let text = done(folder.path(), &[&load(&ball)[..], &more].concat());
     for words in [
-        "Yes (best estimate): a squeeze of",
+        "Yes: a squeeze of",
         "Overshoot and back off (a preconditioning squeeze): squeeze to",
         "6 squeezes keep the force between 2.100 N and 3.000 N",
         "Beyond the test",

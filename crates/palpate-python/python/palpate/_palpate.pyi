@@ -273,7 +273,7 @@ class Material(_Value):
         band_n: tuple[float, float] | None = None,
         regrip: Literal["moves", "work"] | None = None,
         shortest_pause_s: float | None = None,
-        confidence: float | None = None,
+        confidence: float = 0.95,
     ) -> Grip: ...
     def _repr_html_(self) -> str: ...
 
@@ -285,6 +285,9 @@ class Grip(_Reported):
     remarks: Final[list[str]]
     extrapolations: Final[list[str]]
     confidence: Final[float]
+    probability: Final[float | None]
+    assured_squeeze_m: Final[float | None]
+    assured_time_s: Final[float | None]
     squeeze: Final[PositionHold | None]
     squeeze_m: Final[float | None]
     time_to_slip_s: Final[float | None]
@@ -315,6 +318,7 @@ class PositionHold(_Value):
     sharpness_per_m: Final[float | None]
     time_to_slip_s: Final[float]
     time_to_slip_interval_s: Final[tuple[float, float] | None]
+    assured_time_s: Final[float | None]
     course: Final[Prediction | None]
 
 @final

@@ -86,6 +86,12 @@ shown! {
         confidence: f64 = self.document.confidence,
         /// The squeeze with the displacement held: the one that is in question, or the least; None if there is none.
         squeeze: Option<PositionHold> = self.of_squeeze(|found| PositionHold::new(found.clone(), self.squeeze.clone())),
+        /// Probability that the grip that is in question holds as long as was requested; None if the calibration has no intervals.
+        probability: Option<f64> = self.document.probability,
+        /// The least squeeze that reaches the probability required, m, if the one in question does not; None without one.
+        assured_squeeze_m: Option<f64> = self.document.assured_squeeze_m,
+        /// Time that the squeeze holds with the probability required, s; infinite for always, None if the calibration has no intervals.
+        assured_time_s: Option<f64> = self.of_squeeze(|found| found.assured.map(seconds)).flatten(),
         /// Displacement of that squeeze, m.
         squeeze_m: Option<f64> = self.of_squeeze(|found| found.displacement_m),
         /// From the start of its hold until it slips, s; infinite for always (longer than ten years), 0 if it slips at once.

@@ -91,13 +91,16 @@ part! {
         time_to_slip_s: f64 = seconds(self.found.time_to_slip),
         /// Ends of the interval of that time by what the calibration leaves open, s; None where it says nothing.
         time_to_slip_interval_s: Option<(f64, f64)> = slip_interval(&self.found),
+        /// Time that it holds with the probability required, s; infinite for always, None if the calibration has no intervals.
+        assured_time_s: Option<f64> = self.found.assured.map(seconds),
         /// Force and displacement over time, with intervals; None for the plain squeeze beside a retreat.
         course: Option<Prediction> = self.course.clone().map(Prediction::kept),
     }
 
     fn __repr__(&self) -> String {
         let found = &self.found;
-        let may_slip_at_once = slip_interval(found).is_some_and(|(low, _)| low == 0.0) && seconds(found.time_to_slip) > 0.0;
+        let least = found.assured.map(seconds).or(slip_interval(found).map(|(low, _)| low));
+        let may_slip_at_once = least == Some(0.0) && seconds(found.time_to_slip) > 0.0;
         let time = match found.time_to_slip.seconds {
             _ if may_slip_at_once => "for a time that is uncertain, from 0 s on".to_owned(),
             None => "always".to_owned(),

@@ -316,9 +316,8 @@ shown! {
     ///     What that schedule should have least of: "moves" (if left out) or "work".
     /// shortest_pause_s : float, optional
     ///     The shortest pause between two squeezes of least work, s; 1 if left out.
-    /// confidence : float, optional
-    ///     Level at which the verdict has to hold, between 0 and 1: the lower end of the interval of that level decides. If left out, the
-    ///     best estimate decides, and intervals are of 95 %.
+    /// confidence : float
+    ///     Probability with which the verdict has to hold, between 0 and 1; 0.5 for the best estimate. Intervals are of 95 %.
     ///
     /// Returns
     /// -------
@@ -361,7 +360,7 @@ shown! {
         *, mass_kg, friction, safety=1.0, acceleration_up_m_per_s2=0.0, acceleration_across_m_per_s2=0.0,
         acceleration_closing_m_per_s2=0.0, torque_n_m=0.0, off_centre_m=0.0, gravity_m_per_s2=9.80665, speed_m_per_s=None,
         stroke_m=None, most_force_n=None, close_within_s=None, control="position", squeeze_m=None, force_n=None, hold_s=None,
-        objective=None, band_n=None, regrip=None, shortest_pause_s=None, confidence=None,
+        objective=None, band_n=None, regrip=None, shortest_pause_s=None, confidence=0.95,
     ))]
     #[expect(clippy::too_many_arguments, reason = "keywords of Python")]
     fn grip(
@@ -388,7 +387,7 @@ shown! {
         band_n: Option<(f64, f64)>,
         regrip: Option<&str>,
         shortest_pause_s: Option<f64>,
-        confidence: Option<f64>,
+        confidence: f64,
     ) -> PyResult<Grip> {
         if objective.is_some() && squeeze_m.is_some() {
             let message = "objective: expected either this or squeeze_m, found both";

@@ -92,6 +92,8 @@ documents! {
         time_to_slip: TimeToSlipDocument = TimeToSlipDocument::new(found.time_to_slip),
         /// Ends of the interval of that time.
         interval: Option<[TimeToSlipDocument; 2]> = found.interval.map(|(low, high)| [low, high].map(TimeToSlipDocument::new)),
+        /// Time that is reached with the probability requested.
+        assured: Option<TimeToSlipDocument> = found.assured.map(TimeToSlipDocument::new),
         /// d ln(time)/d(displacement), 1/m.
         sharpness_per_m: Option<f64> = found.sharpness,
     }
@@ -238,6 +240,10 @@ documents! {
         objective: Option<String> = question.squeeze.is_none().then(|| word(question.objective)),
         /// Level at which the verdict has to hold; `null` where the best estimate decides.
         verdict_confidence: Option<f64> = question.confidence,
+        /// Probability that the grip in question holds as long as requested; `null` if the calibration has no intervals.
+        probability: Option<f64> = body.answer.probability,
+        /// The least squeeze that reaches the requested probability, m, if the squeeze in question does not.
+        assured_squeeze_m: Option<f64> = body.answer.assured_squeeze,
         /// Whether the requested grip holds for the required duration.
         holds: bool = answer.holds() == Ok(true),
         /// The same in a sentence.

@@ -2,17 +2,13 @@
 
 use palpate::contact::Sides;
 use palpate::grip::{
-    BackOff, Control, ForceHold, Grasp, GripError, Objective, PlanKind, PositionHold, Question, Regrip, Schedule,
-    TimeToSlip,
+    BackOff, Control, ForceHold, Grasp, GripError, Objective, PlanKind, PositionHold, Regrip, Schedule, TimeToSlip,
 };
 use palpate::number::significant;
 
 use super::gripped::GrippedBody;
 use super::parameters::parameter_title;
 use super::words::percent;
-
-/// How long a least squeeze has to hold if no time is requested, s.
-const MINUTE: f64 = 60.0;
 
 impl GrippedBody<'_> {
     /// What was requested, in a sentence.
@@ -54,26 +50,25 @@ impl GrippedBody<'_> {
         let holds = answer.holds() == Ok(true);
         let stated = match answer.question.control {
             Control::Position => of_squeeze(self, &answer.squeeze.as_ref()?.found, holds),
-            Control::Force => of_pressed(&answer.force_hold.as_ref()?.found, holds),
+            Control::Force => of_pressed(self, &answer.force_hold.as_ref()?.found, holds),
         };
-        let verdict = match holds {
-            true if self.rests_on_estimate() => "Yes (best estimate)",
-            true => "Yes",
-            false => "No",
+        let verdict = match (holds, self.is_unknown()) {
+            (_, true) => "Not known",
+            (true, _) if answer.question.confidence.is_none_or(|level| level <= 0.5) => "Yes (best estimate)",
+            (true, _) => "Yes",
+            (false, _) => "No",
         };
         Ok(format!("{verdict}: {stated}"))
     }
 
-    /// Whether the squeeze holds as long as requested by the best estimate, but not at the lower end of the interval of its time.
-    fn rests_on_estimate(&self) -> bool {
-        let question = &self.answer.question;
-        let is_short = |low: TimeToSlip| match wanted(question) {
-            Some(wanted) if wanted.is_finite() => !low.covers(wanted),
-            Some(_) => low != TimeToSlip::Never,
-            None => low == TimeToSlip::After(0.0),
-        };
-        let low = self.answer.squeeze.as_ref().ok().and_then(|squeeze| squeeze.found.interval).map(|(low, _)| low);
-        question.control == Control::Position && question.confidence.is_none() && low.is_some_and(is_short)
+    /// Whether a probability is required and the calibration has none to give.
+    fn is_unknown(&self) -> bool {
+        self.answer.question.confidence.is_some_and(|level| level > 0.5) && self.grip.material().uncertainty().is_none()
+    }
+
+    /// What the probability of a verdict rests on beyond the test; empty where it does not.
+    fn condition(&self) -> &'static str {
+        if self.extrapolations().is_empty() { "" } else { ", if the law holds beyond the test" }
     }
 
     /// What the tables mean, in sentences: the advice of both ways of control beside each other, retreat, schedule, limits of the test.
@@ -173,52 +168,91 @@ fn of_squeeze(body: &GrippedBody<'_>, found: &PositionHold, holds: bool) -> Stri
             format!("a squeeze of {} and back to {}", mm(over), mm(displacement))
         }
     };
-    let share = percent(body.grip.confidence());
-    let interval = found.interval.map_or_else(String::new, |(low, high)| {
-        format!(" ({share} interval {} to {})", time_to_slip(low), time_to_slip(high))
-    });
-    if let Some(stated) = with_confidence(body, found, &what, holds) {
-        return stated;
+    let answer = &body.answer;
+    let best = best_estimate(body, found);
+    if found.time_to_slip == TimeToSlip::After(0.0) {
+        let (needed, there) = (newton(found.needed_force), newton(found.start_force));
+        let chance = answer
+            .probability
+            .map_or_else(String::new, |p| format!(" The probability that it holds is {}.", chance(p)));
+        return format!(
+            "{what} slips at once: {needed} are needed, {there} are there when the jaws stop.{chance}{}",
+            that_holds(body)
+        );
     }
-    match found.time_to_slip {
-        TimeToSlip::After(0.0) => format!(
-            "{what} slips at once: {} are needed, {} are there when the jaws stop.",
-            newton(found.needed_force),
-            newton(found.start_force)
-        ),
-        _ if found.may_slip_at_once() => {
-            let (low, high) =
-                found.interval.map(|(low, high)| (time_to_slip(low), time_to_slip(high))).unwrap_or_default();
-            format!(
-                "{what} may hold: the best estimate of the force is enough, but the {share} interval of the time is {low} to {high}."
-            )
+    let (Some(level), Some(probability)) = (answer.question.confidence, answer.probability) else {
+        let wanted = answer
+            .question
+            .duration
+            .filter(|_| !holds)
+            .map_or_else(String::new, |wanted| format!("; requested: {}", requested(wanted)));
+        let unknown = if body.is_unknown() {
+            "the calibration has no intervals, and no probability can be stated; by the best estimate "
+        } else {
+            ""
+        };
+        return format!("{unknown}{what} holds {}{}{wanted}.", at_length(found, found.time_to_slip), relaxed(found));
+    };
+    let (level, condition) = (percent(level), body.condition());
+    let is_certain = format!("with a probability of {}{condition}", chance(probability));
+    match answer.question.wanted() {
+        Some(wanted) => {
+            let time = at_length(found, if wanted.is_finite() { TimeToSlip::After(wanted) } else { TimeToSlip::Never });
+            let short = if holds { String::new() } else { format!("; {level} are required") };
+            format!("{what} holds {time} {is_certain}{short} ({best}).{}", that_holds(body))
         }
-        TimeToSlip::Never if found.equilibrium_force >= found.needed_force => {
-            format!(
-                "{what} holds always{interval}: the equilibrium force of {} is enough.",
-                newton(found.equilibrium_force)
-            )
-        }
-        TimeToSlip::Never => format!(
-            "{what} holds for more than ten years{interval}, and not for good: it relaxes to {}, and {} are needed.",
-            newton(found.equilibrium_force),
-            newton(found.needed_force)
-        ),
-        TimeToSlip::After(time) => {
-            let until = body
-                .answer
-                .question
-                .duration
-                .filter(|_| !holds)
-                .map_or_else(String::new, |wanted| format!("; requested: {}", requested(wanted)));
-            format!("{what} holds for {}{interval}{until}.", lasted(time))
-        }
+        None => match found.assured {
+            Some(TimeToSlip::After(0.0)) => {
+                format!("{what} may slip at once: it holds at the start {is_certain}; {level} are required ({best}).")
+            }
+            Some(assured) => {
+                format!("{what} holds {} with a probability of {level}{condition} ({best}).", at_length(found, assured))
+            }
+            None => format!("{what} holds {}{} ({best}).", at_length(found, found.time_to_slip), relaxed(found)),
+        },
     }
 }
 
-/// How long a squeeze is to hold, s: as requested, a minute for the least squeeze; `None` where the question is how long it holds.
-fn wanted(question: &Question) -> Option<f64> {
-    question.duration.or(question.squeeze.is_none().then_some(MINUTE))
+/// The best estimate of the time to slip with its interval.
+fn best_estimate(body: &GrippedBody<'_>, found: &PositionHold) -> String {
+    let share = percent(body.grip.confidence());
+    let interval = found.interval.map_or_else(String::new, |(low, high)| {
+        format!(", {share} interval {} to {}", time_to_slip(low), time_to_slip(high))
+    });
+    format!("best estimate {}{interval}", time_to_slip(found.time_to_slip))
+}
+
+/// The squeeze that reaches the probability required, in a sentence of its own.
+fn that_holds(body: &GrippedBody<'_>) -> String {
+    let level = body.answer.question.confidence.map(percent);
+    body.answer
+        .assured_squeeze
+        .zip(level)
+        .map_or_else(String::new, |(squeeze, level)| format!(" A squeeze of {} reaches {level}.", mm(squeeze)))
+}
+
+/// A probability, rounded down: no verdict looks surer than it is.
+fn chance(probability: f64) -> String {
+    /// What a search for a probability leaves.
+    const ROUNDING: f64 = 1e-5;
+    match 100.0 * probability + ROUNDING {
+        p if p >= 99.9 => "more than 99.9 %".to_owned(),
+        p if p < 0.1 => "less than 0.1 %".to_owned(),
+        p if !(1.0..=99.0).contains(&p) => format!("{:.1} %", (10.0 * p).floor() / 10.0),
+        p => format!("{:.0} %", p.floor()),
+    }
+}
+
+/// What holds always does so by its equilibrium force.
+fn relaxed(found: &PositionHold) -> String {
+    let (there, needed) = (newton(found.equilibrium_force), newton(found.needed_force));
+    match found.time_to_slip {
+        TimeToSlip::Never if found.equilibrium_force >= found.needed_force => {
+            format!(": the equilibrium force of {there} is enough")
+        }
+        TimeToSlip::Never => format!(", and not for good: it relaxes to {there}, and {needed} are needed"),
+        TimeToSlip::After(_) => String::new(),
+    }
 }
 
 /// A time that was requested.
@@ -234,46 +268,28 @@ fn at_length(found: &PositionHold, time: TimeToSlip) -> String {
     time.seconds().map_or_else(|| "always".to_owned(), |seconds| format!("for {}", lasted(seconds)))
 }
 
-/// The same where the verdict has to hold with a confidence; nothing where it slips at once by the best estimate.
-fn with_confidence(body: &GrippedBody<'_>, found: &PositionHold, what: &str, holds: bool) -> Option<String> {
-    let question = &body.answer.question;
-    let (level, (low, high)) = (percent(question.confidence?), found.interval?);
-    if found.time_to_slip == TimeToSlip::After(0.0) {
-        return None;
+fn of_pressed(body: &GrippedBody<'_>, found: &ForceHold, holds: bool) -> String {
+    let force = newton(found.force);
+    if !found.holds {
+        return format!("a force of {force} slips at once: {} are needed.", newton(found.needed_force));
     }
-    let best = format!(
-        "best estimate {}, interval {} to {}",
-        time_to_slip(found.time_to_slip),
-        time_to_slip(low),
-        time_to_slip(high)
-    );
-    Some(match wanted(question) {
-        _ if low == TimeToSlip::After(0.0) => {
-            format!("with {level} confidence nothing is certain of {what}: it may slip at once ({best}).")
-        }
-        Some(wanted) if holds => {
-            let time = if wanted.is_finite() { TimeToSlip::After(wanted) } else { TimeToSlip::Never };
-            format!("{what} holds {} with {level} confidence ({best}).", at_length(found, time))
-        }
-        Some(wanted) => {
-            let (time, wanted) = (at_length(found, low), requested(wanted));
-            format!("{what} holds {time} with {level} confidence; requested: {wanted} ({best}).")
-        }
-        None => format!("{what} holds {} with {level} confidence ({best}).", at_length(found, low)),
-    })
-}
-
-fn of_pressed(found: &ForceHold, holds: bool) -> String {
-    if holds {
-        return format!("a force of {} that is held does not slip.", newton(found.force));
-    }
+    let likely = body.answer.probability.map_or_else(String::new, |probability| {
+        format!(
+            " The probability that the jaws stay within their stroke is {}{}.",
+            chance(probability),
+            body.condition()
+        )
+    });
     match found.stroke_ends {
-        Some(time) if found.holds => format!(
-            "a force of {} is enough, but the body creeps, and the jaws come to the end of their stroke after {}.",
-            newton(found.force),
+        Some(time) => format!(
+            "a force of {force} is enough, but the body creeps, and the jaws come to the end of their stroke after {}.{likely}",
             lasted(time)
         ),
-        _ => format!("a force of {} slips at once: {} are needed.", newton(found.force), newton(found.needed_force)),
+        None if holds => format!("a force of {force} that is held does not slip.{likely}"),
+        None if body.is_unknown() => format!(
+            "a force of {force} that is held does not slip; the calibration has no intervals, and whether creep stays within the stroke has no probability."
+        ),
+        None => format!("a force of {force} does not slip, but the body creeps.{likely}"),
     }
 }
 

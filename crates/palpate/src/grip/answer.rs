@@ -4,6 +4,7 @@ use std::cell::RefCell;
 
 use serde::{Deserialize, Serialize};
 
+use super::check_confidence;
 use super::least::check_duration;
 use super::{BackOff, Band, ForceHold, Grip, GripError, Objective, Plan, PositionHold, Regrip, Schedule, TimeToSlip};
 use crate::calibrate::Prediction;
@@ -21,7 +22,7 @@ pub enum Control {
 }
 
 /// What is required of a grip; by default, of the least squeeze that holds for a minute.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Question {
     /// What is held, and which of the grips the verdict is on.
     pub control: Control,
@@ -34,12 +35,39 @@ pub struct Question {
     pub duration: Option<f64>,
     /// What the squeeze should have least of.
     pub objective: Objective,
-    /// Level at which the verdict has to hold: the lower end of the interval of that level decides. If not given, the best estimate does.
+    /// Probability with which the verdict has to hold, on one side; 0.95 by default. Nothing holds with more than a half where the calibration has no
+    /// intervals. If not given, the best estimate decides.
     pub confidence: Option<f64>,
     /// Band for a schedule of squeezes.
     pub band: Option<Band>,
     /// What the schedule has least of.
     pub regrip: Regrip,
+}
+
+impl Default for Question {
+    fn default() -> Self {
+        Self {
+            control: Control::default(),
+            squeeze: None,
+            force: None,
+            duration: None,
+            objective: Objective::default(),
+            confidence: Some(Self::CONFIDENCE),
+            band: None,
+            regrip: Regrip::default(),
+        }
+    }
+}
+
+impl Question {
+    /// Probability with which a verdict has to hold by default.
+    pub const CONFIDENCE: f64 = 0.95;
+
+    /// How long the position is to be held, s; `None` where the question is how long it does.
+    #[must_use]
+    pub fn wanted(&self) -> Option<f64> {
+        self.duration.or(self.squeeze.is_none().then_some(MINUTE))
+    }
 }
 
 /// A grip with its course over time.
@@ -62,6 +90,10 @@ pub struct Answer {
     pub shown: f64,
     /// The squeeze with the displacement held.
     pub squeeze: Result<WithPrediction<PositionHold>, GripError>,
+    /// The probability that the grip in question holds as long as was requested, or at all; `None` where the calibration says nothing.
+    pub probability: Option<f64>,
+    /// The least squeeze at the speed of the gripper (m) that holds with the probability requested, if the one in question does not.
+    pub assured_squeeze: Option<f64>,
     /// How long squeezes a little less and more deep hold, by displacement in m.
     pub neighbours: Vec<(f64, TimeToSlip)>,
     /// Overshoot and back off (a preconditioning squeeze), to the same position if that holds relaxed.
@@ -95,11 +127,18 @@ impl Grip<'_> {
         let stages = RefCell::new(Stages::new("searching for grips".to_owned(), watch));
         let heard = Grip {
             heard: Some(&stages),
-            ..self.at(question.confidence)?
+            ..self.at(self.level_of(question)?)?
         };
         let answer = heard.answered(question);
         stages.borrow_mut().finish()?;
         answer
+    }
+
+    /// The level of a question, where it is above that of the best estimate and the calibration can say anything of it.
+    fn level_of(&self, question: &Question) -> Result<Option<f64>, GripError> {
+        question.confidence.map(check_confidence).transpose()?;
+        let is_stated = |level: &f64| *level > 0.5 && self.material.uncertainty().is_some();
+        Ok(question.confidence.filter(is_stated))
     }
 
     /// Goes on to what is `share` of the whole search.
@@ -120,7 +159,7 @@ impl Grip<'_> {
                 super::error::above_zero("squeeze", displacement, " m")?;
                 self.position_hold(&Plan::squeeze(displacement, self.limits.speed))
             }
-            None => self.least(question.objective, wanted, question.confidence),
+            None => self.least(question.objective, wanted, self.level),
         };
         let shown = shown(question, squeeze.as_ref().ok());
         let around = |found: &PositionHold| {
@@ -131,7 +170,7 @@ impl Grip<'_> {
         let neighbours = squeeze.as_ref().map(around).unwrap_or_default();
         let same = question.squeeze.filter(|place| self.equilibrium_force(*place) >= self.needed_force(*place));
         self.enter(0.2)?;
-        let back_off = self.back_off(same, shown, question.confidence);
+        let back_off = self.back_off(same, shown, self.level);
         self.enter(0.1)?;
         let force_hold = self.force_hold(question.force, shown);
         self.enter(0.1)?;
@@ -142,11 +181,30 @@ impl Grip<'_> {
             return Err(error.clone());
         }
         self.enter(0.2)?;
+        let probability = match question.control {
+            Control::Position => match &squeeze {
+                Ok(found) => self.probability(&found.plan, question.wanted().unwrap_or(0.0))?,
+                Err(_) => None,
+            },
+            Control::Force => match &force_hold {
+                Ok(found) => self.force_hold_probability(found)?,
+                Err(_) => None,
+            },
+        };
+        let is_short = probability.zip(self.level).is_some_and(|(found, level)| found < level);
+        let assured_squeeze = match (question.squeeze, question.duration) {
+            (Some(from), Some(duration)) if is_short && question.control == Control::Position => {
+                self.assured_from(from, duration)?
+            }
+            _ => None,
+        };
         let follow = |steps: &Plan| self.course(steps, shown, SAMPLES);
         Ok(Answer {
             question: *question,
             shown,
             squeeze: squeeze.and_then(|found| followed(found, |found| follow(&found.plan))),
+            probability,
+            assured_squeeze,
             neighbours,
             back_off: back_off.and_then(|found| followed(found, |found| follow(&found.backed.plan))),
             force_hold: force_hold.and_then(|found| followed(found, |found| self.force_hold_course(found, SAMPLES))),
@@ -159,7 +217,7 @@ impl Grip<'_> {
 }
 
 impl Answer {
-    /// Whether the grip that is in question holds as long as was requested; without a time whether it does at all.
+    /// Whether the grip that is in question holds as long as was requested with the probability that was; without a time whether it does at all.
     ///
     /// # Errors
     /// Why there is no such grip.
@@ -169,12 +227,12 @@ impl Answer {
         match self.question.control {
             Control::Position => {
                 let found = &self.squeeze.as_ref().map_err(Clone::clone)?.found;
-                let lasts = match found.interval {
-                    Some((low, _)) if self.question.confidence.is_some() => low,
+                let lasts = match (self.question.confidence, found.assured) {
+                    (Some(_), Some(assured)) => assured,
+                    (Some(level), None) if level > 0.5 => return Ok(false),
                     _ => found.time_to_slip,
                 };
-                let wanted = self.question.duration.or((self.question.squeeze.is_none()).then_some(MINUTE));
-                Ok(match wanted {
+                Ok(match self.question.wanted() {
                     None => lasts != TimeToSlip::After(0.0),
                     Some(wanted) if wanted.is_finite() => lasts.covers(wanted * ROUNDING),
                     Some(_) => lasts == TimeToSlip::Never,
@@ -182,7 +240,12 @@ impl Answer {
             }
             Control::Force => {
                 let found = &self.force_hold.as_ref().map_err(Clone::clone)?.found;
-                Ok(found.holds && found.stroke_ends.is_none())
+                let is_sure = match (self.question.confidence, self.probability) {
+                    (Some(level), Some(probability)) => probability >= level,
+                    (Some(level), None) => level <= 0.5,
+                    (None, _) => true,
+                };
+                Ok(found.holds && found.stroke_ends.is_none() && is_sure)
             }
         }
     }

@@ -5,6 +5,7 @@ use serde::{Deserialize, Serialize};
 use super::{ALWAYS, Grip, GripError, Plan, PositionHold, bisected, check_duration};
 use crate::number::significant;
 use crate::simulate::step_ends;
+use crate::statistics::one_sided_factor;
 
 /// What a parameter of the material does to a squeeze that is to begin relaxed.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -106,13 +107,15 @@ impl Grip<'_> {
         /// To which the least is found, as a share.
         const CLOSE: f64 = 1e-6;
         // What the parameters leave of an excess fades, and the band with it: between its ends it is no lower than there.
+        let factor = self.level.map_or(0.0, |level| one_sided_factor(level, self.freedom()));
         let is_enough = |displacement: f64| -> Result<bool, GripError> {
             let plan = Plan::back_off(self.turning_point(displacement)?, displacement, self.limits.speed);
             let start = self.ends(&plan.steps)?.last().map_or(0.0, |end| end.time);
             let at = vec![start, start + duration.min(ALWAYS)];
             let predicted = self.predict(&plan.held(duration.min(ALWAYS)), at)?;
             let needed = self.needed_force(displacement);
-            Ok((0..2).all(|i| predicted.force_interval(i).0 >= needed))
+            let course = predicted.trajectory.force.iter().zip(&predicted.force_standard_error);
+            Ok(course.into_iter().all(|(force, error)| force - factor * error >= needed))
         };
         let (mut short, mut enough) = (least, least);
         // The limits end it: there is no turning point beyond them.

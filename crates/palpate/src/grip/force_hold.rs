@@ -94,6 +94,21 @@ impl Grip<'_> {
         self.course_of(&pressed.steps, samples)
     }
 
+    /// The probability that a held force does not slip, and that its creep stays within the stroke; `None` where the calibration says nothing.
+    pub(super) fn force_hold_probability(&self, pressed: &ForceHold) -> Result<Option<f64>, GripError> {
+        if self.material.uncertainty().is_none() {
+            return Ok(None);
+        }
+        if !pressed.holds {
+            return Ok(Some(0.0));
+        }
+        let (deepest, _) = self.limits.deepest(self.contact.specimen());
+        let ends = self.ends(&pressed.steps)?;
+        let end = ends.last().copied().unwrap_or_default();
+        let predicted = self.predict(&pressed.steps, vec![end.time])?;
+        Ok(Some(self.probability_of(deepest - end.displacement, predicted.displacement_standard_error[0])))
+    }
+
     /// The least force that carries the load as soon as it is reached.
     fn least_force(&self) -> Result<f64, GripError> {
         let (deepest, mut by) = self.limits.reach(self.contact.specimen());

@@ -4,6 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use super::{ALWAYS, Grip, GripError, Plan, PositionHold, check, check_confidence, peak};
 use crate::number::significant;
+use crate::statistics::one_sided_factor;
 
 /// What a plan should have least of.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
@@ -26,7 +27,7 @@ impl Grip<'_> {
     ///
     /// Tried are squeezes at one speed, for which any closing time within the limits may serve, and a force that is kept while the body creeps until
     /// the time to close is over. For each the least displacement or force is found, at which the force at the end of the hold is the one that
-    /// is needed; with a `confidence`, at which the lower end of its interval of that level is.
+    /// is needed; with a `confidence`, at which it is with that probability.
     ///
     /// # Errors
     /// [`GripError::NoSqueeze`] if none holds, [`GripError::NoIntervals`] for a confidence where there are none, [`GripError::Number`] for a duration that is not above zero.
@@ -150,16 +151,41 @@ impl Grip<'_> {
         Ok(plan(found.1))
     }
 
-    /// Force at the end of a hold (or the lower end of its interval) less the one that is needed there, N.
+    /// Force at the end of a hold (or its bound of the level) less the one that is needed there, N.
     fn surplus(&self, plan: &Plan, duration: f64, by_interval: bool) -> Result<f64, GripError> {
         let program = plan.held(duration.min(ALWAYS));
         let ends = self.ends(&program)?;
         let end = ends.last().copied().unwrap_or_default();
-        let force = if by_interval { self.predict(&program, vec![end.time])?.force_interval(0).0 } else { end.force };
-        Ok(force - self.needed_force(end.displacement))
+        let reserve = match self.level.filter(|_| by_interval) {
+            Some(level) => {
+                let error = self.predict(&program, vec![end.time])?.force_standard_error[0];
+                one_sided_factor(level, self.freedom()) * error
+            }
+            None => 0.0,
+        };
+        Ok(end.force - reserve - self.needed_force(end.displacement))
     }
 
-    /// The same with intervals of the level at which a verdict is to hold, where there is one.
+    /// The least squeeze (m) from `least` on, at the speed of the gripper, that holds for `duration` (s) with the probability which the verdict has to
+    /// have; `None` if none within the limits does.
+    pub(super) fn assured_from(&self, least: f64, duration: f64) -> Result<Option<f64>, GripError> {
+        let (deepest, _) = self.limits.reach(self.contact.specimen());
+        let plan = |displacement: f64| Plan::squeeze(displacement, self.limits.speed);
+        let holds = |displacement: f64| -> Result<bool, GripError> {
+            Ok(self.surplus(&plan(displacement), duration, true)? >= 0.0)
+        };
+        if least >= deepest || !holds(deepest)? {
+            return Ok(None);
+        }
+        let found = bisected(least, deepest, holds)?.1;
+        let is_allowed = match self.limits.force {
+            Some(limit) => peak(&self.ends(&plan(found).steps)?) <= limit,
+            None => true,
+        };
+        Ok(is_allowed.then_some(found))
+    }
+
+    /// The same with the probability that a verdict has to have, where there is one.
     pub(super) fn at(&self, confidence: Option<f64>) -> Result<Self, GripError> {
         let Some(confidence) = confidence else {
             return Ok(self.clone());
@@ -169,7 +195,7 @@ impl Grip<'_> {
             return Err(GripError::NoIntervals);
         }
         Ok(Self {
-            confidence,
+            level: Some(confidence),
             ..self.clone()
         })
     }

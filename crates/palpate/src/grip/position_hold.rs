@@ -5,6 +5,7 @@ use std::cell::RefCell;
 use super::{ALWAYS, Grasp, GripError, Limits, Plan, PlanKind, TimeToSlip, check_confidence};
 use crate::calibrate::{Material, Prediction};
 use crate::simulate::{Contact, ProgramStep, Sampling, Separation, SimulateError, StepEnd, step_ends, work_by_step};
+use crate::statistics::{coverage_factor, one_sided_factor, student_probability};
 use crate::watch::{Cancelled, Progress, Stages};
 
 /// A calibrated body in a gripper.
@@ -46,6 +47,8 @@ pub struct Grip<'a> {
     pub(super) grasp: Grasp,
     pub(super) limits: Limits,
     pub(super) confidence: f64,
+    /// Probability with which a verdict has to hold; the best estimate decides where there is none.
+    pub(super) level: Option<f64>,
     /// Who hears of every simulation.
     pub(super) heard: Option<&'a RefCell<Stages<'a>>>,
 }
@@ -74,16 +77,19 @@ pub struct PositionHold {
     pub time_to_slip: TimeToSlip,
     /// Ends of the interval of that time by what the calibration leaves open; `None` where it says nothing.
     pub interval: Option<(TimeToSlip, TimeToSlip)>,
+    /// The time that is reached with the probability which a verdict has to have ([`Question::confidence`](super::Question)); `None` without one, and
+    /// where the calibration says nothing.
+    pub assured: Option<TimeToSlip>,
     /// How sharply the time depends on the squeeze, d ln(time)/d(displacement), 1/m; `None` where it is no plain squeeze, or slips at once or never.
     pub sharpness: Option<f64>,
 }
 
 impl PositionHold {
-    /// Whether the interval of the time to slip starts at 0, though the best estimate does not: nothing says that it holds at all.
+    /// Whether no time is assured, though the best estimate is above 0; without a level, whether the interval starts at 0.
     #[must_use]
     pub fn may_slip_at_once(&self) -> bool {
         self.time_to_slip != TimeToSlip::After(0.0)
-            && self.interval.is_some_and(|(low, _)| low == TimeToSlip::After(0.0))
+            && self.assured.or(self.interval.map(|(low, _)| low)) == Some(TimeToSlip::After(0.0))
     }
 }
 
@@ -105,6 +111,7 @@ impl<'a> Grip<'a> {
             grasp,
             limits,
             confidence,
+            level: None,
             heard: None,
         })
     }
@@ -163,7 +170,11 @@ impl<'a> Grip<'a> {
         };
         self.within_limits(&ends)?;
         let needed_force = self.needed_force(end.displacement);
-        let (time_to_slip, interval) = self.slips(plan, end, needed_force)?;
+        let time_to_slip = self.time_to_slip(plan)?;
+        let (interval, assured) = match self.material.uncertainty() {
+            Some(_) => self.slips(plan, end, needed_force)?,
+            None => (None, None),
+        };
         Ok(PositionHold {
             closing: end.time,
             displacement: end.displacement,
@@ -174,6 +185,7 @@ impl<'a> Grip<'a> {
             work: self.work(&plan.steps)?,
             time_to_slip,
             interval,
+            assured,
             sharpness: self.sharpness(plan, time_to_slip),
             plan: plan.clone(),
         })
@@ -268,26 +280,52 @@ impl<'a> Grip<'a> {
         Ok(self.ends(&plan.held(time))?.last().map_or(0.0, |end| end.force))
     }
 
-    fn slips(
-        &self,
-        plan: &Plan,
-        end: &StepEnd,
-        needed: f64,
-    ) -> Result<(TimeToSlip, Option<(TimeToSlip, TimeToSlip)>), GripError> {
-        let lasts = self.time_to_slip(plan)?;
-        if self.material.uncertainty().is_none() {
-            return Ok((lasts, None));
-        }
+    /// Where the band of the force falls below the needed one: both its edges, and the bound of the level on one side.
+    fn slips(&self, plan: &Plan, end: &StepEnd, needed: f64) -> Result<BandSlips, GripError> {
         let program = plan.held(ALWAYS);
-        let edge = |pick: fn((f64, f64)) -> f64| {
+        let edge = |factor: f64| {
             let mut surplus = |times: &[f64]| -> Result<Vec<f64>, GripError> {
                 let at = times.iter().map(|time| end.time + time).collect();
                 let predicted = self.predict(&program, at)?;
-                Ok((0..times.len()).map(|i| pick(predicted.force_interval(i)) - needed).collect())
+                let course = predicted.trajectory.force.iter().zip(&predicted.force_standard_error);
+                Ok(course.map(|(force, error)| force + factor * error - needed).collect())
             };
             crossing(&mut surplus)
         };
-        Ok((lasts, Some((edge(|band| band.0)?, edge(|band| band.1)?))))
+        let half = coverage_factor(self.confidence, self.freedom());
+        let assured = self.level.map(|level| edge(-one_sided_factor(level, self.freedom()))).transpose()?;
+        Ok((Some((edge(-half)?, edge(half)?)), assured))
+    }
+
+    /// Degrees of freedom of the calibration.
+    pub(super) fn freedom(&self) -> f64 {
+        self.material.uncertainty().map_or(f64::INFINITY, |uncertainty| uncertainty.freedom)
+    }
+
+    /// The probability that a plan still holds after `duration` (s): that the force then is the needed one or more, for parameters as uncertain as the
+    /// calibration left them. `None` where it says nothing.
+    ///
+    /// # Errors
+    /// [`GripError::Simulate`] for a plan that cannot be simulated.
+    pub fn probability(&self, plan: &Plan, duration: f64) -> Result<Option<f64>, GripError> {
+        if self.material.uncertainty().is_none() {
+            return Ok(None);
+        }
+        let program = plan.held(duration.min(ALWAYS));
+        let ends = self.ends(&program)?;
+        let end = ends.last().copied().unwrap_or_default();
+        let predicted = self.predict(&program, vec![end.time])?;
+        let surplus = end.force - self.needed_force(end.displacement);
+        Ok(Some(self.probability_of(surplus, predicted.force_standard_error[0])))
+    }
+
+    /// The probability that something is above 0 which is estimated with this standard error.
+    pub(super) fn probability_of(&self, estimate: f64, error: f64) -> f64 {
+        if error > 0.0 {
+            student_probability(estimate / error, self.freedom())
+        } else {
+            f64::from(u8::from(estimate >= 0.0))
+        }
     }
 
     fn sharpness(&self, plan: &Plan, lasts: TimeToSlip) -> Option<f64> {
@@ -304,6 +342,9 @@ impl<'a> Grip<'a> {
         Some((log(STEP)? - log(-STEP)?) / (2.0 * STEP * displacement))
     }
 }
+
+/// Ends of the interval of the time to slip, and the time that is assured.
+type BandSlips = (Option<(TimeToSlip, TimeToSlip)>, Option<TimeToSlip>);
 
 pub(super) fn beyond(name: &'static str, found: f64, limit: f64, unit: &'static str) -> GripError {
     GripError::BeyondLimit {

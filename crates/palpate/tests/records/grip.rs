@@ -7,7 +7,10 @@ use palpate::calibrate::{
 };
 use palpate::contact::{Shape, Sides};
 use palpate::fit::Estimate;
-use palpate::grip::{Band, Grasp, Grip, GripError, Limits, Objective, Plan, PlanKind, Question, Regrip, TimeToSlip};
+use palpate::grip::{
+    Band, Control, Grasp, Grip, GripError, Limits, Objective, Plan, PlanKind, PositionHold, Question, Regrip,
+    TimeToSlip,
+};
 use palpate::simulate::{ProgramStep, Sampling, Separation, step_ends};
 use palpate::watch::{Cancelled, Progress};
 
@@ -192,7 +195,12 @@ fn the_least_squeeze_holds_as_long_as_was_requested_and_less_does_not() {
     let [best, confident] =
         [None, Some(0.95)].map(|confidence| grip.least(Objective::Squeeze, 60.0, confidence).unwrap());
     assert!(confident.displacement > best.displacement);
-    assert!((seconds(confident.interval.unwrap().0) / 60.0 - 1.0).abs() < 1e-3, "{confident:?}");
+    assert!((seconds(confident.assured.unwrap()) / 60.0 - 1.0).abs() < 1e-3, "{confident:?}");
+    assert_eq!(best.assured, None);
+    // The probability of the same plans, and of what the calibration says nothing of.
+    let probability = |found: &PositionHold| grip.probability(&found.plan, 60.0).unwrap().unwrap();
+    assert!((probability(&confident) - 0.95).abs() < 1e-6 && (probability(&best) - 0.5).abs() < 1e-6);
+    assert_eq!(self::grip(&ball(None), 0.25).probability(&best.plan, 60.0), Ok(None));
 }
 
 #[test]
@@ -242,12 +250,9 @@ fn a_retreat_with_a_confidence_holds_with_the_lower_end_of_its_interval() {
     let grip = grip(&material, 0.25);
     let [best, confident] = [None, Some(0.95)].map(|confidence| grip.back_off(None, 3600.0, confidence).unwrap());
     assert_eq!(best.backed.interval.unwrap().0, TimeToSlip::After(0.0));
-    assert!(
-        grip.position_hold(&confident.backed.plan).unwrap().interval.unwrap().0.covers(3600.0),
-        "{confident:?}"
-    );
-    let less = grip.back_off(Some(confident.backed.displacement * (1.0 - 1e-5)), 3600.0, None).unwrap();
-    assert!(!less.backed.interval.unwrap().0.covers(3600.0), "{less:?}");
+    assert!(confident.backed.assured.unwrap().covers(3600.0), "{confident:?}");
+    let less = grip.back_off(Some(confident.backed.displacement * (1.0 - 1e-5)), 3600.0, Some(0.95)).unwrap();
+    assert!(!less.backed.assured.unwrap().covers(3600.0), "{less:?}");
     // Not more than a few standard errors of the equilibrium force, which rises with the square of the squeeze.
     let more = confident.backed.displacement / best.backed.displacement - 1.0;
     assert!((0.01..0.1).contains(&more), "{more}");
@@ -462,6 +467,65 @@ fn more_than_ten_years_and_confidence_without_intervals_are_refused() {
     assert_eq!(grip.least(Objective::Squeeze, 60.0, Some(0.95)), Err(GripError::NoIntervals));
     assert_eq!(grip.back_off(None, 60.0, Some(0.95)), Err(GripError::NoIntervals));
     assert!(!GripError::NoIntervals.is_answer());
+    // Even so it answers by the best estimate, which is no verdict unless that is enough.
+    let requested = |confidence| {
+        grip.answer(&Question {
+            confidence,
+            duration: Some(60.0),
+            ..Question::default()
+        })
+        .unwrap()
+    };
+    for (confidence, holds) in [(Some(0.95), false), (Some(0.5), true), (None, true)] {
+        let answer = requested(confidence);
+        assert_eq!((answer.holds(), answer.probability), (Ok(holds), None), "{confidence:?}");
+    }
+}
+
+/// The best estimate was stated as a Yes, and half of such grips slip.
+#[test]
+fn a_verdict_holds_with_the_probability_that_is_required() {
+    let material = ball(Some([0.02, 0.01, 0.05, 0.01]));
+    let grip = grip(&material, 0.25);
+    let requested = |squeeze: f64, confidence: f64| {
+        let question = Question {
+            squeeze: Some(squeeze),
+            duration: Some(60.0),
+            confidence: Some(confidence),
+            ..Question::default()
+        };
+        grip.answer(&question).unwrap()
+    };
+    let edge = grip.least(Objective::Squeeze, 60.0, None).unwrap().displacement;
+    let short = requested(edge * 1.001, 0.95);
+    let probability = short.probability.unwrap();
+    assert!(short.holds() == Ok(false) && (0.5..0.95).contains(&probability), "{probability}");
+    let enough = short.assured_squeeze.unwrap();
+    let (less, more) = (requested(enough * (1.0 - 1e-6), 0.95), requested(enough * (1.0 + 1e-6), 0.95));
+    assert_eq!((less.holds(), more.holds(), more.assured_squeeze), (Ok(false), Ok(true), None));
+    assert_eq!(requested(edge * 1.001, 0.5).holds(), Ok(true));
+    // A stroke that no such squeeze is within.
+    let limits = Limits {
+        stroke: Some(edge * 1.002),
+        ..Limits::new(SPEED).unwrap()
+    };
+    let narrow = Grip::new(&material, *grip.grasp(), limits, 0.95).unwrap();
+    assert_eq!(narrow.answer(&short.question).unwrap().assured_squeeze, None);
+    // Held forces: creep may come to the end of the stroke.
+    let question = Question {
+        control: Control::Force,
+        duration: Some(60.0),
+        ..Question::default()
+    };
+    let held = grip.answer(&question).unwrap();
+    let end = held.force_hold.as_ref().unwrap().found.displacement_end;
+    assert!(held.holds() == Ok(true) && held.probability.unwrap() > 0.999, "{:?}", held.probability);
+    let limits = Limits {
+        stroke: Some(end * 1.001),
+        ..Limits::new(SPEED).unwrap()
+    };
+    let tight = Grip::new(&material, *grip.grasp(), limits, 0.95).unwrap().answer(&question).unwrap();
+    assert!(tight.holds() == Ok(false) && tight.probability.unwrap() > 0.5, "{:?}", tight.probability);
 }
 
 #[test]
