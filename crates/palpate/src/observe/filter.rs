@@ -23,6 +23,37 @@ const MOST: usize = 16;
 /// Share of a surprise in that mean.
 const MEMORY: f64 = 0.02;
 
+/// Surprises whose correlation with the one before is averaged at most.
+const SURPRISES: f64 = 400.0;
+/// The largest correlation that counts.
+const MOST_CORRELATION: f64 = 0.98;
+
+/// How surprises that follow each other correlate: noise of one reading that is also in the next.
+#[derive(Debug, Clone, Copy, Default)]
+struct Correlation {
+    last: f64,
+    product: f64,
+    square: f64,
+    count: f64,
+}
+
+impl Correlation {
+    /// Takes a surprise in standard deviations; of how many readings each tells as much as one would without correlation.
+    fn feed(&mut self, surprise: f64) -> f64 {
+        self.count = (self.count + 1.0).min(SURPRISES);
+        self.product += (surprise * self.last - self.product) / self.count;
+        self.square += (surprise * surprise - self.square) / self.count;
+        self.last = surprise;
+        let correlation = if self.square > 0.0 { self.product / self.square } else { 0.0 };
+        // Less is what chance leaves of white noise.
+        if correlation < 2.0 / self.count.sqrt() {
+            return 1.0;
+        }
+        let correlation = correlation.min(MOST_CORRELATION);
+        (1.0 + correlation) / (1.0 - correlation)
+    }
+}
+
 /// A model and its state.
 #[derive(Debug, Clone)]
 struct Member {
@@ -94,6 +125,7 @@ pub(super) struct ModelFilter {
     noise: f64,
     /// Mean of squared surprises in shares of their variance.
     surprise: f64,
+    correlation: Correlation,
     /// The last reading of the displacement: when (s), and what (m).
     last: Option<f64>,
     displacement: f64,
@@ -140,6 +172,7 @@ impl ModelFilter {
             gain: vec![0.0; count],
             noise: noise.max(f64::MIN_POSITIVE.sqrt()),
             surprise: 1.0,
+            correlation: Correlation::default(),
             last: None,
             displacement: 0.0,
             exponent_standard_error: exponent.and_then(|parameter| parameter.estimate.standard_error).unwrap_or(0.0),
@@ -155,6 +188,13 @@ impl ModelFilter {
         }
         self.standing.iter().chain(&self.covariance).for_each(|value| value.keep(into));
         (self.surprise, (self.last, self.displacement)).keep(into);
+        let Correlation {
+            last,
+            product,
+            square,
+            count,
+        } = self.correlation;
+        ((last, product), (square, count)).keep(into);
     }
 
     /// Reads it.
@@ -169,6 +209,13 @@ impl ModelFilter {
             *value = Kept::read(from)?;
         }
         (self.surprise, (self.last, self.displacement)) = Kept::read(from)?;
+        let ((last, product), (square, count)) = Kept::read(from)?;
+        self.correlation = Correlation {
+            last,
+            product,
+            square,
+            count,
+        };
         Some(())
     }
 
@@ -217,8 +264,9 @@ impl ModelFilter {
         }
         variance += self.gain.iter().zip(&self.slope).map(|(gain, slope)| gain * slope).sum::<f64>();
         self.surprise += MEMORY * (surprise * surprise / variance - self.surprise);
-        // What one of several readings within that time tells.
-        let share = if dt > 0.0 { (APART / dt).max(1.0) } else { 1.0 };
+        // What one of several readings within that time tells, or of several that share their noise.
+        let together = self.correlation.feed(surprise / variance.sqrt());
+        let share = if dt > 0.0 { (APART / dt).max(together) } else { together };
         variance += (share - 1.0) * self.noise * self.noise;
         for (standing, gain) in self.standing.iter_mut().zip(&self.gain) {
             *standing += gain * surprise / variance;

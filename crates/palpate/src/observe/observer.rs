@@ -25,7 +25,7 @@ const AGAIN: f64 = 0.04;
 const READINGS: u32 = 8;
 
 /// What the bytes of an observer begin with.
-const FORMAT: [u8; 8] = *b"observe2";
+const FORMAT: [u8; 8] = *b"observe3";
 
 /// A hold that goes on.
 #[derive(Debug, Clone, Copy, Default)]

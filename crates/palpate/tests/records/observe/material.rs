@@ -110,6 +110,50 @@ fn a_material_tells_the_excess_at_once_and_the_time_to_slip_early() {
     }
 }
 
+/// Readings that share their noise were counted as independent: 44 to 75 of 100 equilibria and 47 to 72 of 100 times were within their intervals.
+#[test]
+fn intervals_contain_the_truth_under_noise_that_correlates() {
+    let slip_after = 30.0;
+    let course = squeeze(slip_after);
+    let plain = ObserverOptions {
+        exponent_standard_error: 0.05,
+        ..slipping_at(force_after(slip_after))
+    };
+    let informed = ObserverOptions {
+        material: Some(material(1.0)),
+        ..plain.clone()
+    };
+    let body = model().specimen;
+    let place = body.contact_displacement(5e-3);
+    let equilibrium = body.force(body.equilibrium_strain(place), place);
+    for after in [1.0, 3.0, 20.0] {
+        for options in [&plain, &informed] {
+            let (mut times, mut forces, mut never, seeds) = (0, 0, 0, repeats(40, 300));
+            for seed in 0..seeds {
+                let until = ((STOP + after) * RATE) as usize;
+                let observed = watched_with_drift(&course[..until], 0.9, seed, options);
+                let truth = slip_after - after;
+                match observed.time_to_slip {
+                    Some(SlipForecast::Known { low, high, .. }) => {
+                        never += u64::from(low == TimeToSlip::Never);
+                        let early = low.seconds().is_some_and(|low| low <= truth * 1.001);
+                        times += u64::from(early && high.covers(truth / 1.001));
+                    }
+                    _ => times += 1,
+                }
+                let is_within = |found: Estimate| {
+                    found.interval.is_none_or(|(low, high)| low <= equilibrium && equilibrium <= high)
+                };
+                forces += u64::from(observed.equilibrium_force.is_none_or(is_within));
+            }
+            let of = if options.material.is_some() { "material" } else { "hold alone" };
+            println!("{of}, after {after} s: times {times}, equilibria {forces} of {seeds}, never {never}");
+            let least = (0.86 * seeds as f64) as u64;
+            assert!(times >= least && forces >= least && never <= seeds / 20, "{of} {after}: {times} {forces} {never}");
+        }
+    }
+}
+
 #[test]
 fn a_material_whose_rate_depends_on_the_strain_is_watched_by_that() {
     use palpate::calibrate::{Material, MaterialParameter, MaterialUnit, RateLaw};

@@ -61,6 +61,19 @@ fn watched(course: &[(f64, f64, f64)], seed: u64, options: &ObserverOptions) -> 
     course.iter().map(see).collect()
 }
 
+/// The same with noise of the force that correlates as AR(1).
+fn watched_with_drift(course: &[(f64, f64, f64)], rho: f64, seed: u64, options: &ObserverOptions) -> Observation {
+    let (mut observer, mut random) = (Observer::new(options.clone()).unwrap(), Rng::new(seed));
+    let mut noise = random.normal();
+    let mut last = None;
+    for (time, displacement, force) in course {
+        noise = rho * noise + (1.0 - rho * rho).sqrt() * random.normal();
+        let displacement = displacement + 1e-6 * random.normal();
+        last = Some(observer.feed(*time, Some(displacement), force + 0.05 * noise).unwrap());
+    }
+    last.unwrap()
+}
+
 fn slipping_at(slip_force: f64) -> ObserverOptions {
     ObserverOptions {
         slip_force: Some(slip_force),
