@@ -40,7 +40,7 @@ RECORDS = [
         "Soft foam in compression",
         "foam/XtraSoft.csv",
         "validation/records/foam.toml",
-        {"35 s": "the only ramp and half of its hold; predicted: the other half, and the way back"},
+        {"35 s": "the only ramp and half of its hold; predicted: the other half, and the unloading"},
     ),
     (
         "VHB 4910 tape in tension, stretched 2.5 times",
@@ -66,29 +66,31 @@ RECORDS = [
 
 HEAD = """# Whole real records
 
-Records of others, each calibrated on its first part, ramps and holds alike, and held against the rest of it. Written by one command:
+Published records, each calibrated on its first part, ramps and holds alike, and predicted on the rest. One command writes this page:
 
 ```sh
 python validation/whole_records.py "$PALPATE_DATA"
 ```
 
-*Left over* is the root mean square of measured less simulated force over what was fitted, *held-out error* that over all that came later, both
-**in % of the largest force of the record** and with the noise of the samples in them; the smallest held-out error is bold. *p* is how many
-numbers a law has, *ΔBIC* how far it stands behind the best of the fits. In brackets: the search for the numbers did not converge, or
-they lie at a bound. What is fitted and how: [Calibration of a whole record](../theory/calibration.md).
+*Residual* is the root mean square of measured minus simulated force over the fitted part, *held-out error* that over the rest, both **in %
+of the largest force of the record** and including the noise of the samples; the smallest held-out error is bold. *p* is the number of
+parameters of a law, *ΔBIC* the difference from the best fit. Brackets mark a search that did not converge or
+parameters at a bound; such a law has no ΔBIC.
+[Calibration of a whole record](../theory/calibration.md) describes the method.
 
-What to take from it:
+Conclusions:
 
 - On half-hour holds the latency law with a constant v predicts best from the first ten minutes, with some tenth of the error of a Prony
-  series of three terms. From less than a minute no law predicts well but the one with v by strain, which fits the ramp.
-- The law that fits best need not predict best. On records of one stretch v by strain has the lowest ΔBIC everywhere: one level shows no trend, and
-  its factor bends to the ramp instead. From ten minutes of VHB, and on foam, it predicts worse than constant v.
-- On silicone in steps up and down v by direction is the best fit of all but one part, and predicts as well as constant v or better once it has observed
-  more than one cycle; all laws lie within a factor of 1.5 of each other there.
-- One ramp and half a hold of foam tell the equilibrium force nowhere else: no law predicts the way back.
+  series of three terms. From less than a minute only the law with v by strain, which fits the ramp, predicts well.
+- The law that fits best need not predict best. On records of one stretch v by strain leaves the smallest residual everywhere, mostly with a
+  parameter at its bound: one level shows no trend, and its factor adapts to the ramp instead. From ten minutes of VHB, and on foam, it
+  predicts worse than constant v.
+- On silicone in steps up and down v by direction fits as well as any law or better. Fitted to more than one cycle, its held-out error is
+  no larger than that of constant v; all laws lie within a factor of 1.5 of each other there.
+- One ramp and half a hold of foam determine the equilibrium force only at one displacement: no law predicts the unloading.
 
-The records are not part of this repository. Sections that their authors did not give are assumed; they scale the modulus and nothing
-that stands here.
+The records are not part of this repository. Cross-sections that their authors do not give are assumed; they affect only the modulus and no
+value on this page.
 """
 
 
@@ -118,8 +120,9 @@ def rows(document):
             predicted = f"**{predicted}**"
         if law["termination"] != "converged" or law["log_covariance"] is None:
             predicted = f"({predicted})"
-        behind = law["delta_bic"]
-        yield f"| {law['law']} | {law['parameters']} | {percent(law['relative'])} | {behind:.0f} | {predicted} |"
+        # A search that did not end at an optimum has no rank.
+        behind = "" if law["delta_bic"] is None else f"{law['delta_bic']:.0f}"
+        yield f"| {law['law']} | {law['free_parameters']} | {percent(law['relative'])} | {behind} | {predicted} |"
 
 
 def main():
@@ -135,7 +138,7 @@ def main():
             samples = next(law["holdout"]["samples"] for law in document["laws"] if law["holdout"])
             page.append(f"\nFitted up to {until}: {what}. {document['fitted']} samples fitted, {samples} predicted.\n\n")
             page.append(f"<!-- palpate calibrate {record} --test {test} --fit-until \"{until}\" --rate by-strain --alternatives {LAWS} -->\n\n")
-            page.append("| Law | p | Left over (%) | ΔBIC | Held-out error (%) |\n| --- | --: | --: | --: | --: |\n")
+            page.append("| Law | p | Residual (%) | ΔBIC | Held-out error (%) |\n| --- | --: | --: | --: | --: |\n")
             page.extend(f"{row}\n" for row in rows(document))
             print(f"{record}, {until}", flush=True)
     PAGE.write_text("".join(page), encoding="utf-8")
