@@ -214,7 +214,7 @@ def test_all_of_it_comes_back(least: palpate.Grip) -> None:
             assert twin == thing and repr(twin) == repr(thing) and str(twin) == str(thing)
     assert least.squeeze is not None and least.squeeze.course is not None
     assert pickle.loads(pickle.dumps(least.squeeze)).course == least.squeeze.course
-    assert repr(least).startswith("<palpate.Grip: Yes (best estimate): a squeeze of 6.") and "<svg" in (least._repr_html_() or "")
+    assert repr(least).startswith("<palpate.Grip: Yes: a squeeze of 6.") and "<svg" in (least._repr_html_() or "")
     assert repr(least.schedule).startswith("<palpate.Schedule: ") and least != least.squeeze
 
 

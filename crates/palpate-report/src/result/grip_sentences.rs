@@ -225,10 +225,16 @@ fn best_estimate(body: &GrippedBody<'_>, found: &PositionHold) -> String {
 /// The squeeze that reaches the probability required, in a sentence of its own.
 fn that_holds(body: &GrippedBody<'_>) -> String {
     let level = body.answer.question.confidence.map(percent);
-    body.answer
-        .assured_squeeze
-        .zip(level)
-        .map_or_else(String::new, |(squeeze, level)| format!(" A squeeze of {} reaches {level}.", mm(squeeze)))
+    body.answer.assured_squeeze.zip(level).map_or_else(String::new, |(squeeze, level)| {
+        format!(" A squeeze of {} reaches {level}.", mm(rounded_up(squeeze)))
+    })
+}
+
+/// A length to the four digits that are shown, and no less.
+fn rounded_up(metres: f64) -> f64 {
+    let unit = 10f64.powf(metres.log10().floor() - 3.0);
+    // Rounding of the division itself is none.
+    (metres / unit - 1e-9).ceil() * unit
 }
 
 /// A probability, rounded down: no verdict looks surer than it is.

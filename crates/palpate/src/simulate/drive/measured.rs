@@ -218,7 +218,8 @@ impl<'a> Sums<'a> {
             (self.displacements[index] - line.at(time)).powi(2) <= BEYOND * variance * (1.0 + line.variance_at(time))
         };
         let width = second - first;
-        (corner > first - width && corner < second + width && (from..end).all(serves)).then_some(corner)
+        let (least, most) = ((first - width).max(knots[0]), (second + width).min(knots[last]));
+        (corner > least && corner < most && (from..end).all(serves)).then_some(corner)
     }
 
     /// Leaves out knots that only noise has set, alone or a few together: where one line serves the stretches on both sides as well as two.
@@ -269,6 +270,9 @@ impl<'a> Sums<'a> {
 
 /// Displacements at knots of the motion that is straight between them and nearest to the samples; `None` where samples do not say.
 fn hats(samples: &Motion, knots: &[f64]) -> Option<(Vec<f64>, Tridiagonal)> {
+    if knots.windows(2).any(|pair| pair[1] <= pair[0]) {
+        return None;
+    }
     let mut normal = Tridiagonal {
         diagonal: vec![0.0; knots.len()],
         beside: vec![0.0; knots.len() - 1],
@@ -393,6 +397,32 @@ mod tests {
             expected += 0.25 * (knots[0][0] + 2.0 * knots[0][1] + knots[1][1]);
         }
         assert!((square / expected).sqrt() > 0.85 && (square / expected).sqrt() < 1.2, "{square} {expected}");
+    }
+
+    #[test]
+    fn whatever_is_measured_has_a_motion_near_the_samples() {
+        for seed in 1..400 {
+            let mut random = Rng::new(seed);
+            let count = 2 + (60.0 * random.uniform()) as usize;
+            let (mut time, mut place, mut speed) = (0.0, 0.0, 0.0);
+            let (mut times, mut places) = (Vec::new(), Vec::new());
+            for _ in 0..count {
+                // Jumps, changes of speed, gaps, standstills.
+                time += if random.uniform() < 0.1 { 1.0 } else { 1e-3 + 0.02 * random.uniform() };
+                speed = if random.uniform() < 0.2 { 1e-2 * random.normal() } else { speed };
+                place += 0.01 * speed + if random.uniform() < 0.05 { 1e-3 * random.normal() } else { 0.0 };
+                times.push(time);
+                places.push(place + 1e-5 * random.normal());
+            }
+            let found = MeasuredMotion::of(times.clone(), places.clone(), 5e-5).unwrap();
+            assert!(found.motion.times().windows(2).all(|pair| pair[0] < pair[1]), "{seed}");
+            assert!(found.noise.is_finite());
+            for (time, place) in times.iter().zip(&places) {
+                assert!((found.motion.displacement_at(*time) - place).abs() < 1e-3, "{seed} at {time}: {found:?}");
+            }
+            let variance = found.covariance(&[0, found.motion.times().len() - 1])[0][0];
+            assert!(variance.is_finite() && variance >= 0.0, "{seed}");
+        }
     }
 
     #[test]
