@@ -184,7 +184,7 @@ fn of_squeeze(body: &GrippedBody<'_>, found: &PositionHold, holds: bool) -> Stri
         let wanted = answer
             .question
             .duration
-            .filter(|_| !holds)
+            .filter(|wanted| !found.time_to_slip.covers(*wanted * (1.0 - 1e-6)))
             .map_or_else(String::new, |wanted| format!("; requested: {}", requested(wanted)));
         let unknown = if body.is_unknown() {
             "the calibration has no intervals, and no probability can be stated; by the best estimate "

@@ -1,7 +1,7 @@
 //! What the noise of the measured displacement adds to the errors of the parameters.
 
 use super::CalibrationData;
-use super::problem::{Problem, dot};
+use super::problem::{Found, Problem, dot};
 use crate::optimise::Cholesky;
 use crate::simulate::Motion;
 use crate::watch::{Cancelled, Stages};
@@ -17,7 +17,7 @@ const STEP: f64 = 1e-4;
 pub(super) fn from_displacement(
     problem: &Problem<'_>,
     data: &CalibrationData,
-    theta: &[f64],
+    found: &Found,
     open: &[Vec<f64>],
     stages: &mut Stages<'_>,
 ) -> Result<Option<Vec<Vec<f64>>>, Cancelled> {
@@ -48,18 +48,16 @@ pub(super) fn from_displacement(
                 motion: &motion,
                 ..*problem
             }
-            .residuals(theta)
+            .residuals(&found.theta)
         });
         let Some(moved) = forces else { return Ok(None) };
         effects.push(moved);
     }
-    let Some(at_rest) = problem.residuals(theta) else {
-        return Ok(None);
-    };
     let effects: Vec<Vec<f64>> = effects
         .iter()
         .map(|moved| {
-            let change: Vec<f64> = at_rest.iter().zip(moved).map(|(still, moved)| (still - moved) / step).collect();
+            let change: Vec<f64> =
+                found.residuals.iter().zip(moved).map(|(still, moved)| (still - moved) / step).collect();
             let mut effect: Vec<f64> = open.iter().map(|column| dot(column, &change)).collect();
             factor.solve(&mut effect);
             effect

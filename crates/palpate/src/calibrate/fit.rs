@@ -111,7 +111,7 @@ pub fn calibrate(
     let assessed = match &jacobian {
         Some(jacobian) => {
             let columns: Vec<Vec<f64>> = open.iter().map(|i| jacobian[*i].clone()).collect();
-            let of_displacement = from_displacement(&problem, data, &found.theta, &columns, &mut stages)?;
+            let of_displacement = from_displacement(&problem, data, &found, &columns, &mut stages)?;
             let mut assessed = Assessed::of_columns(columns, found.residuals.clone(), confidence)?;
             of_displacement.iter().for_each(|covariance| assessed.add(covariance));
             Some(assessed)

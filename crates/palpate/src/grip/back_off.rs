@@ -60,16 +60,16 @@ impl Grip<'_> {
         confidence: Option<f64>,
     ) -> Result<BackOff, GripError> {
         check_duration(duration)?;
-        self.at(confidence)?.back_off_by(displacement, duration, confidence.is_some())
+        self.at(confidence)?.back_off_by(displacement, duration)
     }
 
-    /// The same where the lower end of the interval decides, or the best estimate.
-    fn back_off_by(&self, displacement: Option<f64>, duration: f64, by_interval: bool) -> Result<BackOff, GripError> {
+    /// The same by the level of the grip, or by the best estimate where it has none.
+    fn back_off_by(&self, displacement: Option<f64>, duration: f64) -> Result<BackOff, GripError> {
         let (deepest, by) = self.limits.deepest(self.contact.specimen());
-        let displacement = match displacement {
-            Some(displacement) => displacement,
-            None if by_interval => self.squeeze_by_interval(self.relaxed_squeeze(deepest, by)?, duration)?,
-            None => self.relaxed_squeeze(deepest, by)?,
+        let displacement = match (displacement, self.level) {
+            (Some(displacement), _) => displacement,
+            (None, Some(level)) => self.assured_squeeze(self.relaxed_squeeze(deepest, by)?, duration, level)?,
+            (None, None) => self.relaxed_squeeze(deepest, by)?,
         };
         let speed = self.limits.speed;
         let plain = self.position_hold(&Plan::squeeze(displacement, speed))?;
@@ -100,14 +100,14 @@ impl Grip<'_> {
         Ok((bisected(0.0, deepest, |d| Ok(is_enough(d)))?.1 * (1.0 + 1e-9)).min(deepest))
     }
 
-    /// The least displacement from `least` (m) on at which the lower end of the interval is enough all through the hold.
-    fn squeeze_by_interval(&self, least: f64, duration: f64) -> Result<f64, GripError> {
+    /// The least displacement from `least` (m) on at which the force is enough with a probability of `level` all through the hold.
+    fn assured_squeeze(&self, least: f64, duration: f64, level: f64) -> Result<f64, GripError> {
         /// By how much a squeeze is larger than the one tried before.
         const MORE: f64 = 1.02;
         /// To which the least is found, as a share.
         const CLOSE: f64 = 1e-6;
         // What the parameters leave of an excess fades, and the band with it: between its ends it is no lower than there.
-        let factor = self.level.map_or(0.0, |level| one_sided_factor(level, self.freedom()));
+        let factor = one_sided_factor(level, self.freedom());
         let is_enough = |displacement: f64| -> Result<bool, GripError> {
             let plan = Plan::back_off(self.turning_point(displacement)?, displacement, self.limits.speed);
             let start = self.ends(&plan.steps)?.last().map_or(0.0, |end| end.time);

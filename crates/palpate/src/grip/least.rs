@@ -38,16 +38,16 @@ impl Grip<'_> {
         confidence: Option<f64>,
     ) -> Result<PositionHold, GripError> {
         check_duration(duration)?;
-        self.at(confidence)?.least_by(objective, duration, confidence.is_some())
+        self.at(confidence)?.least_by(objective, duration)
     }
 
-    /// The same where the lower end of the interval decides, or the best estimate.
-    fn least_by(&self, objective: Objective, duration: f64, by_interval: bool) -> Result<PositionHold, GripError> {
+    /// The same by the level of the grip, or by the best estimate where it has none.
+    fn least_by(&self, objective: Objective, duration: f64) -> Result<PositionHold, GripError> {
         let closing = |i: f64| self.limits.slowest_closing() * 10f64.powf(2.0 * (i / f64::from(TRIED - 1) - 1.0));
         let mut best: Option<(f64, f64, Plan)> = None;
         let mut none = None;
         for i in 0..TRIED {
-            match self.squeeze_within(closing(f64::from(i)), duration, by_interval) {
+            match self.squeeze_within(closing(f64::from(i)), duration) {
                 Ok(plan) => {
                     let cost = self.cost(objective, &plan)?;
                     if best.as_ref().is_none_or(|best| cost < best.0) {
@@ -63,7 +63,7 @@ impl Grip<'_> {
             for _ in 0..24 {
                 let (left, right) = (high - 0.618_034 * (high - low), low + 0.618_034 * (high - low));
                 let mut tried = |i: f64| -> Result<f64, GripError> {
-                    let Ok(found) = self.squeeze_within(closing(i), duration, by_interval) else {
+                    let Ok(found) = self.squeeze_within(closing(i), duration) else {
                         return Ok(f64::INFINITY);
                     };
                     let found_cost = self.cost(objective, &found)?;
@@ -75,7 +75,7 @@ impl Grip<'_> {
                 if tried(left)? <= tried(right)? { high = right } else { low = left }
             }
         }
-        if let Some(settled) = self.settled(duration, by_interval)? {
+        if let Some(settled) = self.settled(duration)? {
             let cost = self.cost(objective, &settled)?;
             if best.as_ref().is_none_or(|best| cost < best.0) {
                 best = Some((cost, 0.0, settled));
@@ -98,7 +98,7 @@ impl Grip<'_> {
     }
 
     /// The least squeeze that closes within a time (s).
-    fn squeeze_within(&self, closing: f64, duration: f64, by_interval: bool) -> Result<Plan, GripError> {
+    fn squeeze_within(&self, closing: f64, duration: f64) -> Result<Plan, GripError> {
         let plan = |displacement: f64| Plan::squeeze(displacement, (displacement / closing).min(self.limits.speed));
         let (mut high, mut by) = self.limits.reach(self.contact.specimen());
         if let Some(limit) = self.limits.force {
@@ -113,7 +113,7 @@ impl Grip<'_> {
         if high <= 0.0 {
             return Err(self.no_squeeze(0.0, duration, by));
         }
-        let surplus = |displacement: f64| self.surplus(&plan(displacement), duration, by_interval);
+        let surplus = |displacement: f64| self.surplus(&plan(displacement), duration);
         if surplus(high)? < 0.0 {
             let reached = surplus(high)? + self.needed_force(high);
             return Err(self.no_squeeze(reached, duration, by));
@@ -122,7 +122,7 @@ impl Grip<'_> {
     }
 
     /// The least force that, kept until the time to close is over, holds from there; `None` if the limits have none.
-    fn settled(&self, duration: f64, by_interval: bool) -> Result<Option<Plan>, GripError> {
+    fn settled(&self, duration: f64) -> Result<Option<Plan>, GripError> {
         let (deepest, _) = self.limits.deepest(self.contact.specimen());
         // What cannot be simulated, since no displacement carries it, is beyond the limits as well.
         let plan = |force: f64| -> Option<Plan> {
@@ -133,7 +133,7 @@ impl Grip<'_> {
             (settling >= 0.0 && end.displacement <= deepest && self.limits.force.is_none_or(|limit| force <= limit))
                 .then_some(plan)
         };
-        let holds = |plan: &Plan| -> Result<bool, GripError> { Ok(self.surplus(plan, duration, by_interval)? >= 0.0) };
+        let holds = |plan: &Plan| -> Result<bool, GripError> { Ok(self.surplus(plan, duration)? >= 0.0) };
         let mut low = self.needed_force(deepest);
         let mut high = low;
         loop {
@@ -152,11 +152,11 @@ impl Grip<'_> {
     }
 
     /// Force at the end of a hold (or its bound of the level) less the one that is needed there, N.
-    fn surplus(&self, plan: &Plan, duration: f64, by_interval: bool) -> Result<f64, GripError> {
+    fn surplus(&self, plan: &Plan, duration: f64) -> Result<f64, GripError> {
         let program = plan.held(duration.min(ALWAYS));
         let ends = self.ends(&program)?;
         let end = ends.last().copied().unwrap_or_default();
-        let reserve = match self.level.filter(|_| by_interval) {
+        let reserve = match self.level {
             Some(level) => {
                 let error = self.predict(&program, vec![end.time])?.force_standard_error[0];
                 one_sided_factor(level, self.freedom()) * error
@@ -171,9 +171,8 @@ impl Grip<'_> {
     pub(super) fn assured_from(&self, least: f64, duration: f64) -> Result<Option<f64>, GripError> {
         let (deepest, _) = self.limits.reach(self.contact.specimen());
         let plan = |displacement: f64| Plan::squeeze(displacement, self.limits.speed);
-        let holds = |displacement: f64| -> Result<bool, GripError> {
-            Ok(self.surplus(&plan(displacement), duration, true)? >= 0.0)
-        };
+        let holds =
+            |displacement: f64| -> Result<bool, GripError> { Ok(self.surplus(&plan(displacement), duration)? >= 0.0) };
         if least >= deepest || !holds(deepest)? {
             return Ok(None);
         }
@@ -187,15 +186,12 @@ impl Grip<'_> {
 
     /// The same with the probability that a verdict has to have, where there is one.
     pub(super) fn at(&self, confidence: Option<f64>) -> Result<Self, GripError> {
-        let Some(confidence) = confidence else {
-            return Ok(self.clone());
-        };
-        check_confidence(confidence)?;
-        if self.material.uncertainty().is_none() {
+        confidence.map(check_confidence).transpose()?;
+        if confidence.is_some() && self.material.uncertainty().is_none() {
             return Err(GripError::NoIntervals);
         }
         Ok(Self {
-            level: Some(confidence),
+            level: confidence,
             ..self.clone()
         })
     }

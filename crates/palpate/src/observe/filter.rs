@@ -6,6 +6,7 @@
 //! that the standings z of the directions, N(0, 1) before the first reading, follow from the forces by a Kalman filter of a state that does
 //! not move (recursive least squares with a prior, Kalman 1960).
 
+use super::kept::kept;
 use super::{Kept, Normal, ObserveError, ObserverOptions};
 use crate::calibrate::Material;
 use crate::contact::RateDependence;
@@ -36,6 +37,7 @@ struct Correlation {
     square: f64,
     count: f64,
 }
+kept!(Correlation: last, product, square, count);
 
 impl Correlation {
     /// Takes a surprise in standard deviations; of how many readings each tells as much as one would without correlation.
@@ -188,13 +190,7 @@ impl ModelFilter {
         }
         self.standing.iter().chain(&self.covariance).for_each(|value| value.keep(into));
         (self.surprise, (self.last, self.displacement)).keep(into);
-        let Correlation {
-            last,
-            product,
-            square,
-            count,
-        } = self.correlation;
-        ((last, product), (square, count)).keep(into);
+        self.correlation.keep(into);
     }
 
     /// Reads it.
@@ -209,13 +205,7 @@ impl ModelFilter {
             *value = Kept::read(from)?;
         }
         (self.surprise, (self.last, self.displacement)) = Kept::read(from)?;
-        let ((last, product), (square, count)) = Kept::read(from)?;
-        self.correlation = Correlation {
-            last,
-            product,
-            square,
-            count,
-        };
+        self.correlation = Kept::read(from)?;
         Some(())
     }
 

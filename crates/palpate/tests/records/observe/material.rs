@@ -61,19 +61,21 @@ pub(super) fn material(stiffer: f64) -> palpate::calibrate::Material {
     .unwrap()
 }
 
-#[test]
-fn a_material_tells_the_excess_at_once_and_the_time_to_slip_early() {
-    let slip_after = 30.0;
-    let course = squeeze(slip_after);
-    // The exponent known as well as the material knows it.
+/// Observers of a contact that slips after a time, which know the exponent alike: from the hold alone, and with a material.
+fn without_and_with(material: palpate::calibrate::Material, slip_after: f64) -> [ObserverOptions; 2] {
     let plain = ObserverOptions {
         exponent_standard_error: 0.05,
         ..slipping_at(force_after(slip_after))
     };
-    let informed = ObserverOptions {
-        material: Some(material(1.03)),
-        ..plain.clone()
-    };
+    let material = Some(material);
+    [plain.clone(), ObserverOptions { material, ..plain }]
+}
+
+#[test]
+fn a_material_tells_the_excess_at_once_and_the_time_to_slip_early() {
+    let slip_after = 30.0;
+    let course = squeeze(slip_after);
+    let [plain, informed] = without_and_with(material(1.03), slip_after);
     let end = model().law.excess_after(0.133_032_479_302, 0.3);
     for after in [0.3, 3.0, 20.0] {
         let (mut inside, mut widths, seeds) = (0, [0.0; 2], repeats(12, 50));
@@ -115,14 +117,7 @@ fn a_material_tells_the_excess_at_once_and_the_time_to_slip_early() {
 fn intervals_contain_the_truth_under_noise_that_correlates() {
     let slip_after = 30.0;
     let course = squeeze(slip_after);
-    let plain = ObserverOptions {
-        exponent_standard_error: 0.05,
-        ..slipping_at(force_after(slip_after))
-    };
-    let informed = ObserverOptions {
-        material: Some(material(1.0)),
-        ..plain.clone()
-    };
+    let [plain, informed] = without_and_with(material(1.0), slip_after);
     let body = model().specimen;
     let place = body.contact_displacement(5e-3);
     let equilibrium = body.force(body.equilibrium_strain(place), place);
