@@ -13,6 +13,7 @@ use arrow_schema::{ArrowError, DataType};
 use arrow_select::concat::concat;
 use numpy::PyArrayMethods;
 use palpate::number::significant;
+use palpate_report::document::{BudgetDocument, ContributionDocument};
 use palpate_report::result::{PARAMETER_COLUMNS, ParameterColumn, ParameterRow};
 use pyo3::IntoPyObjectExt;
 use pyo3::exceptions::{PyKeyError, PyRuntimeError, PyTypeError};
@@ -103,6 +104,29 @@ pub(crate) fn parameter_columns(rows: &[ParameterRow]) -> Vec<(&'static str, Arr
         ParameterColumn::Flag(of) => Column::column(rows.iter().map(of)),
     };
     PARAMETER_COLUMNS.iter().map(|(name, of)| (*name, column(*of))).collect()
+}
+
+/// The columns of uncertainty budgets: a row for each input quantity of each result.
+pub(crate) fn budget_columns(budgets: &[BudgetDocument]) -> Vec<(&'static str, ArrayRef)> {
+    let rows = budgets.iter().flat_map(|budget| budget.contributions.iter().map(move |found| (budget, found)));
+    let rows: Vec<(&BudgetDocument, &ContributionDocument)> = rows.collect();
+    columns!(rows, row =>
+        hold = row.0.hold,
+        law = row.0.law.clone(),
+        parameter = row.0.name.clone(),
+        unit = row.0.unit.clone(),
+        value = row.0.value,
+        combined_standard_uncertainty = row.0.combined_standard_uncertainty,
+        expanded_uncertainty = row.0.expanded_uncertainty,
+        input = row.1.input.clone(),
+        input_unit = row.1.unit.clone(),
+        r#type = row.1.evaluation.clone(),
+        distribution = row.1.distribution.clone(),
+        standard_uncertainty = row.1.standard_uncertainty,
+        sensitivity = row.1.sensitivity,
+        contribution = row.1.contribution,
+        share = row.1.share,
+    )
 }
 
 /// Rows that a notebook shows of each end of a table.

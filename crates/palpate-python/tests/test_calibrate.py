@@ -264,6 +264,29 @@ def test_profile_intervals_stand_beside_the_others(record: palpate.Record) -> No
     assert "profile_low" not in polars.DataFrame(record.calibrate(alternatives=[]).parameter_table).columns
 
 
+def test_an_instrument_gives_budgets(record: palpate.Record) -> None:
+    ball = {"shape": "ball", "radius": "35 mm"}
+    instrument = {"force_gain": "1 %", "radius": {"standard": "0.1 mm", "type": "A", "freedom": 4}}
+    test = {"specimen": ball, "contact": {"touch": "as recorded"}, "instrument": instrument}
+    calibration = record.calibrate(test=test, alternatives=[])
+    budgets = polars.DataFrame(calibration.budgets)
+    modulus = budgets.filter(polars.col("parameter") == "modulus_pa")
+    assert modulus["input"].to_list() == ["scatter of the samples", "gain of the force", "radius"]
+    assert modulus["type"].to_list() == ["A", "B", "A"]
+    # E is proportional to the force: c u = E 0.01/√3.
+    gain = modulus["contribution"][1] / modulus["value"][1]
+    assert abs(gain - 0.01 / np.sqrt(3)) < 1e-6
+    error = calibration.material.estimates["modulus_pa"].standard_error
+    assert error is not None and abs(np.hypot.reduce(modulus["contribution"]) / error - 1) < 1e-9
+    assert calibration.to_dict()["laws"][0]["budgets"][0]["type_b_standard_uncertainty"] > 0
+    material = calibration.material
+    assert pickle.loads(pickle.dumps(material)) == material and "[[calibration.systematic]]" in material.to_toml()
+    analysis = record.analyze(test=test)
+    strains = polars.DataFrame(analysis.budgets).filter(polars.col("parameter") == "equilibrium")
+    assert set(strains["hold"]) == {1, 2, 3, 4, 5} and strains["combined_standard_uncertainty"].min() > 0
+    assert len(record.calibrate(alternatives=[]).budgets) == 0
+
+
 def test_all_of_it_comes_back(calibration: palpate.Calibration, material: palpate.Material) -> None:
     prediction = material.predict(SQUEEZE)
     for thing in (calibration, material, prediction):

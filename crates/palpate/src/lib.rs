@@ -22,6 +22,8 @@
 //! | [`contact`] | the body, its layers and its contact, equations (7) and (11) |
 //! | [`simulate`] | the force under a motion of the jaw |
 //! | [`batch`] | thousands of contacts at once |
+//! | [`budget`] | uncertainty budgets (JCGM 100 and 101) |
+//! | [`instrument`] | the uncertainty of the instrument and of the body |
 //! | [`analysis`] | the complete analysis of one record, with findings |
 //! | [`observe`] | a contact observed tick by tick: holds, their equilibrium, time to slip |
 //!
@@ -86,6 +88,8 @@ pub mod analysis;
 #[cfg(feature = "std")]
 pub mod batch;
 #[cfg(feature = "std")]
+pub mod budget;
+#[cfg(feature = "std")]
 pub mod calibrate;
 pub mod contact;
 #[cfg(feature = "std")]
@@ -94,6 +98,8 @@ pub mod fit;
 pub mod forecast;
 #[cfg(feature = "std")]
 pub mod grip;
+#[cfg(feature = "std")]
+pub mod instrument;
 pub mod latency;
 #[cfg(feature = "std")]
 pub mod laws;

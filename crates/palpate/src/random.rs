@@ -49,6 +49,12 @@ impl Rng {
         let (radius, angle) = (self.uniform(), self.uniform());
         (-2.0 * radius.ln()).sqrt() * (std::f64::consts::TAU * angle).cos()
     }
+
+    /// The next number of Student's distribution with this many degrees of freedom (Bailey 1994, the polar method).
+    pub fn student(&mut self, freedom: f64) -> f64 {
+        let (radius, angle) = (self.uniform(), self.uniform());
+        (freedom * (radius.powf(-2.0 / freedom) - 1.0)).sqrt() * (std::f64::consts::TAU * angle).cos()
+    }
 }
 
 /// The numbers 0 … len − 1 in a shuffled order that takes no memory: any place of it is computed on its own.

@@ -45,6 +45,12 @@ pub enum Dimension {
     Acceleration,
     /// Torque in N m.
     Torque,
+    /// Share of a quantity.
+    Share,
+    /// Difference of temperature in K.
+    Temperature,
+    /// Relative change per kelvin, 1/K.
+    PerKelvin,
 }
 
 impl Dimension {
@@ -65,6 +71,9 @@ impl Dimension {
             Self::Mass => ("mass", "150 g", MASS),
             Self::Acceleration => ("acceleration", "2 m/s^2", ACCELERATION),
             Self::Torque => ("torque", "5 N mm", TORQUE),
+            Self::Share => ("share", "0.5 %", SHARE),
+            Self::Temperature => ("difference of temperature", "0.5 K", &[("K", 1.0), ("mK", 1e-3)]),
+            Self::PerKelvin => ("relative change per kelvin", "-0.4 %/K", PER_KELVIN),
         }
     }
 
@@ -205,6 +214,8 @@ const TORQUE: &[(&str, f64)] = &[
     ("mNm", 1e-3),
     ("mN·m", 1e-3),
 ];
+const SHARE: &[(&str, f64)] = &[("1", 1.0), ("%", 1e-2), ("‰", 1e-3), ("ppm", 1e-6)];
+const PER_KELVIN: &[(&str, f64)] = &[("1/K", 1.0), ("/K", 1.0), ("%/K", 1e-2), ("ppm/K", 1e-6)];
 const FREQUENCY: &[(&str, f64)] = &[("Hz", 1.0), ("kHz", 1e3), ("/s", 1.0), ("1/s", 1.0)];
 
 /// Why a quantity could not be read.

@@ -9,6 +9,7 @@
 //! | folder | what |
 //! |---|---|
 //! | `text/` | a description as it is written: quantities, places, what is wrong in plain words |
+//! | `uncertainty.rs` | names of distributions and of evaluations |
 //! | `body/` | the tables of a body and its contact, and the contact that they make |
 //! | `test/` | a test: its record, its body, how to evaluate it ([`TestDescription`]); known machines ([`machines`]) |
 //! | `material/` | a calibrated body with its intervals ([`MaterialFile`]), read and written |
@@ -23,6 +24,7 @@ mod schema;
 mod sweep;
 mod test;
 mod text;
+mod uncertainty;
 
 pub use material::{MATERIAL_VERSION, MaterialFile, MaterialOrigin, parse_material, read_material};
 pub use protocol::{

@@ -12,7 +12,7 @@ use crate::errors::{PalpateError, refused_plainly};
 use crate::html::framed;
 use crate::materials::material::{Material, as_toml};
 use crate::shown::shown;
-use crate::table::{Column, Table, columns, parameter_columns};
+use crate::table::{Column, Table, budget_columns, columns, parameter_columns};
 use crate::work::{job, plain, printed};
 
 /// One set of parameters for a whole record, ramps and holds alike: a material, the residuals of its law, and its alternatives.
@@ -136,6 +136,8 @@ shown! {
             }
             Table::of(columns)
         },
+        /// Uncertainty budgets (JCGM 100) of the parameters of the law that was requested, with the columns of `Analysis.budgets`.
+        budgets: PyResult<Table> = Table::of(budget_columns(&self.requested().budgets)),
     }
 
     fn __len__(&self) -> usize {

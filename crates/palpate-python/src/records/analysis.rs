@@ -24,7 +24,7 @@ use crate::html::framed;
 use crate::pickles::{Made, Piece, Pieces, made_again, unpickled};
 use crate::records::kept::Kept;
 use crate::shown::shown;
-use crate::table::{Column, Table, columns, parameter_columns};
+use crate::table::{Column, Table, budget_columns, columns, parameter_columns};
 use crate::work::{at_length, job, plain, printed, writing};
 
 /// Something about a record, or a hold, that its numbers alone do not tell.
@@ -186,6 +186,11 @@ shown! {
         /// Every parameter of every law on every hold, a row each: ``record``, ``hold``, ``law``, ``parameter``, ``unit``, ``value``,
         /// ``standard_error``, ``low``, ``high``, ``termination``, ``white_standard_error``, ``role``, ``domain``, ``recommended``.
         parameter_table: PyResult<Table> = Table::of(parameter_columns(&self.document.parameter_rows())),
+        /// Uncertainty budgets (JCGM 100) of the parameters of the law of the record, a row for each input quantity of each: ``hold``, ``law``,
+        /// ``parameter``, ``unit``, ``value``, ``combined_standard_uncertainty``, ``expanded_uncertainty``, ``input``, ``input_unit``, ``type``,
+        /// ``distribution``, ``standard_uncertainty``, ``sensitivity``, ``contribution``, ``share``; empty where the test description has no
+        /// ``[instrument]``.
+        budgets: PyResult<Table> = Table::of(budget_columns(&self.document.budgets)),
         /// The law to use for the record as a whole, as ``law=`` takes it; None where none can be recommended.
         law: Option<String> = self.document.answer.law.clone(),
         /// Which law to use, in a sentence.

@@ -4,13 +4,16 @@ use palpate::analysis::{Analysis, HoldAnalysis, JointAnalysis, Overlay, RateBias
 use palpate::fit::{Estimate, ExponentChoice, LatencyFit};
 use palpate::segment::{After, Segment};
 
+use super::budget::BudgetDocument;
 use super::comparison::HoldComparisonDocument;
 use super::fit::FitDocument;
 use super::settings::SettingsDocument;
 use super::signals::{CorrectionDocument, SignalsDocument, TouchDocument};
 use super::software::Software;
 use crate::page::Finding;
-use crate::result::{Answer, ComparedRecord, Input, ParameterDocument, ParameterRow, mode_word, word};
+use crate::result::{
+    Answer, ComparedRecord, Input, ParameterDocument, ParameterRow, budgets_of_analysis, mode_word, word,
+};
 
 documents! {
     /// A phase of the record.
@@ -183,11 +186,13 @@ documents! {
     #[schemars(title = "palpate.analysis/1")]
     AnalysisDocument(analysis: &Analysis, input: Input) with {
         let time = analysis.record.time();
+        let compared = ComparedRecord::of_analysis(analysis, input.clone());
+        let confidence = analysis.options.fit.confidence;
     } {
         /// `palpate.analysis/1`.
         schema: String = "palpate.analysis/1".to_owned(),
         /// Which law to use for the record and for each hold, with its formula and its parameters.
-        answer: Answer = Answer::new(&ComparedRecord::of_analysis(analysis, input.clone())),
+        answer: Answer = Answer::new(&compared),
         /// The record.
         input: Input = input,
         /// Settings of the analysis.
@@ -208,6 +213,12 @@ documents! {
         tables: Option<TablesDocument> = tables(analysis),
         /// One law for several holds; empty where fewer than two holds gave strains.
         joint: Vec<JointDocument> = analysis.across.joint.iter().map(JointDocument::new).collect(),
+        /// Uncertainty budgets of the parameters of the law of the record on every hold, and of an estimated modulus; empty where the test
+        /// description has no `[instrument]`.
+        budgets: Vec<BudgetDocument> = budgets_of_analysis(analysis, &compared)
+            .iter()
+            .map(|result| BudgetDocument::new(result, confidence))
+            .collect(),
         /// The simulated record.
         overlay: Option<OverlayDocument> = analysis.overlay.as_ref().map(OverlayDocument::new),
         /// Findings about the record.

@@ -4,9 +4,11 @@ use palpate::analysis::HoldoutError;
 use palpate::calibrate::{CalibrateError, Calibration, Candidate, ParameterProfile};
 use palpate::fit::Interval;
 
+use super::budget::BudgetDocument;
 use super::software::Software;
 use crate::result::{
-    CalibratedRecord, Input, ParameterDocument, ParameterRow, formula_of_material, parameters_of_material, word,
+    CalibratedRecord, Input, ParameterDocument, ParameterRow, budgets_of_material, formula_of_material,
+    parameters_of_material, word,
 };
 
 documents! {
@@ -52,6 +54,8 @@ documents! {
         let parameters =
             good.iter().flat_map(|made| parameters_of_material(&made.material, made.termination.is_good()));
         let uncertainty = good.and_then(|made| made.material.uncertainty());
+        let budgets = good.map_or_else(Vec::new, |made| budgets_of_material(&made.material));
+        let confidence = uncertainty.map_or(0.95, |uncertainty| uncertainty.confidence);
     } {
         /// Name of the law.
         law: String = candidate.to_string(),
@@ -72,6 +76,8 @@ documents! {
             parameters.map(|parameter| CalibratedParameterDocument::new(parameter, profiles)).collect(),
         /// Covariance of the logarithms of the parameters; `null` where the record does not determine one.
         log_covariance: Option<Vec<Vec<f64>>> = uncertainty.map(|uncertainty| uncertainty.covariance.clone()),
+        /// Uncertainty budgets of the parameters; empty where the test description has no `[instrument]`.
+        budgets: Vec<BudgetDocument> = budgets.iter().map(|result| BudgetDocument::new(result, confidence)).collect(),
         /// Why the search ended; `null` where none began.
         termination: Option<String> = good.map(|made| word(made.termination)),
         /// Why there is no calibration.

@@ -4,6 +4,7 @@
 //! |---|---|
 //! | `analysis.rs` | `palpate.analysis/1`, one analysed record |
 //! | `fit.rs` | one fit inside it |
+//! | `budget.rs` | uncertainty budgets inside others |
 //! | `settings.rs` | the resolved settings |
 //! | `signals.rs` | the columns of a record, their corrections, first touch |
 //! | `calibration.rs` | `palpate.calibration/1`, laws calibrated on a whole record |
@@ -44,6 +45,7 @@ macro_rules! documents {
 }
 
 mod analysis;
+mod budget;
 mod calibration;
 mod comparison;
 mod finding;
@@ -56,6 +58,7 @@ mod software;
 mod watch;
 
 pub use analysis::{AnalysisDocument, HoldDocument};
+pub use budget::{BudgetDocument, ContributionDocument};
 pub use calibration::{CalibratedLawDocument, CalibrationDocument};
 pub use comparison::{
     ComparisonDocument, ComparisonSettingsDocument, HoldComparisonDocument, LawDocument, VerdictDocument,

@@ -102,10 +102,16 @@ impl CalibratedRecord {
                 remarks.push("The record holds one displacement: only the ramps determine the dependence of v on strain, so that an error of the law there biases it. Holds at several displacements would determine it.".to_owned());
             }
             remarks.extend(remarks_of(chosen));
+            if self.data.instrument().is_empty() {
+                remarks.push(EXACT.to_owned());
+            }
         }
         remarks
     }
 }
+
+/// The remark where no instrument is described.
+const EXACT: &str = "The intervals are those of the scatter of the samples (Type A): load cell, displacement, first touch and the sizes of the body count as exact. [instrument] in the test description states their uncertainty.";
 
 fn remarks_of(made: &Calibration) -> Vec<String> {
     let mut remarks = Vec::new();

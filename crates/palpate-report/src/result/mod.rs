@@ -10,11 +10,13 @@
 //! | `answer.rs` | which law for a record and its holds |
 //! | `compared.rs` | laws compared on the holds of a record |
 //! | `calibrated.rs` | laws calibrated on a record, with remarks |
+//! | `budget.rs` | uncertainty budgets of results |
 //! | `gripped.rs`, `grip_sentences.rs` | a body in a gripper with an answer; the answer in sentences |
 //! | `reproduced.rs` | the paper's study |
 //! | `words.rs` | the words for what the library says |
 
 mod answer;
+mod budget;
 mod calibrated;
 mod compared;
 mod grip_sentences;
@@ -28,6 +30,7 @@ pub use crate::page::Check;
 pub use crate::word::word;
 pub(crate) use answer::law_of_record;
 pub use answer::{Answer, HoldAnswer, formula};
+pub use budget::{BudgetedResult, budgets_of_analysis, budgets_of_material};
 pub use calibrated::{CalibratedRecord, formula_of_material};
 pub use compared::{ComparedHold, ComparedRecord, LeftOut, Quantity};
 pub(crate) use grip_sentences::lasted;

@@ -7,6 +7,7 @@
 //! | `bundle.rs`, `grid.rs`, `findings.rs` | the files of a study, in memory until all exist; figures of many panels, panels of many figures; what was found, gathered over the holds |
 //! | `simulate/` | simulated contacts, waves, sweeps |
 //! | `answer.rs` | which law to use, before everything else |
+//! | `budget.rs` | uncertainty budgets |
 //! | `calibration/` | a whole record calibrated, and what the material predicts |
 //! | `grip/` | a planned grip |
 //! | `comparison/` | laws compared on the holds of records |
@@ -14,6 +15,7 @@
 //! | `reproduction/` | the paper's study |
 
 mod answer;
+mod budget;
 mod bundle;
 mod calibration;
 mod comparison;

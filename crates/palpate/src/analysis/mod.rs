@@ -11,8 +11,10 @@
 //! | `prepare/` | the record corrected, cut and zero at first touch, with findings on its columns |
 //! | `holds/` | one hold: signal, fits, findings |
 //! | `together/` | several holds: joint laws, trends, modulus, overlay |
+//! | `effects.rs` | what the uncertainty of the instrument and of the body adds to the parameters |
 //! | `pipeline.rs` | the order of the steps |
 
+mod effects;
 mod error;
 mod finding;
 mod holds;
@@ -30,4 +32,6 @@ pub(crate) use prepare::measured_motion;
 pub use prepare::{
     ClockSkew, Corrected, Prepared, clock_skew, corrected, corrected_watched, prepared, suspicious_signs,
 };
-pub use together::{Across, JointAnalysis, JointHolds, LevelAgreement, ModulusSource, Overlay, Trend};
+pub use together::{
+    Across, EstimatedModulus, JointAnalysis, JointHolds, LevelAgreement, ModulusSource, Overlay, Trend,
+};

@@ -5,6 +5,7 @@ use serde::{Deserialize, Serialize};
 use crate::contact::{Layers, LayersError, Shape, Sides};
 use crate::fit::{ExponentChoice, FitOptions};
 use crate::forecast::CompareOptions;
+use crate::instrument::Instrument;
 use crate::record::CorrectionOptions;
 use crate::segment::{ContactChoice, GivenHold, SegmentOptions};
 use crate::simulate::Separation;
@@ -52,6 +53,8 @@ pub struct AnalysisOptions {
     pub geometry: Option<Geometry>,
     /// How phases are found.
     pub segment: SegmentOptions,
+    /// Uncertainty of the instrument and of the body; empty: they count as exact.
+    pub instrument: Instrument,
     /// Corrections of the record that are made only on request.
     pub corrections: CorrectionOptions,
     /// Holds with given limits; where there are any, no others are sought.
@@ -96,6 +99,7 @@ impl Default for AnalysisOptions {
         Self {
             geometry: None,
             segment: SegmentOptions::default(),
+            instrument: Instrument::default(),
             corrections: CorrectionOptions::default(),
             given_holds: Vec::new(),
             touch: ContactChoice::AsRecorded,

@@ -1,10 +1,15 @@
 //! The order of the steps.
 
+use super::effects::Causes;
 use super::holds::{HoldAnalysis, complete_hold, fit_exponents, prepare_hold};
 use super::prepare::{ClockSkew, Prepared, corrected_watched, signal_findings};
-use super::together::{Across, ModulusSource, Overlay, across, changing_rate, implied_modulus, overlay};
+use super::together::{
+    Across, EstimatedModulus, ImpliedModulus, ModulusSource, Overlay, across, changing_rate, implied_modulus, overlay,
+};
 use super::{AnalysisError, AnalysisOptions, Finding};
+use crate::budget::{Budget, Contribution, InputQuantity};
 use crate::contact::{Specimen, SpecimenError};
+use crate::fit::{ErrorParts, Fit, Parameter};
 use crate::number::significant;
 use crate::record::{Record, SignalReport};
 use crate::segment::{ContactPoint, Phase, Segmentation, ramps_before};
@@ -30,6 +35,11 @@ pub struct Analysis {
     pub specimen: Option<Specimen>,
     /// Where the modulus comes from.
     pub modulus_source: Option<ModulusSource>,
+    /// The modulus with its uncertainty, where it was estimated.
+    pub modulus: Option<EstimatedModulus>,
+    /// Input quantities of the budgets, in the order of the effects in [`ErrorParts`](crate::fit::ErrorParts): those of the instrument, then first touch and modulus
+    /// where they were estimated. Empty where no instrument is described.
+    pub inputs: Vec<InputQuantity>,
     /// Every hold.
     pub holds: Vec<HoldAnalysis>,
     /// Results over several holds.
@@ -38,6 +48,32 @@ pub struct Analysis {
     pub overlay: Option<Overlay>,
     /// What to know about the record as a whole.
     pub findings: Vec<Finding>,
+}
+
+impl Analysis {
+    /// The budget of a parameter of a fit to one of the holds; `None` where no instrument is described, and for a parameter that the data do not
+    /// determine.
+    #[must_use]
+    pub fn budget(&self, fit: &Fit, parameter: &Parameter) -> Option<Budget> {
+        let freedom = fit.uncertainty.as_ref()?.freedom;
+        self.budget_of(parameter.estimate.value, parameter.parts.as_ref()?, freedom)
+    }
+
+    /// The budget of the modulus that the equilibrium forces imply.
+    #[must_use]
+    pub fn budget_of_modulus(&self) -> Option<Budget> {
+        let modulus = self.modulus.as_ref()?;
+        self.budget_of(modulus.estimate.value, modulus.parts.as_ref()?, f64::INFINITY)
+    }
+
+    fn budget_of(&self, value: f64, parts: &ErrorParts, freedom: f64) -> Option<Budget> {
+        let inputs = self.inputs.iter().zip(&parts.effects);
+        let others = inputs.filter(|(_, effect)| **effect != 0.0).map(|(input, effect)| Contribution {
+            input: input.clone(),
+            effect: *effect,
+        });
+        Some(Budget::of_estimate(value, parts.scatter?, freedom, others))
+    }
 }
 
 /// Root mean square error of an overlay, as a share of the largest force, from which on it is called poor.
@@ -86,7 +122,21 @@ pub fn examine(record: &Record, options: &AnalysisOptions, watch: &mut dyn Watch
         contact,
     } = prepared;
     hear("estimating the modulus")?;
-    let (specimen, modulus_source) = specimen(&record, &segmentation, options, &mut findings)?;
+    let (specimen, implied) = specimen(&record, &segmentation, options, &mut findings)?.unzip();
+    let implied = implied.flatten();
+    let modulus_source = specimen.as_ref().map(|_| match implied {
+        Some(_) => ModulusSource::Estimated,
+        None => ModulusSource::Given,
+    });
+    let causes = Causes::new(options, &contact, specimen.as_ref(), implied.as_ref());
+    let modulus = implied.as_ref().map(|implied| match &causes {
+        Some(causes) => causes.of_modulus(implied),
+        None => implied.estimate(),
+    });
+    findings.extend(modulus.iter().map(|modulus| Finding::ModulusEstimated {
+        modulus: modulus.estimate.value,
+        standard_error: modulus.estimate.standard_error,
+    }));
     let segments = &segmentation.segments;
     let held = (0..segments.len()).filter(|index| segments[*index].phase == Phase::Hold);
     let (mut holds, ramps): (Vec<HoldAnalysis>, Vec<Option<usize>>) = held
@@ -114,7 +164,13 @@ pub fn examine(record: &Record, options: &AnalysisOptions, watch: &mut dyn Watch
     if let Some(relative) = overlay.as_ref().map(|overlay| overlay.relative).filter(|relative| *relative > POOR) {
         findings.push(Finding::OverlayPoor { relative });
     }
+    // What holds have in common is no difference between them: all comparisons come first.
+    if let Some(causes) = &causes {
+        holds.iter_mut().for_each(|hold| causes.add_to(hold));
+    }
     Ok(Analysis {
+        inputs: causes.map_or_else(Vec::new, |causes| causes.inputs),
+        modulus,
         record,
         signals,
         skew,
@@ -136,9 +192,9 @@ fn specimen(
     segmentation: &Segmentation,
     options: &AnalysisOptions,
     findings: &mut Vec<Finding>,
-) -> Result<(Option<Specimen>, Option<ModulusSource>), SpecimenError> {
+) -> Result<Option<(Specimen, Option<ImpliedModulus>)>, SpecimenError> {
     let Some(geometry) = options.geometry.as_ref().filter(|_| record.displacement().is_some()) else {
-        return Ok((None, None));
+        return Ok(None);
     };
     let implied = implied_modulus(record, segmentation, geometry, options);
     match (geometry.modulus, implied) {
@@ -150,18 +206,14 @@ fn specimen(
                     implied: implied.value,
                 });
             }
-            Ok((Some(specimen), Some(ModulusSource::Given)))
+            Ok(Some((specimen, None)))
         }
         (None, Some(implied)) => {
-            findings.push(Finding::ModulusEstimated {
-                modulus: implied.value,
-                standard_error: implied.standard_error,
-            });
             let specimen = Specimen::new(geometry.shape.clone(), implied.value, geometry.sides)?;
-            Ok((Some(specimen), Some(ModulusSource::Estimated)))
+            Ok(Some((specimen, Some(implied))))
         }
         // Validates the geometry even where no modulus can be determined.
-        (None, None) => Specimen::new(geometry.shape.clone(), 1.0, geometry.sides).map(|_| (None, None)),
+        (None, None) => Specimen::new(geometry.shape.clone(), 1.0, geometry.sides).map(|_| None),
     }
 }
 

@@ -3,6 +3,7 @@
 use super::CalibrateError;
 use crate::analysis::{AnalysisOptions, Geometry, Prepared, measured_motion, prepared};
 use crate::contact::{Specimen, SpecimenError};
+use crate::instrument::Instrument;
 use crate::record::Record;
 use crate::simulate::{MeasuredMotion, Motion, Separation};
 
@@ -14,6 +15,8 @@ pub struct CalibrationData {
     motion: Motion,
     /// How the motion was measured; `None` where it is exact.
     measured: Option<MeasuredMotion>,
+    /// The uncertainty of the instrument and of the body.
+    instrument: Instrument,
     times: Vec<f64>,
     forces: Vec<f64>,
     /// Samples that are fitted; the rest is held out.
@@ -93,6 +96,7 @@ impl CalibrationData {
             separation,
             motion,
             measured: None,
+            instrument: Instrument::default(),
             times,
             forces,
             samples,
@@ -106,7 +110,9 @@ impl CalibrationData {
     pub fn of_record(record: &Record, options: &AnalysisOptions) -> Result<Self, CalibrateError> {
         let geometry = options.geometry.clone().ok_or(CalibrateError::NoGeometry)?;
         let Prepared {
-            record, segmentation, ..
+            record,
+            segmentation,
+            contact,
         } = prepared(record, options)?;
         let body = Specimen::new(geometry.shape.clone(), 1.0, geometry.sides)?;
         let measured = measured_motion(&record, &segmentation, &body, options.separation)
@@ -120,8 +126,15 @@ impl CalibrationData {
         let motion = measured.motion.clone();
         Ok(Self {
             measured: Some(measured),
+            instrument: options.instrument.with_touch(contact.displacement_error),
             ..Self::new(geometry, options.separation, motion, times, forces, &held)?
         })
+    }
+
+    /// The same with the uncertainty of the instrument and of the body.
+    #[must_use]
+    pub fn with_instrument(self, instrument: Instrument) -> Self {
+        Self { instrument, ..self }
     }
 
     /// The same, fitted up to a time (s) and predicted from there on.
@@ -170,6 +183,24 @@ impl CalibrationData {
     /// How the motion was measured; `None` where it is exact.
     pub(super) fn measured(&self) -> Option<&MeasuredMotion> {
         self.measured.as_ref()
+    }
+
+    /// The uncertainty of the instrument and of the body.
+    #[must_use]
+    pub fn instrument(&self) -> &Instrument {
+        &self.instrument
+    }
+
+    /// The measured force at a time, N: straight between the samples.
+    pub(super) fn force_at(&self, time: f64) -> f64 {
+        let after = self.times.partition_point(|sample| *sample < time);
+        match (after.checked_sub(1), self.times.get(after)) {
+            (Some(before), Some(next)) => {
+                let share = (time - self.times[before]) / (next - self.times[before]);
+                self.forces[before] + share * (self.forces[after] - self.forces[before])
+            }
+            (before, _) => self.forces[before.unwrap_or(0)],
+        }
     }
 
     /// Times of all samples, s.

@@ -4,15 +4,16 @@ use super::displacement::from_displacement;
 use super::prepared::Prepared;
 use super::problem::Problem;
 use super::search::search;
+use super::systematic::systematic_effects;
 use super::{
     CalibrateError, CalibrationData, CalibrationRange, Candidate, Material, MaterialParameter, MaterialParts,
-    MaterialUncertainty,
+    MaterialUncertainty, SystematicEffect,
 };
 use crate::analysis::HoldoutError;
 use crate::fit::{Assessed, Estimate, NoiseModel, Scale, Termination};
 use crate::forecast::{Criteria, criteria};
 use crate::simulate::{Motion, simulate_force};
-use crate::statistics::rms;
+use crate::statistics::{normal_factor, rms};
 use crate::watch::{Stages, Watch};
 
 /// Distance from the best value, as a logarithm, beyond which an end counts as open: a factor of a million.
@@ -129,11 +130,20 @@ pub fn calibrate(
         other => other,
     };
     let gradients = gradients(&prepared, &found.theta, &open);
+    let systematic = match &jacobian {
+        Some(jacobian) => {
+            let columns: Vec<Vec<f64>> = open.iter().map(|i| jacobian[*i].clone()).collect();
+            systematic_effects(&problem, data, &found, (&columns, &gradients), &mut stages)?
+        }
+        None => Vec::new(),
+    };
     let values = prepared.values(&found.theta);
     let is_found = termination == Termination::Converged;
     let estimate = |index: usize, name: &str| match &assessed {
         Some(assessed) if is_found && !Material::is_given(candidate, name) => {
+            let of_instrument: f64 = systematic.iter().map(|effect| (values[index] * effect.logs[index]).powi(2)).sum();
             let estimate = assessed.estimate(values[index], &gradients[index], Scale::Log);
+            let estimate = estimate.beside(of_instrument, normal_factor(confidence));
             match estimate.interval {
                 Some((_, high)) if (high / values[index]).ln() < FARTHEST => estimate,
                 _ => Estimate::fixed(values[index]),
@@ -153,10 +163,17 @@ pub fn calibrate(
         .collect();
     let uncertainty = assessed.as_ref().filter(|_| is_found).and_then(|assessed| {
         let uncertainty = assessed.uncertainty.as_ref()?;
+        let mut covariance = transformed(&uncertainty.covariance, &gradients);
+        for SystematicEffect { logs, .. } in &systematic {
+            for (row, a) in covariance.iter_mut().zip(logs) {
+                row.iter_mut().zip(logs).for_each(|(entry, b)| *entry += a * b);
+            }
+        }
         Some(MaterialUncertainty {
             confidence,
             freedom: uncertainty.freedom,
-            covariance: transformed(&uncertainty.covariance, &gradients),
+            covariance,
+            systematic: systematic.clone(),
         })
     });
     let noise = assessed.as_ref().map_or(NoiseModel::White, |assessed| assessed.noise);

@@ -3,6 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::{Candidate, EquilibriumLaw, MaterialError};
+use crate::budget::{Budget, Contribution, InputQuantity};
 use crate::contact::{Equilibrium, Layers, Shape, Sides, Specimen};
 use crate::fit::Estimate;
 use crate::latency::LatencyLaw;
@@ -52,6 +53,16 @@ pub struct MaterialParameter {
     pub estimate: Estimate,
 }
 
+/// What one input quantity of the instrument or of the body changes: an error that the whole record has in common.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct SystematicEffect {
+    /// The input quantity.
+    pub input: InputQuantity,
+    /// Change of the logarithm of each parameter, then of each [dimension](crate::contact::Shape::dimensions) of the body, by one standard
+    /// uncertainty of the input.
+    pub logs: Vec<f64>,
+}
+
 /// Joint uncertainty of the parameters of a material.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct MaterialUncertainty {
@@ -59,8 +70,11 @@ pub struct MaterialUncertainty {
     pub confidence: f64,
     /// Degrees of freedom of the residual variance.
     pub freedom: f64,
-    /// Covariance of the logarithms of the parameters, in their order; 0 for those that were given.
+    /// Covariance of the logarithms of the parameters, in their order, from all causes; 0 for those that were given.
     pub covariance: Vec<Vec<f64>>,
+    /// The part of it that comes from the instrument and from the body, by cause.
+    #[serde(default)]
+    pub systematic: Vec<SystematicEffect>,
 }
 
 /// Range of the test; predictions beyond it are extrapolations.
@@ -210,6 +224,10 @@ impl MaterialParts {
             let is_sound = is_square
                 && covariance.iter().flatten().all(|entry| entry.is_finite())
                 && (0..size).all(|index| covariance[index][index] >= 0.0)
+                && uncertainty.systematic.iter().all(|effect| {
+                    effect.logs.len() == size + self.body.shape.dimensions().len()
+                        && effect.logs.iter().all(|log| log.is_finite())
+                })
                 && uncertainty.confidence > 0.0
                 && uncertainty.confidence < 1.0
                 && uncertainty.freedom > 0.0;
@@ -327,11 +345,45 @@ impl Material {
         &self.contact
     }
 
-    /// The contact with each parameter times a factor; `None` where that makes none.
+    /// The contact with each parameter times a factor, and each dimension of the body if there are factors for them; `None` where that
+    /// makes none.
     #[must_use]
     pub fn contact_off(&self, factors: &[f64]) -> Option<Contact> {
-        let values: Vec<f64> = self.values().iter().zip(factors).map(|(value, factor)| value * factor).collect();
-        (values.len() == self.parameters().len()).then(|| self.body().contact(self.candidate(), &values))?
+        let (of_parameters, of_body) = factors.split_at_checked(self.parameters().len())?;
+        let values: Vec<f64> = self.values().iter().zip(of_parameters).map(|(value, factor)| value * factor).collect();
+        if of_body.is_empty() {
+            return self.body().contact(self.candidate(), &values);
+        }
+        let shape = &self.body().shape;
+        let dimensions = shape.dimensions().iter().zip(of_body);
+        let body = Body {
+            shape: dimensions.fold(shape.clone(), |shape, (dimension, by)| shape.with(*dimension, |value| value * by)),
+            ..self.body().clone()
+        };
+        body.contact(self.candidate(), &values)
+    }
+
+    /// The budget of a parameter: the scatter of the samples, then what the instrument and the body add; `None` for a parameter that was
+    /// given, and where the test does not determine one.
+    #[must_use]
+    pub fn budget(&self, name: &str) -> Option<Budget> {
+        let index = self.parameters().iter().position(|parameter| parameter.name == name)?;
+        let (value, uncertainty) = (self.parameters()[index].estimate.value, self.uncertainty()?);
+        let systematic = &uncertainty.systematic;
+        let of_instrument: f64 = systematic.iter().map(|effect| effect.logs[index].powi(2)).sum();
+        let scatter = value * (uncertainty.covariance[index][index] - of_instrument).max(0.0).sqrt();
+        if uncertainty.covariance[index][index] == 0.0 {
+            return None;
+        }
+        Some(Budget::of_estimate(
+            value,
+            scatter,
+            uncertainty.freedom,
+            systematic.iter().map(|effect| Contribution {
+                input: effect.input.clone(),
+                effect: value * effect.logs[index],
+            }),
+        ))
     }
 
     /// The values of the parameters.

@@ -9,6 +9,7 @@
 //! | `prepared.rs` | the parameters of a candidate that are searched | |
 //! | `search.rs`, `problem.rs` | a grid, then damped steps | |
 //! | `displacement.rs` | what the noise of the displacement adds to their errors | |
+//! | `systematic.rs` | what the uncertainty of the instrument and of the body adds |
 //! | `fit.rs` | from there to parameters with intervals | |
 //! | `profile.rs` | intervals by the profile of the residual sum of squares | |
 //! | `material.rs` | the body with its parameters | |
@@ -26,6 +27,7 @@ mod prepared;
 mod problem;
 mod profile;
 mod search;
+mod systematic;
 
 pub use candidate::{Candidate, EquilibriumLaw, RateLaw};
 pub use data::CalibrationData;
@@ -33,6 +35,7 @@ pub use error::{CalibrateError, MaterialError};
 pub use fit::{Calibration, calibrate};
 pub use material::{
     Body, CalibrationRange, Material, MaterialParameter, MaterialParts, MaterialUncertainty, MaterialUnit,
+    SystematicEffect,
 };
 pub use predict::{Extrapolation, Prediction};
 pub use profile::{ParameterProfile, profile};

@@ -246,10 +246,23 @@ impl Material {
         })
     }
 
-    /// Columns of a root of the covariance of the logarithms of the parameters: independent directions, each one standard deviation long.
+    /// Columns of a root of the covariance of the logarithms of the parameters, and of the dimensions of the body where these are
+    /// uncertain: independent directions, each one standard deviation long.
     #[must_use]
     pub fn directions(&self) -> Vec<Vec<f64>> {
-        self.uncertainty().map_or_else(Vec::new, |uncertainty| root(&uncertainty.covariance))
+        let Some(uncertainty) = self.uncertainty() else {
+            return Vec::new();
+        };
+        let mut joint = uncertainty.covariance.clone();
+        let known = joint.len();
+        let size = uncertainty.systematic.first().map_or(known, |effect| effect.logs.len());
+        joint.iter_mut().for_each(|row| row.resize(size, 0.0));
+        joint.resize(size, vec![0.0; size]);
+        for effect in &uncertainty.systematic {
+            let beyond = (0..size).flat_map(|i| (0..size).map(move |j| (i, j))).filter(|(i, j)| *i.max(j) >= known);
+            beyond.for_each(|(i, j)| joint[i][j] += effect.logs[i] * effect.logs[j]);
+        }
+        root(&joint)
     }
 
     fn extrapolations(&self, drive: Drive<'_>, course: &Trajectory) -> Vec<Extrapolation> {

@@ -1,7 +1,7 @@
 //! A candidate made ready for its data: the parameters that are searched, and the contact that they make.
 
-use super::{Body, CalibrateError, CalibrationData, Candidate, EquilibriumLaw, RateLaw};
-use crate::contact::{Equilibrium, Specimen};
+use super::{Body, CalibrateError, CalibrationData, Candidate, EquilibriumLaw, Material, MaterialUnit, RateLaw};
+use crate::contact::{Equilibrium, Shape, Specimen};
 use crate::laws::{ExponentChoice, Law};
 use crate::simulate::Contact;
 
@@ -119,6 +119,25 @@ impl Prepared {
             specimen,
             scales,
         })
+    }
+
+    /// The same searched parameters for a body of another shape; `None` where it is none.
+    pub(super) fn with_shape(&self, shape: Shape) -> Option<Self> {
+        let specimen = Specimen::new(shape.clone(), 1.0, self.body.sides).ok()?;
+        Some(Self {
+            body: Body {
+                shape,
+                ..self.body.clone()
+            },
+            specimen: specimen.with_equilibrium(self.specimen.equilibrium().clone()).ok()?,
+            ..self.clone()
+        })
+    }
+
+    /// Units of the parameters of the material, in their order.
+    pub(super) fn units(&self) -> Vec<MaterialUnit> {
+        let names = Material::names(self.candidate, self.body.levels.len());
+        names.into_iter().map(|(_, unit)| unit).collect()
     }
 
     /// How many parameters say what the equilibrium force is; they come first.

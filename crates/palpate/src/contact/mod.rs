@@ -41,7 +41,7 @@ pub(crate) use balance::{Layer, carried_at, share};
 pub use curve::{Curve, CurveError};
 pub use equilibrium::{Equilibrium, EquilibriumError};
 pub use layers::{Layers, LayersError};
-pub use shape::{Shape, Sides};
+pub use shape::{Shape, ShapeDimension, Sides};
 pub use specimen::{Specimen, SpecimenError};
 
 #[cfg(feature = "std")]

@@ -58,7 +58,81 @@ pub enum Shape {
     },
 }
 
+/// A length or an area that a shape is described by.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum ShapeDimension {
+    /// Radius of a ball, outer radius of a pad, m.
+    Radius,
+    /// Thickness of a pad, m.
+    Thickness,
+    /// Section of a prism, m².
+    Area,
+    /// Length of a prism, m.
+    Length,
+    /// Depth of a profile, m.
+    Depth,
+}
+
+impl ShapeDimension {
+    /// Its name in a description.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Radius => "radius",
+            Self::Thickness => "thickness",
+            Self::Area => "area",
+            Self::Length => "length",
+            Self::Depth => "depth",
+        }
+    }
+
+    /// Its SI unit.
+    #[must_use]
+    pub fn unit(self) -> &'static str {
+        if self == Self::Area { "m²" } else { "m" }
+    }
+}
+
 impl Shape {
+    /// What it is described by.
+    #[must_use]
+    pub fn dimensions(&self) -> &'static [ShapeDimension] {
+        match self {
+            Self::Ball { .. } => &[ShapeDimension::Radius],
+            Self::Pad { .. } => &[ShapeDimension::Radius, ShapeDimension::Thickness],
+            Self::Prism { .. } => &[ShapeDimension::Area, ShapeDimension::Length],
+            Self::Profile { .. } => &[ShapeDimension::Depth],
+        }
+    }
+
+    /// The value of one of its dimensions, to be changed.
+    fn dimension_mut(&mut self, dimension: ShapeDimension) -> Option<&mut f64> {
+        match (self, dimension) {
+            (Self::Ball { radius } | Self::Pad { radius, .. }, ShapeDimension::Radius) => Some(radius),
+            (Self::Pad { thickness, .. }, ShapeDimension::Thickness) => Some(thickness),
+            (Self::Prism { area, .. }, ShapeDimension::Area) => Some(area),
+            (Self::Prism { length, .. }, ShapeDimension::Length) => Some(length),
+            (Self::Profile { depth, .. }, ShapeDimension::Depth) => Some(depth),
+            _ => None,
+        }
+    }
+
+    /// The same shape with one of its dimensions put through `change`; unchanged where it has no such dimension.
+    #[must_use]
+    pub(crate) fn with(mut self, dimension: ShapeDimension, change: impl Fn(f64) -> f64) -> Self {
+        if let Some(value) = self.dimension_mut(dimension) {
+            *value = change(*value);
+        }
+        self
+    }
+
+    /// The value of one of its dimensions, in SI.
+    #[must_use]
+    pub fn dimension(&self, dimension: ShapeDimension) -> Option<f64> {
+        self.clone().dimension_mut(dimension).map(|value| *value)
+    }
+
     /// Distance from an undeformed contact to the plane that does not move, in m: the depth that is cut into layers.
     ///
     /// The radius of a ball; the thickness of a pad; the length of a prism, half of it when both ends move; what a profile says.

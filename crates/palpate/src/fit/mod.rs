@@ -55,7 +55,7 @@ pub use noise::{ModelCovariance, NoiseModel, Uncertainty};
 pub use options::{
     BootstrapOptions, ConstantChoice, FitOptions, IntervalMethod, LawOptions, Loss, NoiseChoice, SampleChoice,
 };
-pub use parameter::{Estimate, Interval, ParameterKind, ParameterName};
+pub use parameter::{ErrorParts, Estimate, Interval, ParameterKind, ParameterName};
 pub(crate) use problem::Condensed;
 pub use problem::RedundantTerm;
 use problem::{Model, ModelParameter, Sampled, build, condense, condense_to, redundant_terms, searched_name};

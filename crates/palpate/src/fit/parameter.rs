@@ -204,6 +204,47 @@ pub struct Estimate {
     pub interval: Option<(f64, f64)>,
 }
 
+impl Estimate {
+    /// The same with the uncertainty of another, independent cause in quadrature: `variance` in squares of its unit, and `factor` standard
+    /// deviations to either side of it inside the interval. An estimate without an error keeps none.
+    #[must_use]
+    pub(crate) fn beside(self, variance: f64, factor: f64) -> Self {
+        let by = factor * variance.sqrt();
+        let ends = |(low, high): (f64, f64)| {
+            if low > 0.0 && self.value > 0.0 {
+                // A parameter that cannot change sign.
+                let end = |end: f64| (end / self.value).ln().hypot(by / self.value);
+                (self.value * (-end(low)).exp(), self.value * end(high).exp())
+            } else {
+                (self.value - (self.value - low).hypot(by), self.value + (high - self.value).hypot(by))
+            }
+        };
+        Self {
+            value: self.value,
+            standard_error: self.standard_error.map(|error| error.hypot(variance.sqrt())),
+            white_standard_error: self.white_standard_error,
+            interval: self.interval.map(ends),
+        }
+    }
+}
+
+/// The causes of the error of a parameter where the instrument is described.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct ErrorParts {
+    /// Standard error from the scatter of the samples; `None` where the data do not determine the parameter.
+    pub scatter: Option<f64>,
+    /// Change of the parameter by one standard uncertainty of each input quantity of the instrument, in their order.
+    pub effects: Vec<f64>,
+}
+
+impl ErrorParts {
+    /// Σ of the squared effects.
+    #[must_use]
+    pub fn variance(&self) -> f64 {
+        self.effects.iter().map(|effect| effect * effect).sum()
+    }
+}
+
 /// An interval in JSON, which has no word for infinity.
 mod open_ends {
     use serde::{Deserialize, Deserializer, Serialize, Serializer};

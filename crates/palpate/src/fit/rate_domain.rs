@@ -160,6 +160,7 @@ impl Scaled {
             name: kind.into(),
             unit,
             estimate,
+            parts: None,
             role: match kind {
                 ParameterKind::Exponent if choice != ExponentChoice::Free => ParameterRole::Given,
                 ParameterKind::Amplitude | ParameterKind::RelativeRate => ParameterRole::Derived,

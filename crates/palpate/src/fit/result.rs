@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::{Estimate, IntervalMethod, NoiseModel, ParameterName, RedundantTerm, Uncertainty};
+use super::{ErrorParts, Estimate, IntervalMethod, NoiseModel, ParameterName, RedundantTerm, Uncertainty};
 use crate::laws::{Law, LawCurve, Loading, Response};
 use crate::optimise::{Termination, Work};
 
@@ -67,6 +67,9 @@ pub struct Parameter {
     pub estimate: Estimate,
     /// Where it comes from.
     pub role: ParameterRole,
+    /// What its error is made of, where the instrument is described.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub parts: Option<ErrorParts>,
 }
 
 /// A fitted law: its parameters, their uncertainty, and why the search ended.

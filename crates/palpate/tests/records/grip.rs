@@ -35,6 +35,7 @@ fn ball(errors: Option<[f64; 4]>) -> Material {
     let uncertainty = errors.map(|errors| MaterialUncertainty {
         confidence: 0.95,
         freedom: 1e6,
+        systematic: Vec::new(),
         covariance: (0..4).map(|i| (0..4).map(|j| if i == j { errors[i].powi(2) } else { 0.0 }).collect()).collect(),
     });
     Material::new(MaterialParts {

@@ -7,6 +7,7 @@ mod corrections;
 mod damage;
 mod exponents;
 mod grip;
+mod instrument;
 mod observe;
 mod phases;
 #[path = "../common/repeats.rs"]

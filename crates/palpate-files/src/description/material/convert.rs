@@ -6,9 +6,10 @@
 use std::path::Path;
 
 use palpate::{
+    budget::InputQuantity,
     calibrate::{
         Body, CalibrationRange, Candidate, EquilibriumLaw, Material, MaterialParameter, MaterialParts,
-        MaterialUncertainty, RateLaw,
+        MaterialUncertainty, RateLaw, SystematicEffect,
     },
     contact::{Equilibrium, RateDependence},
     fit::Estimate,
@@ -19,7 +20,9 @@ use palpate::{
 
 use super::{
     file::{MATERIAL_VERSION, MaterialFile, MaterialOrigin},
-    tables::{CalibratedEquilibriumName, CalibrationTable, MaterialTables, ParameterTable, RangeTable, UNITS},
+    tables::{
+        CalibratedEquilibriumName, CalibrationTable, MaterialTables, ParameterTable, RangeTable, SystematicTable, UNITS,
+    },
 };
 use crate::description::{
     body::model::model,
@@ -227,7 +230,40 @@ fn uncertainty(source: &Source<'_>, table: &CalibrationTable) -> Result<Option<M
         confidence,
         freedom,
         covariance: covariance.clone(),
+        systematic: table
+            .systematic
+            .iter()
+            .enumerate()
+            .map(|(index, effect)| systematic(source, index, effect))
+            .collect::<Result<_, _>>()?,
     }))
+}
+
+fn systematic(
+    source: &Source<'_>,
+    index: usize,
+    table: &SystematicTable,
+) -> Result<SystematicEffect, DescriptionError> {
+    let key = |name: &str| format!("calibration.systematic[{}].{name}", index + 1);
+    let least = |name: &str, value: f64, least: f64| {
+        source.number(&key(name), value, &format!("a number of {least} or more"), |value| value >= least)
+    };
+    let freedom = table.freedom.map(|freedom| least("freedom", freedom, 1.0)).transpose()?;
+    if let Some(log) = table.logs.iter().find(|log| !log.is_finite()) {
+        return Err(source.value(key("logs"), "finite numbers", log));
+    }
+    Ok(SystematicEffect {
+        input: InputQuantity {
+            name: table.name.clone(),
+            unit: table.unit.clone(),
+            estimate: 0.0,
+            standard_uncertainty: least("standard_uncertainty", table.standard_uncertainty, 0.0)?,
+            freedom: freedom.unwrap_or(f64::INFINITY),
+            distribution: table.distribution.into(),
+            evaluation: table.evaluation.into(),
+        },
+        logs: table.logs.clone(),
+    })
 }
 
 /// Whether standard error and interval of a parameter agree with the standard deviation of its logarithm by the covariance: the error

@@ -7,6 +7,7 @@ use serde::{Deserialize, Serialize};
 use crate::description::{
     body::tables::{ContactTable, LawTable, SpecimenTable},
     text::quantity::QuantityText,
+    uncertainty::{DistributionName, EvaluationName},
 };
 
 /// A calibrated body: a protocol's specimen, law and contact, and the same parameters with their errors.
@@ -55,8 +56,35 @@ pub(crate) struct CalibrationTable {
     pub(crate) parameter: Vec<ParameterTable>,
     /// Covariance of the natural logarithms of the parameters, row by row in their order.
     pub(crate) covariance: Option<Vec<Vec<f64>>>,
+    /// What the instrument and the body add to the covariance, by cause.
+    #[serde(default)]
+    pub(crate) systematic: Vec<SystematicTable>,
     /// The range of the test; predictions beyond it are extrapolations.
     pub(crate) range: RangeTable,
+}
+
+/// A cause of uncertainty that the whole test has in common.
+#[derive(Debug, Clone, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+#[schemars(rename = "SystematicEffect")]
+pub(crate) struct SystematicTable {
+    /// The input quantity.
+    pub(crate) name: String,
+    /// Its unit.
+    pub(crate) unit: String,
+    /// Its standard uncertainty, in its unit.
+    #[schemars(extend("minimum" = 0))]
+    pub(crate) standard_uncertainty: f64,
+    /// Degrees of freedom; endless if omitted.
+    #[schemars(extend("minimum" = 1))]
+    pub(crate) freedom: Option<f64>,
+    /// The distribution of its values.
+    pub(crate) distribution: DistributionName,
+    /// How it was evaluated.
+    #[serde(rename = "type")]
+    pub(crate) evaluation: EvaluationName,
+    /// Change of the natural logarithm of each parameter, then of each size of the body, by one standard uncertainty.
+    pub(crate) logs: Vec<f64>,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize, Serialize, JsonSchema)]

@@ -1,6 +1,7 @@
 //! A calibrated body as the text of its file.
 
 use palpate::{
+    calibrate::SystematicEffect,
     contact::{Equilibrium, Shape, Sides},
     number::{exact, significant},
     simulate::{Contact, LinearContact, Memory, Separation},
@@ -11,7 +12,10 @@ use super::{
     file::{MATERIAL_VERSION, MaterialFile},
     tables::{CalibratedEquilibriumName, UNITS},
 };
-use crate::description::text::quoted;
+use crate::description::{
+    text::quoted,
+    uncertainty::{DistributionName, EvaluationName},
+};
 
 impl MaterialFile {
     /// The file as text, with intervals in comments.
@@ -149,6 +153,23 @@ impl MaterialFile {
             out += &format!(
                 "confidence = {:?}\nfreedom = {:?}\n# of the natural logarithms of the parameters, in their order\ncovariance = [\n{rows}]\n",
                 uncertainty.confidence, uncertainty.freedom
+            );
+        }
+        let systematic = material.uncertainty().map_or(&[][..], |uncertainty| &uncertainty.systematic);
+        for SystematicEffect { input, logs } in systematic {
+            out += &format!(
+                "\n[[calibration.systematic]]\nname = {}\nunit = {}\nstandard_uncertainty = {:?}\n",
+                quoted(&input.name),
+                quoted(&input.unit),
+                input.standard_uncertainty
+            );
+            if input.freedom.is_finite() {
+                out += &format!("freedom = {:?}\n", input.freedom);
+            }
+            out += &format!(
+                "distribution = \"{}\"\ntype = \"{}\"\nlogs = {logs:?}\n",
+                DistributionName::from(input.distribution),
+                EvaluationName::from(input.evaluation)
             );
         }
         let range = material.range();

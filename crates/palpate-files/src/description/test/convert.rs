@@ -12,7 +12,7 @@ use palpate::{
 use super::{
     corrections,
     description::TestDescription,
-    preset, settings,
+    instrument, preset, settings,
     tables::{ContactTable, TestTables},
 };
 use crate::description::{
@@ -59,6 +59,8 @@ pub fn parse_test(text: &str, path: &Path) -> Result<TestDescription, Descriptio
         return Err(source.unused("law", reason, "remove [law], or keep it for a protocol"));
     }
     let geometry = geometry(&source, &tables)?;
+    let instrument =
+        instrument::checked(&source, (tables.instrument.as_ref(), tables.specimen.as_ref()), geometry.as_ref())?;
     let columns = tables.columns.checked(&source, tables.machine.preset.as_deref())?;
     let grows = geometry.as_ref().is_some_and(|body| !matches!(body.shape, Shape::Prism { .. }));
     if grows && columns.stress.is_some() {
@@ -74,6 +76,7 @@ pub fn parse_test(text: &str, path: &Path) -> Result<TestDescription, Descriptio
     let (fit, exponents) = settings::fit(&source, &tables.fit)?;
     let layers = layers(&source, contact, geometry.as_ref())?;
     let analysis = AnalysisOptions {
+        instrument,
         geometry,
         separation: contact::separation(contact.separation.unwrap_or(grows)),
         layers,

@@ -6,6 +6,7 @@
 //! | `description.rs` | a checked description ([`TestDescription`]) |
 //! | `convert.rs` | the one to the other |
 //! | `columns.rs` | which column of a file holds what ([`ColumnChoices`]) |
+//! | `instrument.rs` | the uncertainty of instrument and body |
 //! | `corrections.rs`, `settings.rs` | corrections of the record; settings of phases and fit |
 //! | `choices.rs`, `named_columns.rs` | choices that a command line offers too |
 //! | `preset.rs`, `machines/`, `machines.rs` | grippers and machines whose conventions are known, and telling them by a file |
@@ -16,6 +17,7 @@ mod columns;
 mod convert;
 mod corrections;
 mod description;
+mod instrument;
 mod machines;
 mod named_columns;
 mod preset;

@@ -3,7 +3,7 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, de::IgnoredAny};
 
-use super::{column_tables::ColumnsTable, description::About};
+use super::{column_tables::ColumnsTable, description::About, instrument::InstrumentTable};
 use crate::{
     description::{
         body::tables::{SidesName, SpecimenTable},
@@ -31,6 +31,7 @@ pub(crate) struct TestTables {
     #[serde(default)]
     pub(crate) machine: MachineTable,
     pub(crate) specimen: Option<SpecimenTable>,
+    pub(crate) instrument: Option<InstrumentTable>,
     #[serde(default)]
     pub(crate) contact: ContactTable,
     #[serde(default)]

@@ -27,7 +27,7 @@ impl QuantityText {
         }
     }
 
-    fn bare(number: &impl ToString) -> Self {
+    pub(crate) fn bare(number: &impl ToString) -> Self {
         Self {
             text: number.to_string(),
             bare: true,
@@ -101,5 +101,8 @@ pub(crate) fn usual(dimension: Dimension) -> (&'static str, &'static str, &'stat
         Dimension::Mass => ("g", "10..500", "10, 100, 500"),
         Dimension::Acceleration => ("m/s^2", "1..10", "1, 5, 10"),
         Dimension::Torque => ("N mm", "1..10", "1, 5, 10"),
+        Dimension::Share => ("%", "0.1..1", "0.1, 0.5, 1"),
+        Dimension::Temperature => ("K", "1..10", "1, 5, 10"),
+        Dimension::PerKelvin => ("%/K", "0.1..1", "0.1, 0.5, 1"),
     }
 }

@@ -3,9 +3,10 @@
 
 use std::path::Path;
 
+use palpate::budget::{Distribution, InputQuantity};
 use palpate::calibrate::{
     Body, CalibrationRange, Candidate, EquilibriumLaw, Material, MaterialParameter, MaterialParts, MaterialUncertainty,
-    MaterialUnit, RateLaw,
+    MaterialUnit, RateLaw, SystematicEffect,
 };
 use palpate::contact::{Curve, Shape, Sides};
 use palpate::fit::Estimate;
@@ -71,6 +72,7 @@ fn material(law: &str, equilibrium: EquilibriumLaw, shape: Shape) -> MaterialFil
             uncertainty: Some(MaterialUncertainty {
                 confidence: 0.95,
                 freedom: 2057.0,
+                systematic: Vec::new(),
                 covariance: (0..size).map(|i| (0..size).map(|j| entry(i, j)).collect()).collect(),
             }),
             noise: 0.05 * third,
@@ -128,6 +130,34 @@ fn what_is_written_is_read_again_to_the_last_digit() {
             let read = parse_material(&text, Path::new("m.toml")).unwrap_or_else(|error| panic!("{error}\n{text}"));
             assert_eq!(read, file, "{text}");
         }
+    }
+}
+
+#[test]
+fn what_the_instrument_adds_is_written_and_read() {
+    let mut file = usual();
+    let mut parts = file.material.into_parts();
+    let limits = |name, unit, half| InputQuantity::limits(name, unit, 0.0, half, Distribution::Arcsine).unwrap();
+    let effect = |input, third: f64| SystematicEffect {
+        input,
+        logs: vec![third, -third, 0.0, 1e-3 * third, 0.5 * third],
+    };
+    let touch = limits("first \"touch\"", "m", 1e-4 / 3.0).type_a().with_freedom(7.5).unwrap();
+    parts.uncertainty.as_mut().unwrap().systematic =
+        vec![effect(touch, 1.0 / 3.0), effect(limits("radius", "m", 0.0), 0.0)];
+    file.material = Material::new(parts).unwrap();
+    let text = file.to_toml();
+    assert_eq!(parse_material(&text, Path::new("m.toml")).unwrap(), file, "{text}");
+    for (from, to, key, message) in [
+        ("freedom = 7.5", "freedom = 0.5", "calibration.systematic[1].freedom", "1 or more"),
+        ("type = \"A\"", "type = \"C\"", "calibration.systematic[1].type", "\"A\" or \"B\""),
+        ("logs = [0.0", "logs = [nan", "calibration.systematic[2].logs", "finite"),
+        ("logs = [0.0, ", "logs = [", "calibration", "4 parameters"),
+    ] {
+        let changed = text.replacen(from, to, 1);
+        assert_ne!(changed, text, "{from}");
+        let error = parse_material(&changed, Path::new("m.toml")).unwrap_err().to_string();
+        assert!(error.contains(key) && error.contains(message), "{error}");
     }
 }
 

@@ -2,7 +2,9 @@
 
 use palpate::{
     analysis::LayersChoice,
+    budget::Evaluation,
     contact::{Shape, Sides},
+    instrument::InstrumentQuantity,
     segment::{ContactChoice, GivenHold, HoldMode, HoldStart},
     simulate::Separation,
 };
@@ -244,4 +246,96 @@ fn holds_can_be_given() {
     let test = test(text).unwrap();
     let hold = |from, to, mode| GivenHold { from, to, mode };
     assert_eq!(test.analysis.given_holds, [hold(0.5, 2.0, None), hold(60.0, 62.0, Some(HoldMode::ForceHeld))]);
+}
+
+#[test]
+fn an_instrument_is_read_with_its_distributions() {
+    let text = r#"
+        specimen = { shape = "ball", radius = "35 mm", modulus = "28 kPa" }
+        [instrument]
+        force = "0.2 N"
+        force_gain = { limits = "0.5 %", distribution = "triangular" }
+        displacement = "1e-3 mm"
+        touch = { standard = "0.05 mm", type = "A", freedom = 9 }
+        radius = { limits = "0.1 mm", distribution = "arcsine" }
+        modulus = { expanded = "1 kPa", coverage_factor = 2 }
+        temperature = { standard = "0.5 K", modulus_per_k = "-0.4 %/K" }
+    "#;
+    let inputs = test(text).unwrap().analysis.instrument.inputs;
+    let expected = [
+        ("force", 0.2 / 3f64.sqrt()),
+        ("force_gain", 0.005 / 6f64.sqrt()),
+        ("displacement", 1e-6 / 3f64.sqrt()),
+        ("touch", 5e-5),
+        ("radius", 1e-4 / 2f64.sqrt()),
+        ("modulus", 500.0),
+        ("temperature", 0.5),
+    ];
+    assert_eq!(inputs.len(), expected.len());
+    for (input, (name, u)) in inputs.iter().zip(expected) {
+        assert_eq!(input.quantity.name(), name);
+        assert!((input.uncertainty.standard_uncertainty / u - 1.0).abs() < 1e-12, "{name}");
+    }
+    assert_eq!((inputs[3].uncertainty.evaluation, inputs[3].uncertainty.freedom), (Evaluation::A, 9.0));
+    let effects = InstrumentQuantity::Temperature {
+        modulus_per_k: -0.004,
+        rate_per_k: 0.0,
+    };
+    assert_eq!(inputs[6].quantity, effects);
+    // The section of a cylinder follows from its diameter: u(A) = 2 A/d u(d).
+    let cylinder = r#"
+        specimen = { shape = "cylinder", diameter = "20 mm", length = "30 mm" }
+        instrument = { diameter = { standard = "0.1 mm" }, length = "0.2 mm" }
+    "#;
+    let inputs = test(cylinder).unwrap().analysis.instrument.inputs;
+    let area = std::f64::consts::PI * 0.01 * 0.01;
+    assert!((inputs[0].uncertainty.standard_uncertainty / (2.0 * area / 0.02 * 1e-4) - 1.0).abs() < 1e-12);
+}
+
+#[test]
+fn an_instrument_that_says_nothing_is_refused() {
+    let ball = "specimen = { shape = \"ball\", radius = \"35 mm\" }\n";
+    for (instrument, key, message, hint) in [
+        ("force = \"0.2\"", "instrument.force", "unit", ""),
+        ("force = 0.2", "instrument.force", "unit", ""),
+        ("force = \"0.2 mm\"", "instrument.force", "mm", ""),
+        ("force = \"-0.2 N\"", "instrument.force", "0 or more", ""),
+        ("force = {}", "instrument.force", "standard", ""),
+        ("force = { standard = \"-1 N\" }", "instrument.force.standard", "0 or more", ""),
+        ("force = { standard = \"1 N\", limits = \"1 N\" }", "instrument.force.limits", "force.standard", ""),
+        ("force = { expanded = \"1 N\" }", "instrument.force.coverage_factor", "coverage factor", ""),
+        (
+            "force = { standard = \"1 N\", coverage_factor = 2 }",
+            "instrument.force.coverage_factor",
+            "expanded",
+            "",
+        ),
+        (
+            "force = { expanded = \"1 N\", coverage_factor = 0 }",
+            "instrument.force.coverage_factor",
+            "above 0",
+            "",
+        ),
+        (
+            "force = { limits = \"1 N\", distribution = \"normal\" }",
+            "instrument.force.distribution",
+            "rectangular",
+            "",
+        ),
+        ("force = { standard = \"1 N\", freedom = 0 }", "instrument.force.freedom", "1 or more", ""),
+        ("force = { standard = \"1 N\", type = \"C\" }", "instrument.force.type", "\"A\" or \"B\"", ""),
+        (
+            "force = { standard = \"1 N\", rate_per_k = \"1 %/K\" }",
+            "instrument.force.rate_per_k",
+            "temperature",
+            "",
+        ),
+        ("temperature = \"0.5 K\"", "instrument.temperature.modulus_per_k", "what it changes", ""),
+        ("modulus = \"1 kPa\"", "instrument.modulus", "given modulus", ""),
+        ("area = \"1 mm^2\"", "instrument.area", "whose sizes are radius", "state radius"),
+        ("loadcell = \"1 N\"", "instrument.loadcell", "force", ""),
+    ] {
+        says(test(&format!("{ball}[instrument]\n{instrument}")), key, message, hint);
+    }
+    says(test("[instrument]\nradius = \"1 mm\""), "instrument.radius", "without a [specimen]", "");
 }

@@ -8,7 +8,10 @@ use crate::document::Software;
 use crate::figure::{Figure, Layer, Panel, Role};
 use crate::number::{counted, significant, with_interval};
 use crate::page::{Block, Page, Section};
-use crate::result::{CalibratedRecord, ParameterDocument, parameter_title, parameters_of_material, percent, word};
+use crate::result::{
+    CalibratedRecord, ParameterDocument, budgets_of_material, parameter_title, parameters_of_material, percent, word,
+};
+use crate::study::budget;
 use crate::study::bundle::StudyError;
 use crate::study::grid::displacement_panel;
 use crate::table::{Cell, Table};
@@ -83,6 +86,12 @@ fn law_table(material: &Material, profiles: &[ParameterProfile]) -> Table {
     table.table()
 }
 
+/// The uncertainty budget, where the instrument was described.
+fn budgets(material: &Material) -> Vec<Table> {
+    let share = material.uncertainty().map_or(0.95, |uncertainty| uncertainty.confidence);
+    budget::tables(&budgets_of_material(material), share)
+}
+
 /// A calibration as text for a terminal: the law with its parameters, then its alternatives.
 #[must_use]
 pub fn calibration_text(record: &CalibratedRecord) -> String {
@@ -90,6 +99,9 @@ pub fn calibration_text(record: &CalibratedRecord) -> String {
     text.extend(record.answer().iter().map(|line| wrapped(line)));
     if let Some(chosen) = record.chosen() {
         text.push_str(&format!("\n{}", law_table(&chosen.material, &record.profiles).to_plain_text()));
+        for table in budgets(&chosen.material) {
+            text.push_str(&format!("\n{}", table.to_plain_text()));
+        }
     }
     text.push_str(&format!("\n{}\n", laws(record).to_plain_text()));
     record.remarks().iter().for_each(|remark| text.push_str(&wrapped(remark)));
@@ -104,6 +116,7 @@ pub fn calibration_page(record: &CalibratedRecord) -> Result<Page, StudyError> {
     let mut section = Section::new(&record.input.title).block(Block::List(record.answer()));
     if let Some(chosen) = record.chosen() {
         section = section.block(Block::Table(law_table(&chosen.material, &record.profiles)));
+        section = section.blocks(budgets(&chosen.material).into_iter().map(Block::Table));
     }
     section = section
         .block(Block::Table(laws(record)))

@@ -13,9 +13,10 @@ use crate::document::{AnalysisDocument, Software};
 use crate::figure::Figure;
 use crate::number::significant;
 use crate::page::{Block, Page, Section};
-use crate::result::{Answer, ComparedRecord, Input, parameters_table};
+use crate::result::{Answer, ComparedRecord, Input, budgets_of_analysis, parameters_table};
 use crate::study::bundle::{Bundle, Drawing, Pictures, StudyError, named};
-use crate::study::{answer, comparison, findings};
+use crate::study::{answer, budget, comparison, findings};
+use crate::table::Table;
 
 /// All files of an analysed record: `report.html`, `analysis.json`, `tables/*.csv`, `figures/*.svg`.
 ///
@@ -58,9 +59,11 @@ pub fn analysis_bundle(
         answer::parameters_of_holds(&compared, &answer).iter().for_each(|table| bundle.table(table));
     }
     look(watch, 0)?;
+    let budgets = budget::tables(&budgets_of_analysis(analysis, &compared), analysis.options.fit.confidence);
+    budgets.iter().for_each(|table| bundle.table(table));
     tables::all(analysis).iter().for_each(|table| bundle.table(table));
     look(watch, 1)?;
-    let page = page(analysis, &input, &drawings, which_law);
+    let page = page(analysis, &input, &drawings, which_law, budgets);
     look(watch, 2)?;
     let document = AnalysisDocument::new(analysis, input);
     bundle.table(&parameters_table(&document.parameter_rows()));
@@ -75,7 +78,13 @@ struct WhichLaw {
     comparison: Vec<Block>,
 }
 
-fn page(analysis: &Analysis, input: &Input, drawings: &[Drawing], which_law: Option<WhichLaw>) -> Page {
+fn page(
+    analysis: &Analysis,
+    input: &Input,
+    drawings: &[Drawing],
+    which_law: Option<WhichLaw>,
+    budgets: Vec<Table>,
+) -> Page {
     let record = Section::new("The record")
         .block(Block::paragraph(summary(analysis)))
         .blocks(named(drawings, "record"))
@@ -97,6 +106,9 @@ fn page(analysis: &Analysis, input: &Input, drawings: &[Drawing], which_law: Opt
         page = page.section(Section::new("Answer").blocks(blocks));
     }
     page = page.section(Section::new("Findings").blocks(findings(analysis))).section(record).section(laws);
+    if !budgets.is_empty() {
+        page = page.section(Section::new("Uncertainty budget").blocks(budgets.into_iter().map(Block::Table)));
+    }
     if let Some(blocks) = comparison {
         page = page.section(Section::new("Comparison of laws").blocks(blocks));
     }

@@ -6,9 +6,9 @@ use palpate::record::Correction;
 use palpate::segment::{After, RelaxationType};
 
 use crate::number::significant;
-use crate::result::{ComparedRecord, Input, mode_word, percent, word};
+use crate::result::{ComparedRecord, Input, budgets_of_analysis, mode_word, percent, word};
 use crate::study::comparison::tables as comparison_tables;
-use crate::study::{answer, findings};
+use crate::study::{answer, budget, findings};
 use crate::table::{Cell, Table};
 
 /// An exponent as people write it: 5, not 5.000.
@@ -289,6 +289,7 @@ pub fn analysis_text(analysis: &Analysis, input: &Input) -> String {
         text.push('\n');
     }
     let mut tables = vec![holds(analysis)];
+    tables.extend(budget::tables(&budgets_of_analysis(analysis, &compared), analysis.options.fit.confidence));
     tables.extend(paper_tables(analysis));
     if analysis.specimen.is_none() {
         tables.push(fits(analysis));

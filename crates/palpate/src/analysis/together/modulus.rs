@@ -4,7 +4,8 @@ use serde::{Deserialize, Serialize};
 
 use crate::analysis::options::{AnalysisOptions, Geometry};
 use crate::contact::Specimen;
-use crate::fit::{ExponentChoice, LatencyFit, fit_hold, select_order};
+use crate::fit::{ErrorParts, Estimate, ExponentChoice, LatencyFit, fit_hold, select_order};
+use crate::instrument::Deviation;
 use crate::record::Record;
 use crate::segment::{After, Phase, Segment, Segmentation};
 use crate::statistics::{median, noise};
@@ -19,18 +20,40 @@ pub enum ModulusSource {
     Estimated,
 }
 
+/// A modulus that the equilibrium forces imply.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct EstimatedModulus {
+    /// E, Pa.
+    pub estimate: Estimate,
+    /// What its error is made of, where the instrument is described.
+    pub parts: Option<ErrorParts>,
+}
+
 /// A modulus from equilibrium forces.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 pub(in crate::analysis) struct ImpliedModulus {
     /// E, Pa.
     pub(in crate::analysis) value: f64,
     /// Its standard error, Pa; `None` where no fit gave the equilibrium forces.
     pub(in crate::analysis) standard_error: Option<f64>,
+    /// The forces that it follows from.
+    forces: Vec<RelaxedForce>,
 }
 
-/// A hold in contact: the force that a body of 1 Pa would keep, and the fits to the measured one.
+/// The force that a hold tends to.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct RelaxedForce {
+    /// Displacement of the jaw, m.
+    displacement: f64,
+    /// F_e, N.
+    force: f64,
+    /// Its standard error, N.
+    error: f64,
+}
+
+/// A hold in contact, and the fits to its force.
 struct RelaxedHold {
-    unit_force: f64,
+    displacement: f64,
     last: f64,
     after_loading: bool,
     fits: Vec<LatencyFit>,
@@ -61,36 +84,78 @@ pub(in crate::analysis) fn implied_modulus(
         let error = fit.equilibrium().standard_error.filter(|_| fit.termination.is_good())?;
         // Noise-free holds leave rounding only, which is no measure of their weight.
         let floor = 1e-9 * (fit.equilibrium().value.abs() + fit.amplitude().value.abs());
-        Some((hold.unit_force, fit.equilibrium().value, error.max(floor)))
+        Some(RelaxedForce {
+            displacement: hold.displacement,
+            force: fit.equilibrium().value,
+            error: error.max(floor),
+        })
     };
-    let points: Vec<(f64, f64, f64)> = holds.iter().filter_map(relaxed).collect();
-    let implied = if points.is_empty() {
-        let loaded = holds.iter().filter(|hold| hold.after_loading);
-        let last: Vec<(f64, f64, f64)> = loaded.map(|hold| (hold.unit_force, hold.last, 1.0)).collect();
-        ImpliedModulus {
-            standard_error: None,
-            ..weighted(&last)
+    let forces: Vec<RelaxedForce> = holds.iter().filter_map(relaxed).collect();
+    let is_fitted = !forces.is_empty();
+    let last = |hold: &RelaxedHold| RelaxedForce {
+        displacement: hold.displacement,
+        force: hold.last,
+        error: 1.0,
+    };
+    let forces = match is_fitted {
+        true => forces,
+        false => holds.iter().filter(|hold| hold.after_loading).map(last).collect(),
+    };
+    let (value, error) = weighted(&forces, &body)?;
+    Some(ImpliedModulus {
+        value,
+        standard_error: is_fitted.then_some(error),
+        forces,
+    })
+}
+
+impl ImpliedModulus {
+    /// With the error that the scatter of the forces leaves.
+    pub(in crate::analysis) fn estimate(&self) -> EstimatedModulus {
+        EstimatedModulus {
+            estimate: Estimate {
+                standard_error: self.standard_error,
+                ..Estimate::fixed(self.value)
+            },
+            parts: None,
         }
-    } else {
-        weighted(&points)
-    };
-    (implied.value.is_finite() && implied.value > 0.0).then_some(implied)
+    }
+
+    /// What the same holds imply with a quantity of the instrument off its estimate, Pa, at the temperature that is stated; `None` where they
+    /// imply none.
+    pub(in crate::analysis) fn with(&self, geometry: &Geometry, deviation: &Deviation) -> Option<f64> {
+        let body = Specimen::new(deviation.shape(&geometry.shape), 1.0, geometry.sides).ok()?;
+        let changed = |found: &RelaxedForce| RelaxedForce {
+            displacement: deviation.displacement(found.displacement, found.force),
+            force: deviation.force(found.force),
+            ..*found
+        };
+        let forces: Vec<RelaxedForce> = self.forces.iter().map(changed).collect();
+        Some(weighted(&forces, &body)?.0 / (1.0 + deviation.modulus_at_temperature))
+    }
 }
 
 /// E = Σ w g F/Σ w g² with w = 1/σ², g the force at 1 Pa; its variance 1/Σ w g², times χ² per freedom where that exceeds 1.
-fn weighted(points: &[(f64, f64, f64)]) -> ImpliedModulus {
+///
+/// `None` unless E is above zero.
+fn weighted(forces: &[RelaxedForce], body: &Specimen) -> Option<(f64, f64)> {
+    let unit = |found: &RelaxedForce| unit_force(body, found.displacement);
     let (mut square, mut shared) = (0.0, 0.0);
-    for (unit, force, error) in points {
-        square += (unit / error).powi(2);
-        shared += unit * force / (error * error);
+    for found in forces {
+        square += (unit(found) / found.error).powi(2);
+        shared += unit(found) * found.force / (found.error * found.error);
     }
     let value = shared / square;
-    let chi: f64 = points.iter().map(|(unit, force, error)| ((force - value * unit) / error).powi(2)).sum();
-    let freedom = (points.len() as f64 - 1.0).max(1.0);
-    ImpliedModulus {
-        value,
-        standard_error: Some(((chi / freedom).max(1.0) / square).sqrt()),
-    }
+    let off = |found: &RelaxedForce| ((found.force - value * unit(found)) / found.error).powi(2);
+    let chi: f64 = forces.iter().map(off).sum();
+    let freedom = (forces.len() as f64 - 1.0).max(1.0);
+    (value.is_finite() && value > 0.0).then(|| (value, ((chi / freedom).max(1.0) / square).sqrt()))
+}
+
+/// The force that a body of 1 Pa keeps at a displacement of the jaw (m), N.
+fn unit_force(body: &Specimen, displacement: f64) -> f64 {
+    let u = body.contact_displacement(displacement);
+    body.force(body.equilibrium_strain(u), u)
 }
 
 /// The fits to the force of a hold; `None` where the jaw may not touch the body.
@@ -110,15 +175,14 @@ fn relaxed_hold(
     let after_loading = hold.after == Some(After::Loading);
     // A jaw that retreats may leave the body, and the force of an open contact says nothing about the modulus.
     let lowest = force.iter().fold(f64::MAX, |least, f| least.min(*f));
-    let u = body.contact_displacement(median(&mut displacement[range].to_vec()));
-    let unit_force = body.force(body.equilibrium_strain(u), u);
-    if unit_force <= 0.0 || !(after_loading || lowest > 5.0 * noise(&force)) {
+    let displacement = median(&mut displacement[range].to_vec());
+    if unit_force(body, displacement) <= 0.0 || !(after_loading || lowest > 5.0 * noise(&force)) {
         return None;
     }
     let until = options.fitted(&times);
     let fit = |choice| fit_hold(&times[..until], &force[..until], choice, &options.fit).ok();
     Some(RelaxedHold {
-        unit_force,
+        displacement,
         last: *force.last()?,
         after_loading,
         fits: options.choices().filter_map(fit).collect(),

@@ -35,6 +35,7 @@ impl Quantity {
                 _ => assessed.estimate(self.value, &self.gradient, self.scale),
             },
             role: self.role,
+            parts: None,
         }
     }
 }

@@ -47,6 +47,7 @@ pub(super) fn material(stiffer: f64) -> palpate::calibrate::Material {
         uncertainty: Some(MaterialUncertainty {
             confidence: 0.95,
             freedom: 2000.0,
+            systematic: Vec::new(),
             covariance,
         }),
         noise: 0.05,

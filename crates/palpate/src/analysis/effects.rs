@@ -1,0 +1,216 @@
+//! What a quantity off its estimate changes of the parameters of a hold and of the modulus.
+
+use super::holds::{HoldAnalysis, Signal};
+use super::options::{AnalysisOptions, Geometry};
+use super::together::{EstimatedModulus, ImpliedModulus};
+use crate::budget::InputQuantity;
+use crate::contact::{Shape, Specimen};
+use crate::fit::{ErrorParts, Fit, LatencyFit, Parameter, ParameterKind, ParameterRole, ParameterUnit};
+use crate::instrument::{Deviation, InstrumentQuantity};
+use crate::segment::ContactPoint;
+use crate::statistics::normal_factor;
+
+/// The quantities off their estimates, and what they have an effect on.
+pub(in crate::analysis) struct Causes<'a> {
+    options: &'a AnalysisOptions,
+    geometry: Option<&'a Geometry>,
+    specimen: Option<&'a Specimen>,
+    /// The modulus, where the equilibrium forces imply it.
+    implied: Option<&'a ImpliedModulus>,
+    /// Inputs in the order of all effects.
+    pub(in crate::analysis) inputs: Vec<InputQuantity>,
+    quantities: Vec<Cause>,
+}
+
+#[derive(Debug, Clone, Copy)]
+enum Cause {
+    Stated(InstrumentQuantity),
+    /// The scatter of the equilibrium forces that imply the modulus.
+    EstimatedModulus,
+}
+
+/// How the signal of a hold changes: scale · signal + offset, rates times `rate`.
+///
+/// The jaw stands, so that strain is force by a constant, and every law is one of its signal in any unit.
+#[derive(Debug, Clone, Copy)]
+struct Changed {
+    scale: f64,
+    offset: f64,
+    rate: f64,
+}
+
+impl<'a> Causes<'a> {
+    /// The stated quantities, the error of first touch where the record shows it, and that of an estimated modulus; `None` where nothing is
+    /// stated.
+    pub(in crate::analysis) fn new(
+        options: &'a AnalysisOptions,
+        contact: &ContactPoint,
+        specimen: Option<&'a Specimen>,
+        implied: Option<&'a ImpliedModulus>,
+    ) -> Option<Self> {
+        let touch = contact.displacement_error.filter(|_| specimen.is_some());
+        let stated = options.instrument.with_touch(touch).inputs;
+        let mut quantities: Vec<Cause> = stated.iter().map(|input| Cause::Stated(input.quantity)).collect();
+        let mut inputs: Vec<InputQuantity> = stated.into_iter().map(|input| input.uncertainty).collect();
+        let error = implied.and_then(|implied| implied.standard_error);
+        let error = error.and_then(|error| InputQuantity::standard("modulus, as estimated", "Pa", 0.0, error).ok());
+        if let Some(modulus) = error {
+            inputs.push(modulus.type_a());
+            quantities.push(Cause::EstimatedModulus);
+        }
+        (!options.instrument.is_empty()).then_some(Self {
+            geometry: options.geometry.as_ref(),
+            options,
+            specimen,
+            implied,
+            inputs,
+            quantities,
+        })
+    }
+
+    /// Adds the effects to all parameters of all laws of a hold.
+    pub(in crate::analysis) fn add_to(&self, hold: &mut HoldAnalysis) {
+        let changed: Vec<Option<[Changed; 2]>> = self
+            .quantities
+            .iter()
+            .zip(&self.inputs)
+            .map(|(cause, input)| sides(input, |by| self.changed(hold, *cause, by)))
+            .collect();
+        let latency = |fit: &mut LatencyFit| {
+            if let Some(with) = LatencyFit::new(self.with_effects(fit, &changed)) {
+                *fit = with;
+            }
+        };
+        hold.fits.iter_mut().for_each(latency);
+        hold.rate_fits.iter_mut().flatten().for_each(latency);
+        let rows = hold.comparison.iter_mut().flat_map(|comparison| &mut comparison.rows);
+        for fit in rows.filter_map(|row| row.fit.as_mut().ok()) {
+            *fit = self.with_effects(fit, &changed);
+        }
+    }
+
+    /// The uncertainty of the modulus that the equilibrium forces imply.
+    pub(in crate::analysis) fn of_modulus(&self, implied: &ImpliedModulus) -> EstimatedModulus {
+        let effect = |(cause, input): (&Cause, &InputQuantity)| match cause {
+            Cause::Stated(_) => {
+                let sides = sides(input, |by| self.modulus(*cause, by));
+                sides.map_or(0.0, |[low, high]| 0.5 * (high - low))
+            }
+            // Its own scatter.
+            Cause::EstimatedModulus => 0.0,
+        };
+        let parts = ErrorParts {
+            scatter: implied.standard_error,
+            effects: self.quantities.iter().zip(&self.inputs).map(effect).collect(),
+        };
+        EstimatedModulus {
+            estimate: implied.estimate().estimate.beside(parts.variance(), self.factor()),
+            parts: Some(parts),
+        }
+    }
+
+    fn factor(&self) -> f64 {
+        normal_factor(self.options.fit.confidence)
+    }
+
+    /// The modulus of the body at the test, Pa, and what of it a change of the temperature leaves to the reported one.
+    fn modulus(&self, cause: Cause, by: f64) -> Option<f64> {
+        let geometry = self.geometry?;
+        match (cause, self.implied, geometry.modulus) {
+            (Cause::EstimatedModulus, Some(implied), _) => Some(implied.value + by),
+            (Cause::Stated(quantity), Some(implied), None) => implied.with(geometry, &Deviation::of(quantity, by)),
+            (Cause::Stated(quantity), _, Some(given)) => Some(Deviation::of(quantity, by).given_modulus(given)),
+            _ => None,
+        }
+    }
+
+    /// The signal of a hold with a quantity off its estimate by `by`; `None` where the body is none.
+    fn changed(&self, hold: &HoldAnalysis, cause: Cause, by: f64) -> Option<Changed> {
+        let deviation = match cause {
+            Cause::Stated(quantity) => Deviation::of(quantity, by),
+            Cause::EstimatedModulus => Deviation::default(),
+        };
+        let (gain, zero) = (deviation.force(1.0) - deviation.force(0.0), deviation.force(0.0));
+        let rate = 1.0 / (1.0 + deviation.rate_at_temperature);
+        if hold.signal == Signal::Force {
+            return Some(Changed {
+                scale: gain,
+                offset: zero,
+                rate,
+            });
+        }
+        let (specimen, level) = (self.specimen?, hold.displacement?);
+        let per_strain = |specimen: &Specimen, displacement: f64| {
+            Some(specimen.force(1.0, specimen.contact_displacement(displacement))).filter(|force| *force > 0.0)
+        };
+        // The temperature of the test is that of an estimated modulus, too.
+        let modulus = match (cause, self.implied) {
+            (Cause::Stated(InstrumentQuantity::Temperature { .. }), Some(implied)) => implied.value,
+            _ => self.modulus(cause, by)?,
+        };
+        let shape: Shape = deviation.shape(specimen.shape());
+        let body = Specimen::new(shape, modulus, specimen.sides()).ok()?;
+        let before = per_strain(specimen, level)?;
+        let after = per_strain(&body, deviation.displacement(level, hold.force_end))?;
+        Some(Changed {
+            scale: gain * before / after,
+            offset: zero / after,
+            rate,
+        })
+    }
+
+    /// A fit whose parameters have these effects besides the scatter of the samples.
+    fn with_effects(&self, fit: &Fit, changed: &[Option<[Changed; 2]>]) -> Fit {
+        let mut with = fit.clone();
+        let exponent = fit.value("exponent").unwrap_or(1.0);
+        // What the signal tends to, which terms of Fung's laws are shares of.
+        let end = fit.predict(1e9 * fit.duration);
+        let effect = |parameter: &Parameter, sides: &Option<[Changed; 2]>| {
+            let [low, high] = sides.map(|sides| sides.map(|changed| changed.parameter(parameter, exponent, end)))?;
+            Some(0.5 * (high - low)).filter(|effect| effect.is_finite())
+        };
+        for parameter in with.parameters.iter_mut().filter(|parameter| parameter.role != ParameterRole::Given) {
+            let parts = ErrorParts {
+                scatter: parameter.estimate.standard_error,
+                effects: changed.iter().map(|sides| effect(parameter, sides).unwrap_or(0.0)).collect(),
+            };
+            parameter.estimate = parameter.estimate.beside(parts.variance(), self.factor());
+            parameter.parts = Some(parts);
+        }
+        with
+    }
+}
+
+/// What comes out one standard uncertainty below and above.
+fn sides<T>(input: &InputQuantity, result: impl Fn(f64) -> Option<T>) -> Option<[T; 2]> {
+    let by = input.standard_uncertainty;
+    Some([result(-by)?, result(by)?])
+}
+
+impl Changed {
+    /// The value of a parameter of a law whose signal changes like this.
+    fn parameter(self, parameter: &Parameter, exponent: f64, end: f64) -> f64 {
+        let Self { scale, offset, rate } = self;
+        let value = parameter.estimate.value;
+        let is_level = matches!(
+            parameter.name.kind,
+            ParameterKind::Equilibrium
+                | ParameterKind::Start
+                | ParameterKind::Instantaneous
+                | ParameterKind::Final
+                | ParameterKind::ElasticResponse
+        );
+        match parameter.unit {
+            ParameterUnit::Signal => value * scale + if is_level { offset } else { 0.0 },
+            ParameterUnit::SignalPerSecond => value * scale * rate,
+            ParameterUnit::SignalPerPower => value * scale,
+            ParameterUnit::PerSecond => value * rate,
+            ParameterUnit::Second => value / rate,
+            ParameterUnit::RateCoefficient => value * scale.powf(1.0 - exponent) * rate,
+            ParameterUnit::One => match parameter.name.kind {
+                ParameterKind::Share | ParameterKind::Strength => value * end * scale / (end * scale + offset),
+                _ => value,
+            },
+        }
+    }
+}

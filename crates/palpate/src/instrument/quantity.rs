@@ -1,0 +1,127 @@
+//! The quantities whose uncertainty may be stated.
+
+use serde::{Deserialize, Serialize};
+
+use crate::budget::InputQuantity;
+use crate::contact::{Shape, ShapeDimension};
+
+/// A quantity of the instrument or of the body that is known with an uncertainty. Each is one number for a whole record: an error that all
+/// its samples have in common.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case", tag = "kind")]
+pub enum InstrumentQuantity {
+    /// Zero of the force, N: the same error in every sample, as left by the tare.
+    Force,
+    /// Gain of the load cell, a share of the force.
+    ForceGain,
+    /// Zero of the displacement, m.
+    Displacement,
+    /// Gain of the displacement, a share of it.
+    DisplacementGain,
+    /// Compliance of machine and load cell, m/N.
+    Compliance,
+    /// First touch, m.
+    Touch,
+    /// A length or area of the body, m or m².
+    Body {
+        /// Which.
+        dimension: ShapeDimension,
+    },
+    /// Modulus that was given, Pa.
+    Modulus,
+    /// Temperature, K, with its effects on the body.
+    Temperature {
+        /// Relative change of the modulus per kelvin.
+        modulus_per_k: f64,
+        /// Relative change of all rates of relaxation per kelvin.
+        rate_per_k: f64,
+    },
+}
+
+impl InstrumentQuantity {
+    /// Its name in a description.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Force => "force",
+            Self::ForceGain => "force_gain",
+            Self::Displacement => "displacement",
+            Self::DisplacementGain => "displacement_gain",
+            Self::Compliance => "compliance",
+            Self::Touch => "touch",
+            Self::Body { dimension } => dimension.name(),
+            Self::Modulus => "modulus",
+            Self::Temperature { .. } => "temperature",
+        }
+    }
+
+    /// Its name in a budget.
+    #[must_use]
+    pub fn title(self) -> &'static str {
+        match self {
+            Self::Force => "zero of the force",
+            Self::ForceGain => "gain of the force",
+            Self::Displacement => "zero of the displacement",
+            Self::DisplacementGain => "gain of the displacement",
+            Self::Touch => "first touch",
+            _ => self.name(),
+        }
+    }
+
+    /// Its SI unit, `1` of a share.
+    #[must_use]
+    pub fn unit(self) -> &'static str {
+        match self {
+            Self::Force => "N",
+            Self::ForceGain | Self::DisplacementGain => "1",
+            Self::Displacement | Self::Touch => "m",
+            Self::Compliance => "m/N",
+            Self::Body { dimension } => dimension.unit(),
+            Self::Modulus => "Pa",
+            Self::Temperature { .. } => "K",
+        }
+    }
+
+    /// Whether a body of this shape has it.
+    #[must_use]
+    pub fn belongs_to(self, shape: &Shape) -> bool {
+        !matches!(self, Self::Body { dimension } if !shape.dimensions().contains(&dimension))
+    }
+}
+
+/// A quantity with its uncertainty; the estimate is that of the deviation, 0.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct InstrumentInput {
+    /// Which.
+    pub quantity: InstrumentQuantity,
+    /// The uncertainty of its deviation from what the record and its description say, in SI.
+    pub uncertainty: InputQuantity,
+}
+
+/// What is known of the instrument and of the body besides a record; empty where everything counts as exact.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+#[serde(transparent)]
+pub struct Instrument {
+    /// The quantities with their uncertainties.
+    pub inputs: Vec<InstrumentInput>,
+}
+
+impl Instrument {
+    /// The same with the error of a first touch that was found in the record, m; unchanged where nothing is stated.
+    #[must_use]
+    pub(crate) fn with_touch(&self, error: Option<f64>) -> Self {
+        let mut with = self.clone();
+        let found = error.and_then(|error| InputQuantity::standard("first touch, as found", "m", 0.0, error).ok());
+        with.inputs.extend(found.filter(|_| !self.is_empty()).map(|uncertainty| InstrumentInput {
+            quantity: InstrumentQuantity::Touch,
+            uncertainty: uncertainty.type_a(),
+        }));
+        with
+    }
+
+    /// Whether nothing is stated.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.inputs.is_empty()
+    }
+}
