@@ -81,7 +81,7 @@ impl Predict {
         let single = !at.is_empty();
         let prediction = predict(&if single { Sampling::Times(at) } else { protocol.sampling.clone() })?;
         let course = (with_figure && single).then(|| predict(&protocol.sampling)).transpose()?;
-        let open = "the calibration left a number open: the intervals hold noise alone";
+        let open = "the calibration left a parameter open: the intervals are not known";
         let open = material.uncertainty().is_none().then(|| open.to_owned());
         let beyond = prediction.extrapolations.iter().map(|beyond| format!("beyond the test: {beyond}"));
         let notes = open.into_iter().chain(beyond).collect();

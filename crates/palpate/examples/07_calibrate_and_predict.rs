@@ -37,8 +37,11 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
             hold: 60.0,
         }])?;
         let later = found.material.predict(&squeeze, &Sampling::Times(vec![squeeze.end()]), 0.95)?;
-        let (low, high) = later.force_interval(0);
-        println!("  after a minute at 22 mm: {:.2} N, {low:.2} to {high:.2} N", later.trajectory.force[0]);
+        let force = later.trajectory.force[0];
+        match later.force_interval(0) {
+            Some((low, high)) => println!("  after a minute at 22 mm: {force:.2} N, {low:.2} to {high:.2} N"),
+            None => println!("  after a minute at 22 mm: {force:.2} N, with an error that is not known"),
+        }
         for beyond in &later.extrapolations {
             println!("  {beyond}");
         }

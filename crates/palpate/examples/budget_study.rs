@@ -156,7 +156,7 @@ fn counted(seed: u64, counts: &mut [Counts; 2]) {
         let true_force = simulate_force(&other, &truth, &at).expect("a simulation");
         let predicted = found.material.predict(&other, &Sampling::Times(at.to_vec()), 0.95).expect("a prediction");
         for (index, (time, force)) in at.iter().zip(true_force).enumerate() {
-            count(&format!("predicted force at {time} s"), Some(predicted.force_interval(index)), force);
+            count(&format!("predicted force at {time} s"), predicted.force_interval(index), force);
         }
     }
 }

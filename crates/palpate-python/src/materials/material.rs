@@ -27,7 +27,7 @@ use crate::table::{Table, columns};
 use crate::work::job;
 
 /// Reported where intervals know nothing of the parameters.
-const OPEN: &str = "the calibration left a parameter open: the intervals hold noise alone";
+const OPEN: &str = "the calibration left a parameter open: the intervals are not known";
 
 /// A calibrated body: shape, law and parameters with their covariance, the range of its test, and where they come from.
 ///
@@ -141,7 +141,7 @@ shown! {
         /// Standard deviation of what the law left of the measured force, N: noise of one reading.
         noise_n: f64 = self.source.file.material.noise(),
         /// The range of the test, beyond which predictions are extrapolations: ``longest_hold_s``, ``deepest_m``, ``fastest_m_per_s``,
-        /// ``slowest_m_per_s``, ``largest_force_n``.
+        /// ``slowest_m_per_s``, ``largest_force_n``, ``farthest_retreat_m``, ``loadings``.
         calibration_range<'py>(py): PyResult<Bound<'py, PyDict>> = {
             let range = self.source.file.material.range();
             let named = [
@@ -150,6 +150,8 @@ shown! {
                 ("fastest_m_per_s", range.fastest),
                 ("slowest_m_per_s", range.slowest),
                 ("largest_force_n", range.largest_force),
+                ("farthest_retreat_m", range.farthest_retreat),
+                ("loadings", f64::from(range.loadings)),
             ];
             named.into_py_dict(py)
         },

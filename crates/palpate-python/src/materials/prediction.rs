@@ -37,9 +37,10 @@ impl Prediction {
         Self { predicted }
     }
 
-    /// Lower and upper ends of an interval at every sample.
-    fn ends(&self, of: fn(&Predicted, usize) -> (f64, f64)) -> (Vec<f64>, Vec<f64>) {
-        (0..self.predicted.trajectory.len()).map(|index| of(&self.predicted, index)).unzip()
+    /// Lower and upper ends of an interval at every sample; NaN where it is not known.
+    fn ends(&self, of: fn(&Predicted, usize) -> Option<(f64, f64)>) -> (Vec<f64>, Vec<f64>) {
+        let ends = |index| of(&self.predicted, index).unwrap_or((f64::NAN, f64::NAN));
+        (0..self.predicted.trajectory.len()).map(ends).unzip()
     }
 }
 
@@ -56,7 +57,8 @@ shown! {
         displacement_high_m: self.ends(Predicted::displacement_interval).1,
         /// Contact force with the best parameters, N.
         force_n: self.predicted.trajectory.force.clone(),
-        /// Lower end of the interval of the mean force, N: what the parameters leave open.
+        /// Lower end of the interval of the mean force, N: what the parameters leave open, and what lies beyond the test; NaN where the
+        /// calibration left a parameter open.
         force_low_n: self.ends(Predicted::force_interval).0,
         /// Its upper end, N.
         force_high_n: self.ends(Predicted::force_interval).1,
@@ -64,8 +66,11 @@ shown! {
         reading_low_n: self.ends(Predicted::reading_interval).0,
         /// Its upper end, N.
         reading_high_n: self.ends(Predicted::reading_interval).1,
-        /// Standard error of the mean force by what the calibration leaves open, N.
-        force_standard_error_n: self.predicted.force_standard_error.clone(),
+        /// Standard error of the mean force by what the calibration leaves open and by what lies beyond the test, N; NaN where it is not known.
+        force_standard_error_n: {
+            let errors = self.predicted.force_standard_error.clone();
+            errors.unwrap_or_else(|| vec![f64::NAN; self.predicted.trajectory.len()])
+        },
     }
     values {
         /// Standard deviation of the noise of one reading, N.

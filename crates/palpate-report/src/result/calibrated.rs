@@ -8,6 +8,7 @@ use palpate::number::significant;
 use palpate::units::quantity;
 
 use super::input::Input;
+use crate::number::counted;
 use crate::word::word;
 
 /// Candidates calibrated on one record; the first is the one that is requested, the others are its alternatives.
@@ -156,13 +157,18 @@ fn remarks_of(made: &Calibration) -> Vec<String> {
         ));
     }
     let range = made.material.range();
+    let retreat = match range.farthest_retreat {
+        0.0 => "loading alone".to_owned(),
+        retreat => format!("retreats of up to {}", quantity(retreat, "m", 3)),
+    };
     remarks.push(format!(
-        "Calibration range: holds of up to {}, displacements of up to {}, ramps of {} to {}, forces of up to {}. Predictions beyond this range are marked as extrapolations.",
+        "Calibration range: holds of up to {}, displacements of up to {}, ramps of {} to {}, forces of up to {}, {retreat}, {}. Predictions beyond this range are marked as extrapolations, and their intervals are wider.",
         quantity(range.longest_hold, "s", 3),
         quantity(range.deepest, "m", 3),
         quantity(range.slowest, "m/s", 3),
         quantity(range.fastest, "m/s", 3),
-        quantity(range.largest_force, "N", 3)
+        quantity(range.largest_force, "N", 3),
+        counted(range.loadings as usize, "loading")
     ));
     remarks
 }

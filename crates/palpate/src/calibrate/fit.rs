@@ -12,7 +12,7 @@ use super::{
 use crate::analysis::HoldoutError;
 use crate::fit::{Assessed, Estimate, NoiseModel, Scale, Termination};
 use crate::forecast::{Criteria, criteria};
-use crate::simulate::{Motion, simulate_force};
+use crate::simulate::simulate_force;
 use crate::statistics::{normal_factor, rms};
 use crate::watch::{Stages, Watch};
 
@@ -240,30 +240,5 @@ fn transformed(covariance: &[Vec<f64>], gradients: &[Vec<f64>]) -> Vec<Vec<f64>>
 /// What the fitted part of the record has shown.
 fn range(data: &CalibrationData) -> CalibrationRange {
     let largest_force = data.forces()[..data.fitted()].iter().fold(0.0, |most: f64, force| most.max(force.abs()));
-    let until = data.times()[data.fitted() - 1];
-    let deepest = |motion: &Motion| motion.displacements().iter().copied().fold(0.0, f64::max);
-    let motion = data.motion().simplified(0.01 * deepest(data.motion()));
-    let (mut longest, mut fastest, mut slowest, mut deep) = (0.0f64, 0.0f64, f64::INFINITY, 0.0f64);
-    let still = 0.02 * deepest(&motion);
-    for (times, knots) in motion.times().windows(2).zip(motion.displacements().windows(2)) {
-        if times[0] >= until {
-            break;
-        }
-        let (duration, way) = (times[1].min(until) - times[0], (knots[1] - knots[0]).abs());
-        deep = deep.max(knots[0]).max(data.motion().displacement_at(times[1].min(until)));
-        if way <= still {
-            longest = longest.max(duration);
-        } else {
-            let speed = way / (times[1] - times[0]);
-            fastest = fastest.max(speed);
-            slowest = slowest.min(speed);
-        }
-    }
-    CalibrationRange {
-        longest_hold: longest,
-        deepest: deep,
-        fastest,
-        slowest: if slowest.is_finite() { slowest } else { 0.0 },
-        largest_force,
-    }
+    CalibrationRange::of(data.motion(), data.times()[data.fitted() - 1], largest_force)
 }

@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::{Candidate, EquilibriumLaw, MaterialError};
+use super::{CalibrationRange, Candidate, EquilibriumLaw, MaterialError};
 use crate::budget::{Budget, Contribution, InputQuantity};
 use crate::contact::{Equilibrium, Layers, Shape, Sides, Specimen};
 use crate::fit::Estimate;
@@ -75,21 +75,6 @@ pub struct MaterialUncertainty {
     /// The part of it that comes from the instrument and from the body, by cause.
     #[serde(default)]
     pub systematic: Vec<SystematicEffect>,
-}
-
-/// Range of the test; predictions beyond it are extrapolations.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-pub struct CalibrationRange {
-    /// The longest hold, s.
-    pub longest_hold: f64,
-    /// The deepest squeeze (travel of the jaw since first touch), m.
-    pub deepest: f64,
-    /// The fastest ramp, m/s.
-    pub fastest: f64,
-    /// The slowest ramp, m/s.
-    pub slowest: f64,
-    /// The largest force, N.
-    pub largest_force: f64,
 }
 
 /// Content of a [`Material`], not yet checked.
@@ -243,6 +228,7 @@ impl MaterialParts {
             ("fastest", range.fastest),
             ("slowest", range.slowest),
             ("largest_force", range.largest_force),
+            ("farthest_retreat", range.farthest_retreat),
         ] {
             if !(value.is_finite() && value >= 0.0) {
                 return Err(MaterialError::Number { name, value });

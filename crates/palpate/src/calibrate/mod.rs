@@ -13,6 +13,7 @@
 //! | `fit.rs` | from there to parameters with intervals | |
 //! | `profile.rs` | intervals by the profile of the residual sum of squares | |
 //! | `material.rs` | the body with its parameters | |
+//! | `range.rs`, `extrapolation.rs` | what the test has shown; what lies beyond, and what it adds to the errors |
 //! | `predict.rs` | what it does under any drive, with intervals | |
 //! | `error.rs` | why one could not be made | |
 
@@ -20,22 +21,25 @@ mod candidate;
 mod data;
 mod displacement;
 mod error;
+mod extrapolation;
 mod fit;
 mod material;
 mod predict;
 mod prepared;
 mod problem;
 mod profile;
+mod range;
 mod search;
 mod systematic;
 
 pub use candidate::{Candidate, EquilibriumLaw, RateLaw};
 pub use data::CalibrationData;
 pub use error::{CalibrateError, MaterialError};
+pub use extrapolation::Extrapolation;
 pub use fit::{Calibration, calibrate};
 pub use material::{
-    Body, CalibrationRange, Material, MaterialParameter, MaterialParts, MaterialUncertainty, MaterialUnit,
-    SystematicEffect,
+    Body, Material, MaterialParameter, MaterialParts, MaterialUncertainty, MaterialUnit, SystematicEffect,
 };
-pub use predict::{Extrapolation, Prediction};
+pub use predict::Prediction;
 pub use profile::{ParameterProfile, profile};
+pub use range::CalibrationRange;

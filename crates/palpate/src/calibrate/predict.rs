@@ -2,89 +2,13 @@
 
 use serde::{Deserialize, Serialize};
 
+use super::extrapolation::{Beyond, Extrapolation};
 use super::{CalibrateError, CalibrationData, Material};
 use crate::analysis::{AnalysisOptions, Geometry};
-use crate::number::significant;
 use crate::record::Record;
 use crate::simulate::{Contact, Drive, ProgramStep, Sampling, SimulateError, Trajectory, simulate_watched};
 use crate::statistics::coverage_factor;
 use crate::watch::{Cancelled, Stages, Unwatched, Watch};
-
-/// A question beyond what the test has tested.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case", tag = "kind")]
-pub enum Extrapolation {
-    /// A longer hold than any of the test.
-    LongerHold {
-        /// What was requested, s.
-        requested: f64,
-        /// What was tested, s.
-        tested: f64,
-    },
-    /// A deeper squeeze.
-    DeeperSqueeze {
-        /// What was requested, m.
-        requested: f64,
-        /// What was tested, m.
-        tested: f64,
-    },
-    /// A faster ramp.
-    FasterRamp {
-        /// What was requested, m/s.
-        requested: f64,
-        /// What was tested, m/s.
-        tested: f64,
-    },
-    /// A larger force.
-    LargerForce {
-        /// What was requested, N.
-        requested: f64,
-        /// What was tested, N.
-        tested: f64,
-    },
-    /// A force that is held, which no test in displacement shows.
-    ForceHeld,
-}
-
-impl std::fmt::Display for Extrapolation {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        let digits = |value: f64| significant(value, 3);
-        match *self {
-            Self::LongerHold { requested, tested } => write!(
-                f,
-                "the longest hold lasts {} s, that of the test {} s: later forces are extrapolated by the law",
-                digits(requested),
-                digits(tested)
-            ),
-            Self::DeeperSqueeze { requested, tested } => write!(
-                f,
-                "the largest displacement is {} mm, that of the test {} mm: the equilibrium force beyond it is extrapolated",
-                digits(1e3 * requested),
-                digits(1e3 * tested)
-            ),
-            Self::FasterRamp { requested, tested } => write!(
-                f,
-                "the fastest ramp is {} mm/s, that of the test {} mm/s: the peak force may differ",
-                digits(1e3 * requested),
-                digits(1e3 * tested)
-            ),
-            Self::LargerForce { requested, tested } => {
-                write!(
-                    f,
-                    "the largest force is {} N, that of the test {} N: the equilibrium force beyond it is extrapolated",
-                    digits(requested),
-                    digits(tested)
-                )
-            }
-            Self::ForceHeld => {
-                write!(
-                    f,
-                    "the force is held, while the test held the displacement: the law predicts creep that was not observed"
-                )
-            }
-        }
-    }
-}
 
 /// A predicted course with its uncertainty; SI units.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -93,10 +17,11 @@ impl std::fmt::Display for Extrapolation {
 pub struct Prediction {
     /// The course with the best parameters.
     pub trajectory: Trajectory,
-    /// Standard error of the force (N) from the uncertainty of the calibration; 0 everywhere if that is not determined.
-    pub force_standard_error: Vec<f64>,
-    /// The same of the displacement of the jaw (m); 0 where the displacement is requested for.
-    pub displacement_standard_error: Vec<f64>,
+    /// Standard error of the force (N) from the uncertainty of the calibration, and from what lies beyond the test; `None` where the test
+    /// leaves a parameter open, so that it is not known.
+    pub force_standard_error: Option<Vec<f64>>,
+    /// The same of the displacement of the jaw (m); 0 where the displacement is prescribed.
+    pub displacement_standard_error: Option<Vec<f64>>,
     /// Standard deviation of the force residuals of the calibration, N: noise of one reading.
     pub noise: f64,
     /// Coverage of the intervals.
@@ -109,31 +34,36 @@ pub struct Prediction {
 
 checked_when_read!(Prediction, "a standard error for each sample", |found: &Prediction| {
     let count = found.trajectory.len();
-    found.force_standard_error.len() == count && found.displacement_standard_error.len() == count
+    let is_complete = |errors: &Option<Vec<f64>>| errors.as_ref().is_none_or(|errors| errors.len() == count);
+    is_complete(&found.force_standard_error) && is_complete(&found.displacement_standard_error)
 });
 
 impl Prediction {
-    /// Ends of the interval of the mean force at sample `index`, N: what the parameters leave open.
+    /// Ends of the interval of the mean force at sample `index`, N: what the parameters leave open, and what lies beyond the test. `None` where
+    /// it is not known.
     #[must_use]
-    pub fn force_interval(&self, index: usize) -> (f64, f64) {
-        let (force, half) = (self.trajectory.force[index], self.factor * self.force_standard_error[index]);
-        (force - half, force + half)
+    pub fn force_interval(&self, index: usize) -> Option<(f64, f64)> {
+        let error = self.force_standard_error.as_ref()?[index];
+        Some(self.interval(self.trajectory.force[index], error))
     }
 
-    /// Ends of the interval of the displacement of the jaw at sample `index`, m; they coincide where the displacement is prescribed.
+    /// Ends of the interval of the displacement of the jaw at sample `index`, m; they coincide where the displacement is prescribed. `None`
+    /// where it is not known.
     #[must_use]
-    pub fn displacement_interval(&self, index: usize) -> (f64, f64) {
-        let (place, half) =
-            (self.trajectory.displacement[index], self.factor * self.displacement_standard_error[index]);
-        (place - half, place + half)
+    pub fn displacement_interval(&self, index: usize) -> Option<(f64, f64)> {
+        let error = self.displacement_standard_error.as_ref()?[index];
+        Some(self.interval(self.trajectory.displacement[index], error))
     }
 
-    /// Ends of the interval of one reading of the force at sample `index`, N: parameters and noise.
+    /// Ends of the interval of one reading of the force at sample `index`, N: those of its mean, and noise. `None` where it is not known.
     #[must_use]
-    pub fn reading_interval(&self, index: usize) -> (f64, f64) {
-        let half = self.factor * self.force_standard_error[index].hypot(self.noise);
-        let force = self.trajectory.force[index];
-        (force - half, force + half)
+    pub fn reading_interval(&self, index: usize) -> Option<(f64, f64)> {
+        let error = self.force_standard_error.as_ref()?[index].hypot(self.noise);
+        Some(self.interval(self.trajectory.force[index], error))
+    }
+
+    fn interval(&self, value: f64, error: f64) -> (f64, f64) {
+        (value - self.factor * error, value + self.factor * error)
     }
 }
 
@@ -234,12 +164,17 @@ impl Material {
             }
         }
         let freedom = self.uncertainty().map_or(f64::INFINITY, |uncertainty| uncertainty.freedom);
+        let beyond = Beyond::of(self, drive, &trajectory, &mut stages)?;
         stages.finish()?;
+        let errors = |inside: Vec<f64>, beyond: &[f64]| {
+            let sum = inside.iter().zip(beyond).map(|(inside, beyond)| (inside + beyond).sqrt());
+            self.uncertainty().map(|_| sum.collect())
+        };
         Ok(Prediction {
-            extrapolations: self.extrapolations(drive, &trajectory),
             trajectory,
-            force_standard_error: force.into_iter().map(f64::sqrt).collect(),
-            displacement_standard_error: displacement.into_iter().map(f64::sqrt).collect(),
+            force_standard_error: errors(force, &beyond.force),
+            displacement_standard_error: errors(displacement, &beyond.displacement),
+            extrapolations: beyond.extrapolations,
             noise: self.noise(),
             confidence,
             factor: coverage_factor(confidence, freedom),
@@ -263,56 +198,6 @@ impl Material {
             beyond.for_each(|(i, j)| joint[i][j] += effect.logs[i] * effect.logs[j]);
         }
         root(&joint)
-    }
-
-    fn extrapolations(&self, drive: Drive<'_>, course: &Trajectory) -> Vec<Extrapolation> {
-        /// By how much more than was tested a question may ask.
-        const MORE: f64 = 1.05;
-        let tested = self.range();
-        let most = |values: &[f64]| values.iter().copied().fold(0.0, f64::max);
-        let (mut longest, mut fastest, mut held) = (0.0f64, 0.0f64, false);
-        match drive {
-            Drive::Motion(motion) => {
-                let still = 0.01 * most(motion.displacements());
-                let simple = motion.simplified(still);
-                for (times, places) in simple.times().windows(2).zip(simple.displacements().windows(2)) {
-                    let (duration, way) = (times[1] - times[0], (places[1] - places[0]).abs());
-                    if way <= 2.0 * still {
-                        longest = longest.max(duration);
-                    } else {
-                        fastest = fastest.max(way / duration);
-                    }
-                }
-            }
-            Drive::Force(_) => held = true,
-            Drive::Program(steps) => {
-                for step in steps {
-                    match *step {
-                        ProgramStep::Move { rate, .. } | ProgramStep::MoveToForce { rate, .. } => {
-                            fastest = fastest.max(rate);
-                        }
-                        ProgramStep::HoldPosition { duration } => longest = longest.max(duration),
-                        ProgramStep::Press { .. } | ProgramStep::HoldForce { .. } => held = true,
-                    }
-                }
-            }
-        }
-        type Requested = (f64, f64, fn(f64, f64) -> Extrapolation);
-        let kinds: [Requested; 4] = [
-            (longest, tested.longest_hold, |requested, tested| Extrapolation::LongerHold { requested, tested }),
-            (most(&course.displacement), tested.deepest, |requested, tested| Extrapolation::DeeperSqueeze {
-                requested,
-                tested,
-            }),
-            (fastest, tested.fastest, |requested, tested| Extrapolation::FasterRamp { requested, tested }),
-            (most(&course.force), tested.largest_force, |requested, tested| Extrapolation::LargerForce {
-                requested,
-                tested,
-            }),
-        ];
-        let beyond = kinds.into_iter().filter(|(requested, tested, _)| *requested > MORE * tested);
-        let found = beyond.map(|(requested, tested, kind)| kind(requested, tested));
-        found.chain(held.then_some(Extrapolation::ForceHeld)).collect()
     }
 }
 

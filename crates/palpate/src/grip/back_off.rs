@@ -114,7 +114,10 @@ impl Grip<'_> {
             let at = vec![start, start + duration.min(ALWAYS)];
             let predicted = self.predict(&plan.held(duration.min(ALWAYS)), at)?;
             let needed = self.needed_force(displacement);
-            let course = predicted.trajectory.force.iter().zip(&predicted.force_standard_error);
+            let Some(errors) = &predicted.force_standard_error else {
+                return Ok(false);
+            };
+            let course = predicted.trajectory.force.iter().zip(errors);
             Ok(course.into_iter().all(|(force, error)| force - factor * error >= needed))
         };
         let (mut short, mut enough) = (least, least);

@@ -105,8 +105,8 @@ impl Grip<'_> {
         let (deepest, _) = self.limits.deepest(self.contact.specimen());
         let ends = self.ends(&pressed.steps)?;
         let end = ends.last().copied().unwrap_or_default();
-        let predicted = self.predict(&pressed.steps, vec![end.time])?;
-        Ok(Some(self.probability_of(deepest - end.displacement, predicted.displacement_standard_error[0])))
+        let errors = self.predict(&pressed.steps, vec![end.time])?.displacement_standard_error;
+        Ok(errors.map(|errors| self.probability_of(deepest - end.displacement, errors[0])))
     }
 
     /// The least force that carries the load as soon as it is reached.

@@ -158,7 +158,7 @@ impl Grip<'_> {
         let end = ends.last().copied().unwrap_or_default();
         let reserve = match self.level {
             Some(level) => {
-                let error = self.predict(&program, vec![end.time])?.force_standard_error[0];
+                let error = self.force_error(&program, end.time)?.unwrap_or(f64::INFINITY);
                 one_sided_factor(level, self.freedom()) * error
             }
             None => 0.0,

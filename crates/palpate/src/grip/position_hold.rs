@@ -287,7 +287,8 @@ impl<'a> Grip<'a> {
             let mut surplus = |times: &[f64]| -> Result<Vec<f64>, GripError> {
                 let at = times.iter().map(|time| end.time + time).collect();
                 let predicted = self.predict(&program, at)?;
-                let course = predicted.trajectory.force.iter().zip(&predicted.force_standard_error);
+                let errors = predicted.force_standard_error.unwrap_or_else(|| vec![0.0; predicted.trajectory.len()]);
+                let course = predicted.trajectory.force.iter().zip(errors);
                 Ok(course.map(|(force, error)| force + factor * error - needed).collect())
             };
             crossing(&mut surplus)
@@ -314,9 +315,13 @@ impl<'a> Grip<'a> {
         let program = plan.held(duration.min(ALWAYS));
         let ends = self.ends(&program)?;
         let end = ends.last().copied().unwrap_or_default();
-        let predicted = self.predict(&program, vec![end.time])?;
         let surplus = end.force - self.needed_force(end.displacement);
-        Ok(Some(self.probability_of(surplus, predicted.force_standard_error[0])))
+        Ok(self.force_error(&program, end.time)?.map(|error| self.probability_of(surplus, error)))
+    }
+
+    /// Standard error of the force at a time (s) of a program, N; `None` where it is not known.
+    pub(super) fn force_error(&self, program: &[ProgramStep], time: f64) -> Result<Option<f64>, GripError> {
+        Ok(self.predict(program, vec![time])?.force_standard_error.map(|errors| errors[0]))
     }
 
     /// The probability that something is above 0 which is estimated with this standard error.

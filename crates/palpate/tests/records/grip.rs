@@ -55,6 +55,8 @@ fn ball(errors: Option<[f64; 4]>) -> Material {
             fastest: SPEED,
             slowest: SPEED,
             largest_force: 14.3,
+            farthest_retreat: 0.01,
+            loadings: 1,
         },
     })
     .unwrap()
@@ -158,7 +160,7 @@ fn the_interval_of_the_time_is_where_the_edges_of_the_band_slip() {
     assert!(low < found.time_to_slip && found.time_to_slip < high, "{found:?}");
     for (time, edge) in [(seconds(low), 0), (seconds(high), 1)] {
         let course = grip.course(&plan, time, 8).unwrap();
-        let band = course.force_interval(course.trajectory.len() - 1);
+        let band = course.force_interval(course.trajectory.len() - 1).unwrap();
         let force = if edge == 0 { band.0 } else { band.1 };
         assert!((force / found.needed_force - 1.0).abs() < 1e-9, "{force} {}", found.needed_force);
     }
@@ -376,18 +378,24 @@ fn bands_behind_steps_to_a_force_hold_every_number() {
         0.5 * (end(1.0) - end(-1.0))
     };
     let deviation = (0..4).map(|index| by_hand(index).powi(2)).sum::<f64>().sqrt();
-    assert!((found.displacement_standard_error[last] / deviation - 1.0).abs() < 1e-6, "{deviation} {found:?}");
+    // No test has shown a creep: half of it is uncertain besides.
+    let start = palpate::simulate::step_ends(&steps, material.contact()).unwrap()[0].displacement;
+    let expected = deviation.hypot(0.5 * (found.trajectory.displacement[last] - start));
+    let error = found.displacement_standard_error.unwrap()[last];
+    assert!((error / expected - 1.0).abs() < 1e-6, "{expected} {error}");
 }
 
-/// The inverse of Student's distribution never ended for endless degrees of freedom.
+/// A mean without an error had an interval of no width. The inverse of Student's distribution never ended for endless degrees of freedom.
 #[test]
-fn a_material_without_errors_predicts_with_the_noise_alone() {
+fn a_material_without_errors_has_no_interval() {
     let found = ball(None).predict(&Plan::squeeze(0.005, SPEED).held(1.0)[..], &Sampling::Rate(4.0), 0.95).unwrap();
-    assert!(
-        (found.factor - 1.959_963_984_540_054).abs() < 1e-12 && found.force_standard_error.iter().all(|d| *d == 0.0)
+    assert!((found.factor - 1.959_963_984_540_054).abs() < 1e-12);
+    assert_eq!(
+        (found.force_interval(1), found.reading_interval(1), found.displacement_interval(1)),
+        (None, None, None)
     );
-    let (low, high) = found.reading_interval(1);
-    assert!((high - low - 2.0 * 0.05 * found.factor).abs() < 1e-12);
+    let text = serde_json::to_string(&found).unwrap();
+    assert_eq!(serde_json::from_str::<palpate::calibrate::Prediction>(&text).unwrap(), found);
 }
 
 /// A gripper that could not close in time was given to hold.

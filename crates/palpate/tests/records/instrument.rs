@@ -158,7 +158,7 @@ fn a_wrong_radius_does_not_blur_what_the_test_has_shown() {
         let modulus = material.estimate("modulus_pa").unwrap();
         let predicted = material.predict(&motion, &at, 0.95).unwrap();
         (
-            predicted.force_standard_error[1] / predicted.trajectory.force[1],
+            predicted.force_standard_error.unwrap()[1] / predicted.trajectory.force[1],
             modulus.standard_error.unwrap() / modulus.value,
         )
     };

@@ -305,6 +305,11 @@ fn range(source: &Source<'_>, table: &RangeTable) -> Result<CalibrationRange, De
         fastest: quantity("fastest", &table.fastest, Dimension::Speed)?,
         slowest: quantity("slowest", &table.slowest, Dimension::Speed)?,
         largest_force: quantity("largest_force", &table.largest_force, Dimension::Force)?,
+        farthest_retreat: match &table.farthest_retreat {
+            Some(written) => quantity("farthest_retreat", written, Dimension::Length)?,
+            None => 0.0,
+        },
+        loadings: table.loadings.unwrap_or(1).max(1),
     };
     if range.slowest > range.fastest {
         let expected = format!("no more than the fastest, {} m/s", range.fastest);

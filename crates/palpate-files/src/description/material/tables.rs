@@ -136,6 +136,11 @@ pub(crate) struct RangeTable {
     pub(crate) slowest: QuantityText,
     /// The largest force.
     pub(crate) largest_force: QuantityText,
+    /// The farthest retreat from the deepest place before it; none if omitted.
+    pub(crate) farthest_retreat: Option<QuantityText>,
+    /// How often the body was loaded from the virgin state on: 1 if omitted.
+    #[schemars(extend("minimum" = 1))]
+    pub(crate) loadings: Option<u32>,
 }
 
 impl From<EquilibriumLaw> for CalibratedEquilibriumName {

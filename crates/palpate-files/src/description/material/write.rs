@@ -180,9 +180,11 @@ impl MaterialFile {
             ("fastest", range.fastest, "m/s"),
             ("slowest", range.slowest, "m/s"),
             ("largest_force", range.largest_force, "N"),
+            ("farthest_retreat", range.farthest_retreat, "m"),
         ] {
             out += &format!("{name} = {}\n", si(value, unit));
         }
+        out += &format!("loadings = {}\n", range.loadings);
         for parameter in material.parameters() {
             let estimate = &parameter.estimate;
             out += &format!("\n[[calibration.parameter]]\nname = {}\n", quoted(&parameter.name));

@@ -82,6 +82,8 @@ fn material(law: &str, equilibrium: EquilibriumLaw, shape: Shape) -> MaterialFil
                 fastest: 0.1 * third,
                 slowest: 0.01 * third,
                 largest_force: 10.0 * third,
+                farthest_retreat: 0.01,
+                loadings: 1,
             },
         })
         .unwrap(),

@@ -35,11 +35,13 @@ pub fn grip_figure(body: &GrippedBody<'_>, name: &str) -> Figure {
     if let Some(course) = answer.course() {
         let role = shown.iter().find(|(.., one)| std::ptr::eq(*one, course)).map_or(Role::Fitted, |(_, role, _)| *role);
         let time = || course.trajectory.time.clone();
-        let (low, high): (Vec<f64>, Vec<f64>) = (0..course.trajectory.len()).map(|i| course.force_interval(i)).unzip();
-        let of_needed = |ends: &[f64]| ends.iter().enumerate().map(|(i, end)| end / needed(course, i)).collect();
-        // Before the jaws touch there is nothing to need.
-        margin = margin.layer(Layer::band(time(), of_needed(&low), of_needed(&high), role));
-        force = force.layer(Layer::band(time(), low, high, role).label(percent(course.confidence)));
+        let ends: Option<Vec<(f64, f64)>> = (0..course.trajectory.len()).map(|i| course.force_interval(i)).collect();
+        if let Some((low, high)) = ends.map(|ends| ends.into_iter().unzip::<_, _, Vec<f64>, Vec<f64>>()) {
+            let of_needed = |ends: &[f64]| ends.iter().enumerate().map(|(i, end)| end / needed(course, i)).collect();
+            // Before the jaws touch there is nothing to need.
+            margin = margin.layer(Layer::band(time(), of_needed(&low), of_needed(&high), role));
+            force = force.layer(Layer::band(time(), low, high, role).label(percent(course.confidence)));
+        }
         let limit = (0..course.trajectory.len()).map(|i| needed(course, i)).collect();
         force = force.layer(Layer::line(time(), limit, Role::Reference).label("slips below"));
     }

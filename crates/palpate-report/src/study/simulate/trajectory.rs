@@ -38,8 +38,10 @@ pub(in crate::study) fn write_series(
     write!(out, "{}\r\n", names.join(","))?;
     for row in 0..rows {
         for (i, (_, value)) in columns.iter().enumerate() {
-            // + 0.0 turns −0 into 0.
-            write!(out, "{}{}", if i > 0 { "," } else { "" }, exact(value(row) + 0.0))?;
+            let separator = if i > 0 { "," } else { "" };
+            // + 0.0 turns −0 into 0; what is not known is empty.
+            let text = Some(value(row) + 0.0).filter(|value| !value.is_nan()).map(exact);
+            write!(out, "{separator}{}", text.unwrap_or_default())?;
         }
         write!(out, "\r\n")?;
     }

@@ -57,6 +57,8 @@ pub(super) fn material(stiffer: f64) -> palpate::calibrate::Material {
             fastest: 0.01,
             slowest: 0.001,
             largest_force: 5.0,
+            farthest_retreat: 0.01,
+            loadings: 1,
         },
     })
     .unwrap()

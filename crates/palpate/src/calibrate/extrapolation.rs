@@ -1,0 +1,228 @@
+//! What lies beyond the test, and what it adds to the errors of a prediction.
+
+use serde::{Deserialize, Serialize};
+
+use super::range::{Held, Way, equilibrium_force};
+use super::{CalibrationRange, Material};
+use crate::number::significant;
+use crate::simulate::{Drive, Sampling, SimulateError, Trajectory, simulate_watched};
+use crate::watch::Stages;
+
+/// A question beyond what the test has tested.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case", tag = "kind")]
+pub enum Extrapolation {
+    /// A longer hold than any of the test.
+    LongerHold {
+        /// What was requested, s.
+        requested: f64,
+        /// What was tested, s.
+        tested: f64,
+    },
+    /// A deeper squeeze.
+    DeeperSqueeze {
+        /// What was requested, m.
+        requested: f64,
+        /// What was tested, m.
+        tested: f64,
+    },
+    /// A faster ramp.
+    FasterRamp {
+        /// What was requested, m/s.
+        requested: f64,
+        /// What was tested, m/s.
+        tested: f64,
+    },
+    /// A larger force.
+    LargerForce {
+        /// What was requested, N.
+        requested: f64,
+        /// What was tested, N.
+        tested: f64,
+    },
+    /// A farther retreat.
+    FartherRetreat {
+        /// What was requested, m.
+        requested: f64,
+        /// What was tested, m.
+        tested: f64,
+    },
+    /// Loaded more often.
+    MoreLoadings {
+        /// What was requested.
+        requested: u32,
+        /// What was tested.
+        tested: u32,
+    },
+    /// A force that is held, which no test in displacement shows.
+    ForceHeld,
+}
+
+impl std::fmt::Display for Extrapolation {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let digits = |value: f64| significant(value, 3);
+        match *self {
+            Self::LongerHold { requested, tested } => write!(
+                f,
+                "the longest hold lasts {} s, that of the test {} s: later forces are extrapolated by the law",
+                digits(requested),
+                digits(tested)
+            ),
+            Self::DeeperSqueeze { requested, tested } => write!(
+                f,
+                "the largest displacement is {} mm, that of the test {} mm: the equilibrium force beyond it is extrapolated",
+                digits(1e3 * requested),
+                digits(1e3 * tested)
+            ),
+            Self::FasterRamp { requested, tested } => write!(
+                f,
+                "the fastest ramp is {} mm/s, that of the test {} mm/s: the peak force may differ",
+                digits(1e3 * requested),
+                digits(1e3 * tested)
+            ),
+            Self::LargerForce { requested, tested } => {
+                write!(
+                    f,
+                    "the largest force is {} N, that of the test {} N: the equilibrium force beyond it is extrapolated",
+                    digits(requested),
+                    digits(tested)
+                )
+            }
+            Self::FartherRetreat { requested, tested: 0.0 } => write!(
+                f,
+                "the jaw retreats by {} mm, the test has loading alone: a body that softens by its first loading has less force",
+                digits(1e3 * requested)
+            ),
+            Self::FartherRetreat { requested, tested } => write!(
+                f,
+                "the jaw retreats by {} mm, that of the test by {} mm: a body that softens by its first loading has less force",
+                digits(1e3 * requested),
+                digits(1e3 * tested)
+            ),
+            Self::MoreLoadings { requested, tested } => write!(
+                f,
+                "the body is loaded {requested} times, in the test {tested}: one that softens from cycle to cycle has less force"
+            ),
+            Self::ForceHeld => {
+                write!(
+                    f,
+                    "the force is held, while the test held the displacement: the law predicts creep that was not observed"
+                )
+            }
+        }
+    }
+}
+
+/// By how much more than was tested a question may ask.
+const MORE: f64 = 1.05;
+
+/// Standard error of what a law predicts beyond the test, as a share of how much it predicts to change there: an interval of 95 % takes in that
+/// nothing more changes, and that twice as much does.
+const BY_LAW: f64 = 0.5;
+
+/// Standard error of the force after a retreat that the test has not shown, as a share of it: an interval of 95 % takes in a half, about what
+/// filled rubbers lose by their first loading (the Mullins effect).
+const BY_DAMAGE: f64 = 0.25;
+
+/// What lies beyond the test.
+pub(super) struct Beyond {
+    pub(super) extrapolations: Vec<Extrapolation>,
+    /// What it adds to the variance of the force (N²) and of the displacement (m²) at each sample.
+    pub(super) force: Vec<f64>,
+    pub(super) displacement: Vec<f64>,
+}
+
+impl Beyond {
+    /// Of the course of a drive with the best parameters.
+    pub(super) fn of(
+        material: &Material,
+        drive: Drive<'_>,
+        course: &Trajectory,
+        stages: &mut Stages<'_>,
+    ) -> Result<Self, SimulateError> {
+        let (tested, contact) = (material.range(), material.contact());
+        let way = Way::of(drive, contact)?;
+        let end = course.time.last().copied().unwrap_or(0.0);
+        let extrapolations = extrapolations(tested, &way, course, end);
+        let body = contact.specimen();
+        let mut beyond = Self {
+            extrapolations,
+            force: vec![0.0; course.len()],
+            displacement: vec![0.0; course.len()],
+        };
+        if beyond.extrapolations.is_empty() {
+            return Ok(beyond);
+        }
+        // Samples in a hold that lasts longer than any of the test, and when it had lasted as long.
+        let mut longer: Vec<(usize, f64)> = Vec::new();
+        for (index, time) in course.time.iter().enumerate() {
+            let (force, displacement) = (course.force[index], course.displacement[index]);
+            let done = way.until(*time);
+            let relaxed = equilibrium_force(body, displacement);
+            let mut add = |error: f64| beyond.force[index] += error * error;
+            if displacement > MORE * tested.deepest && relaxed > 0.0 {
+                add(BY_LAW * force * (1.0 - equilibrium_force(body, tested.deepest) / relaxed));
+            }
+            if done.fastest > MORE * tested.fastest {
+                add(BY_LAW * (force - relaxed) * (1.0 - tested.fastest / done.fastest));
+            }
+            if done.retreat > MORE * tested.farthest_retreat {
+                add(BY_DAMAGE * force * (1.0 - tested.farthest_retreat / done.retreat));
+            }
+            if done.loadings > tested.loadings {
+                add(BY_DAMAGE * force * (1.0 - f64::from(tested.loadings) / f64::from(done.loadings)));
+            }
+            match done.held {
+                Held::Displacement if time - done.since > tested.longest_hold => {
+                    longer.push((index, done.since + tested.longest_hold));
+                }
+                Held::Force => beyond.displacement[index] += (BY_LAW * (displacement - done.from)).powi(2),
+                Held::Displacement | Held::Nothing | Held::Pressed => {}
+            }
+        }
+        let mut tested_for: Vec<f64> = longer.iter().map(|(_, time)| *time).collect();
+        tested_for.dedup();
+        if !tested_for.is_empty() {
+            let there = simulate_watched(drive, contact, &Sampling::Times(tested_for.clone()), stages)?;
+            for (index, time) in longer {
+                let at = tested_for.partition_point(|tested| *tested < time);
+                beyond.force[index] += (BY_LAW * (course.force[index] - there.force[at])).powi(2);
+            }
+        }
+        Ok(beyond)
+    }
+}
+
+fn extrapolations(tested: &CalibrationRange, way: &Way, course: &Trajectory, end: f64) -> Vec<Extrapolation> {
+    let done = way.until(end);
+    let most = |values: &[f64]| values.iter().copied().fold(0.0, f64::max);
+    type Requested = (f64, f64, fn(f64, f64) -> Extrapolation);
+    let kinds: [Requested; 5] = [
+        (done.longest_hold, tested.longest_hold, |requested, tested| Extrapolation::LongerHold {
+            requested,
+            tested,
+        }),
+        (most(&course.displacement).max(done.deepest), tested.deepest, |requested, tested| {
+            Extrapolation::DeeperSqueeze { requested, tested }
+        }),
+        (done.fastest, tested.fastest, |requested, tested| Extrapolation::FasterRamp { requested, tested }),
+        (most(&course.force), tested.largest_force, |requested, tested| Extrapolation::LargerForce {
+            requested,
+            tested,
+        }),
+        (done.retreat, tested.farthest_retreat, |requested, tested| Extrapolation::FartherRetreat {
+            requested,
+            tested,
+        }),
+    ];
+    let beyond = kinds.into_iter().filter(|(requested, tested, _)| *requested > MORE * tested);
+    let mut found: Vec<Extrapolation> = beyond.map(|(requested, tested, kind)| kind(requested, tested)).collect();
+    if done.loadings > tested.loadings {
+        found.push(Extrapolation::MoreLoadings {
+            requested: done.loadings,
+            tested: tested.loadings,
+        });
+    }
+    found.extend(way.holds_force(end).then_some(Extrapolation::ForceHeld));
+    found
+}

@@ -1,0 +1,245 @@
+//! What a test has shown: how far, how fast, how long, how often; and the course of the jaw that this is read from.
+
+use serde::{Deserialize, Serialize};
+
+use crate::contact::Specimen;
+use crate::simulate::{Contact, Drive, Motion, ProgramStep, Sampling, SimulateError, simulate, step_ends};
+
+/// Range of the test; predictions beyond it are extrapolations.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct CalibrationRange {
+    /// The longest hold, s.
+    pub longest_hold: f64,
+    /// The deepest squeeze (travel of the jaw since first touch), m.
+    pub deepest: f64,
+    /// The fastest ramp, m/s.
+    pub fastest: f64,
+    /// The slowest ramp, m/s.
+    pub slowest: f64,
+    /// The largest force, N.
+    pub largest_force: f64,
+    /// The farthest retreat from the deepest place before it, m; 0 of a test in loading alone.
+    #[serde(default)]
+    pub farthest_retreat: f64,
+    /// How often the body was loaded, from the virgin state on: 1 and every loading after a retreat.
+    #[serde(default = "once")]
+    pub loadings: u32,
+}
+
+fn once() -> u32 {
+    1
+}
+
+/// What is held in a stretch of a drive.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Held {
+    /// The displacement changes as it is prescribed.
+    Nothing,
+    /// The force changes as it is prescribed.
+    Pressed,
+    Displacement,
+    Force,
+}
+
+/// End of a stretch of a drive.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Corner {
+    time: f64,
+    displacement: f64,
+    /// In the stretch that ends here.
+    held: Held,
+}
+
+/// The jaw's way through a drive: straight stretches.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Way {
+    corners: Vec<Corner>,
+    /// A change of the displacement that counts as a retreat or as another loading, m.
+    least: f64,
+}
+
+/// What the jaw has done up to a time.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Done {
+    /// The deepest displacement, m.
+    pub(super) deepest: f64,
+    /// The farthest retreat, m.
+    pub(super) retreat: f64,
+    /// Number of loadings.
+    pub(super) loadings: u32,
+    /// Slowest and fastest ramp, m/s; 0 without one.
+    pub(super) slowest: f64,
+    pub(super) fastest: f64,
+    /// What is held now, since when (s), and where (m) that began.
+    pub(super) held: Held,
+    pub(super) since: f64,
+    pub(super) from: f64,
+    /// The longest time that the displacement was held, s.
+    pub(super) longest_hold: f64,
+}
+
+/// Share of the deepest displacement below which the jaw stands.
+const STILL: f64 = 0.01;
+
+/// Share of it that is a retreat.
+const RETREAT: f64 = 0.05;
+
+impl Way {
+    /// Of a drive, with what the body carries where forces are prescribed.
+    pub(super) fn of(drive: Drive<'_>, contact: &Contact) -> Result<Self, SimulateError> {
+        match drive {
+            Drive::Motion(motion) => Ok(Self::of_motion(motion)),
+            Drive::Force(history) => {
+                let times = history.times().to_vec();
+                let course = simulate(drive, contact, &Sampling::Times(times))?;
+                let mut before = f64::NAN;
+                let corner = |index: usize| {
+                    let force = history.forces()[index];
+                    let held = if force == before { Held::Force } else { Held::Pressed };
+                    before = force;
+                    Corner {
+                        time: course.time[index],
+                        displacement: course.displacement[index],
+                        held,
+                    }
+                };
+                Ok(Self::new((0..course.len()).map(corner).collect()))
+            }
+            Drive::Program(steps) => {
+                let ends = step_ends(steps, contact)?;
+                let start = Corner {
+                    time: 0.0,
+                    displacement: 0.0,
+                    held: Held::Nothing,
+                };
+                let corners = steps.iter().zip(&ends).map(|(step, end)| Corner {
+                    time: end.time,
+                    displacement: end.displacement,
+                    held: match step {
+                        ProgramStep::Move { .. } | ProgramStep::MoveToForce { .. } => Held::Nothing,
+                        ProgramStep::HoldPosition { .. } => Held::Displacement,
+                        ProgramStep::Press { .. } => Held::Pressed,
+                        ProgramStep::HoldForce { .. } => Held::Force,
+                    },
+                });
+                Ok(Self::new(std::iter::once(start).chain(corners).collect()))
+            }
+        }
+    }
+
+    /// Of a motion, less what is noise in it.
+    pub(super) fn of_motion(motion: &Motion) -> Self {
+        let deepest = motion.displacements().iter().copied().fold(0.0, f64::max);
+        let simple = motion.simplified(STILL * deepest);
+        let mut before = simple.displacements()[0];
+        let corner = |(time, displacement): (&f64, &f64)| {
+            let is_still = (displacement - before).abs() <= 2.0 * STILL * deepest;
+            before = *displacement;
+            Corner {
+                time: *time,
+                displacement: *displacement,
+                held: if is_still { Held::Displacement } else { Held::Nothing },
+            }
+        };
+        Self::new(simple.times().iter().zip(simple.displacements()).map(corner).collect())
+    }
+
+    fn new(corners: Vec<Corner>) -> Self {
+        let deepest = corners.iter().map(|corner| corner.displacement).fold(0.0, f64::max);
+        Self {
+            corners,
+            least: RETREAT * deepest,
+        }
+    }
+
+    /// Whether a force is prescribed before a time (s).
+    pub(super) fn holds_force(&self, until: f64) -> bool {
+        self.corners
+            .windows(2)
+            .any(|pair| pair[0].time < until && matches!(pair[1].held, Held::Force | Held::Pressed))
+    }
+
+    /// What the jaw has done up to a time (s).
+    pub(super) fn until(&self, time: f64) -> Done {
+        let first = self.corners[0];
+        let mut done = Done {
+            deepest: first.displacement,
+            retreat: 0.0,
+            loadings: 0,
+            slowest: f64::INFINITY,
+            fastest: 0.0,
+            held: Held::Nothing,
+            since: first.time,
+            from: first.displacement,
+            longest_hold: 0.0,
+        };
+        // The last turn: the lowest place before a loading, the deepest before a retreat.
+        let (mut is_loading, mut turn) = (false, first.displacement);
+        for pair in self.corners.windows(2) {
+            let (start, end) = (pair[0], pair[1]);
+            if start.time > time {
+                break;
+            }
+            let whole = end.time - start.time;
+            let share = if time < end.time { (time - start.time) / whole } else { 1.0 };
+            let place = start.displacement + share * (end.displacement - start.displacement);
+            if end.held != done.held || matches!(end.held, Held::Nothing | Held::Pressed) {
+                (done.held, done.since, done.from) = (end.held, start.time, start.displacement);
+            }
+            match end.held {
+                Held::Displacement => {
+                    done.longest_hold = done.longest_hold.max(time.min(end.time) - done.since);
+                }
+                Held::Nothing if whole > 0.0 => {
+                    let speed = (end.displacement - start.displacement).abs() / whole;
+                    done.slowest = done.slowest.min(speed);
+                    done.fastest = done.fastest.max(speed);
+                }
+                Held::Nothing | Held::Pressed | Held::Force => {}
+            }
+            done.deepest = done.deepest.max(place);
+            done.retreat = done.retreat.max(done.deepest - place);
+            if is_loading {
+                turn = turn.max(place);
+                if place < turn - self.least {
+                    (is_loading, turn) = (false, place);
+                }
+            } else {
+                turn = turn.min(place);
+                if place > turn + self.least {
+                    (is_loading, turn) = (true, place);
+                    done.loadings += 1;
+                }
+            }
+        }
+        if !done.slowest.is_finite() {
+            done.slowest = 0.0;
+        }
+        if done.retreat < self.least {
+            done.retreat = 0.0;
+        }
+        done
+    }
+}
+
+impl CalibrationRange {
+    /// Of a motion of the jaw up to a time (s), with the largest force until then (N).
+    pub(super) fn of(motion: &Motion, until: f64, largest_force: f64) -> Self {
+        let done = Way::of_motion(motion).until(until);
+        Self {
+            longest_hold: done.longest_hold,
+            deepest: done.deepest,
+            fastest: done.fastest,
+            slowest: done.slowest,
+            largest_force,
+            farthest_retreat: done.retreat,
+            loadings: done.loadings.max(1),
+        }
+    }
+}
+
+/// Force (N) that a body tends to at a displacement of the jaw (m).
+pub(super) fn equilibrium_force(body: &Specimen, displacement: f64) -> f64 {
+    let u = body.contact_displacement(displacement);
+    body.force(body.equilibrium_strain(u), u)
+}
