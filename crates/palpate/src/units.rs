@@ -45,6 +45,8 @@ pub enum Dimension {
     Acceleration,
     /// Torque in N m.
     Torque,
+    /// Angle in rad.
+    Angle,
 }
 
 impl Dimension {
@@ -65,6 +67,7 @@ impl Dimension {
             Self::Mass => ("mass", "150 g", MASS),
             Self::Acceleration => ("acceleration", "2 m/s^2", ACCELERATION),
             Self::Torque => ("torque", "5 N mm", TORQUE),
+            Self::Angle => ("angle", "35 deg", ANGLE),
         }
     }
 
@@ -205,6 +208,8 @@ const TORQUE: &[(&str, f64)] = &[
     ("mNm", 1e-3),
     ("mN·m", 1e-3),
 ];
+const DEGREE: f64 = std::f64::consts::PI / 180.0;
+const ANGLE: &[(&str, f64)] = &[("rad", 1.0), ("deg", DEGREE), ("°", DEGREE)];
 const FREQUENCY: &[(&str, f64)] = &[("Hz", 1.0), ("kHz", 1e3), ("/s", 1.0), ("1/s", 1.0)];
 
 /// Why a quantity could not be read.

@@ -2,9 +2,12 @@
 
 use core::f64::consts::PI;
 
+#[cfg(not(feature = "std"))]
+use num_traits::Float as _;
 use serde::{Deserialize, Serialize};
 
-use super::Curve;
+use super::specimen::{SpecimenError, positive};
+use super::{Curve, ThinLayer, Tip};
 
 /// From how many sides the body is squeezed: decides which share of the jaw's travel one contact takes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
@@ -56,12 +59,63 @@ pub enum Shape {
         /// Contact area in m² at contact displacements in m, from first touch on.
         area: Curve,
     },
+    /// The rigid tip of an indenter, pressed into a flat sample: area and force by [`Tip`], the force by Hertz's law
+    /// ([`Equilibrium::Hertz`](super::Equilibrium::Hertz)). ε_e = u/depth is nominal, since the strain under a tip is not uniform: the depth is
+    /// the thickness of the layer; of a half space the radius of a sphere or a punch. For 0 ≤ u below the depth.
+    Indenter {
+        /// The tip.
+        tip: Tip,
+        /// The sample: a half space without it. A cone and a pyramid need it, having no length of their own.
+        layer: Option<ThinLayer>,
+    },
 }
 
 impl Shape {
+    /// A dumbbell in tension, of even `thickness` (m), as the prism of its narrowest section that stretches as much as all of it.
+    ///
+    /// `widths` are places along its axis and widths there, in m, from grip to grip; between two of them the width is a straight line. A bar of
+    /// varying section stretches by u = F ∫ dx/(E t w(x)), so that its section is t w_min and its length ∫ w_min/w(x) dx; between two rows that
+    /// is w_min Δx ln(w₂/w₁)/(w₂ − w₁), the tapered bar of Gere and Timoshenko (Mechanics of Materials). For small strains, and up to 20°
+    /// between the sides of a taper, where the stress is within 3 % of uniform across the section; ε is that of the narrow part.
+    ///
+    /// ```
+    /// use palpate::contact::Shape;
+    /// // 20 mm at 4 mm wide, with tapers to 12 mm over 10 mm on each side: 4 ln 3/8 · 10 mm = 5.493 mm each
+    /// let widths = [(0.0, 0.012), (0.01, 0.004), (0.03, 0.004), (0.04, 0.012)];
+    /// let Shape::Prism { area, length } = Shape::dumbbell(2e-3, &widths)? else { unreachable!() };
+    /// assert!((area - 8e-6).abs() < 1e-18 && (length - 0.030_986_123).abs() < 1e-9);
+    /// # Ok::<(), palpate::contact::SpecimenError>(())
+    /// ```
+    ///
+    /// # Errors
+    /// [`SpecimenError::NotPositive`] for the thickness, [`SpecimenError::Widths`] for rows that are fewer than two, whose places do not rise
+    /// or whose widths are not above zero.
+    pub fn dumbbell(thickness: f64, widths: &[(f64, f64)]) -> Result<Self, SpecimenError> {
+        positive("thickness", "m", thickness)?;
+        let is_sound = |row: usize| {
+            let (place, width) = widths[row];
+            let rises = row == 0 || place > widths[row - 1].0;
+            place.is_finite() && width.is_finite() && width > 0.0 && rises
+        };
+        if let Some(row) = (0..widths.len().max(2)).find(|row| *row >= widths.len() || !is_sound(*row)) {
+            return Err(SpecimenError::Widths { row: row + 1 });
+        }
+        let narrowest = widths.iter().fold(f64::INFINITY, |least, (_, width)| least.min(*width));
+        let stretched = |pair: &[(f64, f64)]| {
+            let taper = pair[1].1 / pair[0].1 - 1.0;
+            let mean = if taper.abs() < 1e-12 { 1.0 } else { taper.ln_1p() / taper };
+            (pair[1].0 - pair[0].0) * narrowest / pair[0].1 * mean
+        };
+        Ok(Self::Prism {
+            area: thickness * narrowest,
+            length: widths.windows(2).map(stretched).sum(),
+        })
+    }
+
     /// Distance from an undeformed contact to the plane that does not move, in m: the depth that is cut into layers.
     ///
-    /// The radius of a ball; the thickness of a pad; the length of a prism, half of it when both ends move; what a profile says.
+    /// The radius of a ball; the thickness of a pad; the length of a prism, half of it when both ends move; what a profile says; the thickness
+    /// of the layer under a tip, or else the radius of the tip.
     #[must_use]
     pub fn depth(&self, sides: Sides) -> f64 {
         match (self, sides) {
@@ -70,6 +124,19 @@ impl Shape {
             (Self::Prism { length, .. }, Sides::One) => *length,
             (Self::Prism { length, .. }, Sides::Two) => length / 2.0,
             (Self::Profile { depth, .. }, _) => *depth,
+            (Self::Indenter { tip, layer }, _) => {
+                layer.map_or_else(|| tip.length().unwrap_or(0.0), |layer| layer.thickness)
+            }
+        }
+    }
+
+    /// The rigid tip whose force on the body is that of the contact by Hertz's law: a rigid flat on an elastic ball is a rigid ball on an elastic
+    /// half space.
+    pub(super) fn tip(&self) -> Option<(Tip, Option<ThinLayer>)> {
+        match self {
+            Self::Ball { radius } | Self::Pad { radius, .. } => Some((Tip::Sphere { radius: *radius }, None)),
+            Self::Indenter { tip, layer } => Some((*tip, *layer)),
+            Self::Prism { .. } | Self::Profile { .. } => None,
         }
     }
 
@@ -83,6 +150,7 @@ impl Shape {
             }
             Self::Prism { area, .. } => (*area, 0.0),
             Self::Profile { area, .. } => area.value_and_slope(u),
+            Self::Indenter { tip, .. } => tip.area(u),
         }
     }
 
@@ -98,7 +166,9 @@ impl Shape {
             (Self::Pad { .. }, _) => depth("thickness of the pad"),
             (Self::Prism { .. }, Sides::One) => depth("length"),
             (Self::Prism { .. }, Sides::Two) => depth("half length"),
-            (Self::Profile { area, .. }, _) => depth("depth").or_table(area.end(), "last row of the table of areas"),
+            (Self::Profile { area, .. }, _) => depth("depth").or_end(area.end(), "last row of the table of areas"),
+            (Self::Indenter { layer: Some(_), .. }, _) => depth("thickness of the layer"),
+            (Self::Indenter { layer: None, .. }, _) => depth("radius of the tip"),
         }
     }
 }
@@ -110,13 +180,13 @@ pub(crate) struct Limit {
     pub(crate) at: f64,
     /// What sets it.
     pub(crate) name: &'static str,
-    /// Whether it may be reached: the end of a table may, the end of a body not.
+    /// Whether it may be reached: the end of a table or of a law may, the end of a body not.
     pub(crate) included: bool,
 }
 
 impl Limit {
-    /// The end of a table if that comes first.
-    pub(super) fn or_table(self, end: f64, name: &'static str) -> Self {
+    /// The end of a table or of a law if that comes first.
+    pub(super) fn or_end(self, end: f64, name: &'static str) -> Self {
         if end < self.at {
             return Self {
                 at: end,

@@ -101,5 +101,6 @@ pub(crate) fn usual(dimension: Dimension) -> (&'static str, &'static str, &'stat
         Dimension::Mass => ("g", "10..500", "10, 100, 500"),
         Dimension::Acceleration => ("m/s^2", "1..10", "1, 5, 10"),
         Dimension::Torque => ("N mm", "1..10", "1, 5, 10"),
+        Dimension::Angle => ("deg", "20..70", "20, 35, 70"),
     }
 }
