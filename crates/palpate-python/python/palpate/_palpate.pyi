@@ -166,7 +166,7 @@ class Record(_Series):
         law: str = "latency",
         test: _Described | None = None,
         alternatives: Sequence[str] | None = None,
-        equilibrium: str = "uniform-strain",
+        equilibrium: str | None = None,
         poisson_ratio: float | None = None,
         rate: str = "constant",
         fit_until_s: float | None = None,
@@ -200,6 +200,8 @@ class Analysis(_Reported):
     holds: Final[Table]
     fits: Final[Table]
     parameter_table: Final[Table]
+    loading_modulus_pa: Final[float | None]
+    loading_modulus_standard_error_pa: Final[float | None]
     law: Final[str | None]
     sentence: Final[str]
     findings: Final[list[Finding]]

@@ -178,7 +178,7 @@ shown! {
             columns.extend(columns!(fits, fit => law, domain));
             columns.extend(estimated.iter().map(|(name, column)| (name.as_str(), Arc::clone(column))));
             columns.extend(columns!(fits, fit =>
-                equilibrium_force_n, excess_force_n, rmse, residual_correlation, samples, delta_bic, holdout_error, termination,
+                equilibrium_force_n, excess_force_n, equilibrium_modulus_pa, equilibrium_modulus_standard_error_pa, rmse, residual_correlation, samples, delta_bic, holdout_error, termination,
                 formula
             ));
             Table::of(columns)
@@ -186,6 +186,11 @@ shown! {
         /// Every parameter of every law on every hold, a row each: ``record``, ``hold``, ``law``, ``parameter``, ``unit``, ``value``,
         /// ``standard_error``, ``low``, ``high``, ``termination``, ``white_standard_error``, ``role``, ``domain``, ``recommended``.
         parameter_table: PyResult<Table> = Table::of(parameter_columns(&self.document.parameter_rows())),
+        /// Young's modulus of the first loading ramp, Pa: an apparent one of a body that relaxes; None where the geometry is not known.
+        loading_modulus_pa: Option<f64> = self.document.loading_modulus.as_ref().map(|found| found.modulus_pa),
+        /// Its standard error, Pa: of the residuals, and of first touch where that has one.
+        loading_modulus_standard_error_pa: Option<f64> =
+            self.document.loading_modulus.as_ref().map(|found| found.standard_error_pa),
         /// The law to use for the record as a whole, as ``law=`` takes it; None where none can be recommended.
         law: Option<String> = self.document.answer.law.clone(),
         /// Which law to use, in a sentence.

@@ -55,7 +55,7 @@ mod signals;
 mod software;
 mod watch;
 
-pub use analysis::{AnalysisDocument, HoldDocument};
+pub use analysis::{AnalysisDocument, HoldDocument, LoadingModulusDocument};
 pub use calibration::{CalibratedLawDocument, CalibrationDocument};
 pub use comparison::{
     ComparisonDocument, ComparisonSettingsDocument, HoldComparisonDocument, LawDocument, VerdictDocument,

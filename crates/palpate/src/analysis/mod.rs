@@ -30,4 +30,4 @@ pub(crate) use prepare::measured_motion;
 pub use prepare::{
     ClockSkew, Corrected, Prepared, clock_skew, corrected, corrected_watched, prepared, suspicious_signs,
 };
-pub use together::{Across, JointAnalysis, JointHolds, LevelAgreement, ModulusSource, Overlay, Trend};
+pub use together::{Across, JointAnalysis, JointHolds, LevelAgreement, LoadingModulus, ModulusSource, Overlay, Trend};

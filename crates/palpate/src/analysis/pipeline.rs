@@ -2,7 +2,9 @@
 
 use super::holds::{HoldAnalysis, complete_hold, fit_exponents, prepare_hold};
 use super::prepare::{ClockSkew, Prepared, corrected_watched, signal_findings};
-use super::together::{Across, ModulusSource, Overlay, across, changing_rate, implied_modulus, overlay};
+use super::together::{
+    Across, LoadingModulus, ModulusSource, Overlay, across, changing_rate, implied_modulus, loading_modulus, overlay,
+};
 use super::{AnalysisError, AnalysisOptions, Finding};
 use crate::contact::{Specimen, SpecimenError};
 use crate::number::significant;
@@ -30,6 +32,8 @@ pub struct Analysis {
     pub specimen: Option<Specimen>,
     /// Where the modulus comes from.
     pub modulus_source: Option<ModulusSource>,
+    /// Modulus of the first loading ramp, where the geometry is known.
+    pub loading_modulus: Option<LoadingModulus>,
     /// Every hold.
     pub holds: Vec<HoldAnalysis>,
     /// Results over several holds.
@@ -87,6 +91,7 @@ pub fn examine(record: &Record, options: &AnalysisOptions, watch: &mut dyn Watch
     } = prepared;
     hear("estimating the modulus")?;
     let (specimen, modulus_source) = specimen(&record, &segmentation, options, &mut findings)?;
+    let loading_modulus = loading_modulus(&record, &segmentation, &contact, options.geometry.as_ref());
     let segments = &segmentation.segments;
     let held = (0..segments.len()).filter(|index| segments[*index].phase == Phase::Hold);
     let (mut holds, ramps): (Vec<HoldAnalysis>, Vec<Option<usize>>) = held
@@ -123,6 +128,7 @@ pub fn examine(record: &Record, options: &AnalysisOptions, watch: &mut dyn Watch
         contact,
         specimen,
         modulus_source,
+        loading_modulus,
         holds,
         across,
         overlay,
@@ -143,7 +149,7 @@ fn specimen(
     let implied = implied_modulus(record, segmentation, geometry, options);
     match (geometry.modulus, implied) {
         (Some(given), implied) => {
-            let specimen = Specimen::new(geometry.shape.clone(), given, geometry.sides)?;
+            let specimen = geometry.specimen(given)?;
             if let Some(implied) = implied.filter(|implied| !(0.8..=1.25).contains(&(implied.value / given))) {
                 findings.push(Finding::ModulusMismatch {
                     given,
@@ -157,17 +163,17 @@ fn specimen(
                 modulus: implied.value,
                 standard_error: implied.standard_error,
             });
-            let specimen = Specimen::new(geometry.shape.clone(), implied.value, geometry.sides)?;
+            let specimen = geometry.specimen(implied.value)?;
             Ok((Some(specimen), Some(ModulusSource::Estimated)))
         }
         // Validates the geometry even where no modulus can be determined.
-        (None, None) => Specimen::new(geometry.shape.clone(), 1.0, geometry.sides).map(|_| (None, None)),
+        (None, None) => geometry.specimen(1.0).map(|_| (None, None)),
     }
 }
 
 /// A finding if the error of first touch moves an equilibrium strain by more than its interval says.
 ///
-/// ε = F/(E A(u₁)), so an error of u₁ moves it by the share A′/A · δu₁.
+/// ε = F/S(u₁), so an error of u₁ moves it by the share S′/S · δu₁.
 fn uncertain_touch(contact: &ContactPoint, specimen: &Specimen, holds: &[HoldAnalysis]) -> Option<Finding> {
     let error = contact.displacement_error?;
     let shares = holds.iter().filter_map(|hold| {
@@ -175,7 +181,7 @@ fn uncertain_touch(contact: &ContactPoint, specimen: &Specimen, holds: &[HoldAna
         let (low, high) = equilibrium.interval?;
         let u = specimen.contact_displacement(hold.displacement?);
         let moved = specimen.contact_displacement(error);
-        let shift = specimen.contact_area(u + moved) / specimen.contact_area(u) - 1.0;
+        let shift = specimen.stiffness(u + moved).0 / specimen.stiffness(u).0 - 1.0;
         Some((hold.number, shift, 0.5 * (high - low) / equilibrium.value.abs()))
     });
     let worst = shares.max_by(|a, b| (a.1 / a.2).total_cmp(&(b.1 / b.2)));
