@@ -3,6 +3,7 @@
 //! | file | what | equations |
 //! |---|---|---|
 //! | `shape.rs` | the form of the body and from how many sides it is squeezed: contact area, depth, and where they come from | (7), (8) |
+//! | `dumbbell.rs` | a tensile specimen with shoulders, by its widths | |
 //! | `tip.rs` | the tips of indenters, on half spaces and thin layers | |
 //! | `equilibrium.rs` | the force that it tends to: the paper's, Hertz's with its extensions to tips, or a measured one | (11) |
 //! | `measured.rs` | the last of them, from the rows of a table | |
@@ -21,6 +22,7 @@
 
 mod balance;
 mod curve;
+mod dumbbell;
 #[cfg(feature = "std")]
 mod element;
 mod equilibrium;
