@@ -1,6 +1,6 @@
 //! Rigid tips of indenters, pressed into a flat sample: a half space, or a layer on a rigid base.
 
-use core::f64::consts::{FRAC_PI_4, PI};
+use core::f64::consts::PI;
 
 #[cfg(not(feature = "std"))]
 use num_traits::Float as _;
@@ -10,8 +10,12 @@ use serde::{Deserialize, Serialize};
 ///
 /// A is the projected contact area, π a² with the contact radius a = F′(u) (1 − ν²)/(2 E), which holds for every frictionless body of
 /// revolution (Pharr, Oliver and Brotzen, J. Mater. Res. 7, 1992): √(R u), 2/π u tan α, and the radius of a punch.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case", tag = "kind")]
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(
+    feature = "alloc",
+    derive(Serialize, Deserialize),
+    serde(rename_all = "snake_case", tag = "kind")
+)]
 pub enum Tip {
     /// A sphere: F = 4/3 E/(1 − ν²) √R u^(3/2) (Hertz 1881, a paraboloid). Sneddon's exact force of a sphere (Int. J. Engng Sci. 3, 1965) is
     /// 1 % lower at u = R/10 and 5 % at R/2.
@@ -133,9 +137,10 @@ impl Tip {
 
     /// c in M = c μ N a, the torsion at which a contact of radius a slips all over: π/4 for a punch, and that of the punches as which a
     /// growing contact builds up, whose radius goes with the force like F^((p − 1)/p).
+    #[cfg(feature = "std")]
     pub(crate) fn torsional_share(self) -> f64 {
         let (_, p) = self.power();
-        FRAC_PI_4 * p / (2.0 * p - 1.0)
+        core::f64::consts::FRAC_PI_4 * p / (2.0 * p - 1.0)
     }
 }
 
