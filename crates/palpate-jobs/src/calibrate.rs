@@ -1,5 +1,6 @@
 //! A whole record to one set of parameters: a material.
 
+use palpate::analysis::AnalysisOptions;
 use palpate::calibrate::{CalibrateError, CalibrationData, Candidate, EquilibriumLaw, RateLaw, calibrate, profile};
 use palpate::laws::Law;
 use palpate::watch::Watch;
@@ -26,9 +27,9 @@ pub struct Calibrate {
     /// Alternative laws to fit to the same record.
     #[schemars(with = "Vec<String>")]
     pub alternatives: Vec<Law>,
-    /// Law of the equilibrium force.
-    pub equilibrium: Equilibrium,
-    /// Poisson's ratio for Hertz's law; 0.5 if not given.
+    /// Law of the equilibrium force; if not given, that of the description.
+    pub equilibrium: Option<Equilibrium>,
+    /// Poisson's ratio for Hertz's law; if not given, that of the description, or 0.5.
     pub poisson_ratio: Option<f64>,
     /// Dependence of the rate coefficient v of the latency law, with one more parameter.
     #[schemars(with = "String", extend("enum" = ["constant", "by_strain", "by_direction"]))]
@@ -42,14 +43,13 @@ pub struct Calibrate {
 }
 
 /// Law of the equilibrium force, by its name.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[cfg_attr(feature = "clap", derive(clap::ValueEnum))]
 #[serde(rename_all = "kebab-case")]
 pub enum Equilibrium {
     /// Modulus × displacement/depth × contact area.
-    #[default]
     UniformStrain,
-    /// Hertz's law, for balls and pads.
+    /// Hertz's law, for balls, pads and the tips of indenters.
     Hertz,
     /// A monotone table with one row per held displacement.
     Table,
@@ -67,7 +67,7 @@ impl Default for Calibrate {
                 Law::Prony { terms: 3 },
                 Law::Fung { terms: 2 },
             ],
-            equilibrium: Equilibrium::UniformStrain,
+            equilibrium: None,
             poisson_ratio: None,
             rate: RateLaw::Constant,
             fit_until_s: None,
@@ -87,11 +87,17 @@ pub struct Calibrated {
 }
 
 impl Calibrate {
-    /// The law of the equilibrium force.
-    fn equilibrium(&self) -> Result<EquilibriumLaw, JobError> {
-        match (self.equilibrium, self.poisson_ratio) {
-            (Equilibrium::Hertz, ratio) => Ok(EquilibriumLaw::Hertz {
-                poisson_ratio: ratio.unwrap_or(0.5),
+    /// The law of the equilibrium force: the requested one, or that of the description.
+    fn equilibrium(&self, options: &AnalysisOptions) -> Result<EquilibriumLaw, JobError> {
+        let described = options.geometry.as_ref().map(|geometry| EquilibriumLaw::from(&geometry.equilibrium));
+        let (usual, ratio) = match described.unwrap_or_default() {
+            EquilibriumLaw::UniformStrain => (Equilibrium::UniformStrain, 0.5),
+            EquilibriumLaw::Hertz { poisson_ratio } => (Equilibrium::Hertz, poisson_ratio),
+            EquilibriumLaw::Table => (Equilibrium::Table, 0.5),
+        };
+        match (self.equilibrium.unwrap_or(usual), self.poisson_ratio) {
+            (Equilibrium::Hertz, requested) => Ok(EquilibriumLaw::Hertz {
+                poisson_ratio: requested.unwrap_or(ratio),
             }),
             (_, Some(_)) => Err(JobError::option(
                 "⟨poisson_ratio⟩ is for Hertz's law, which is not requested",
@@ -103,10 +109,10 @@ impl Calibrate {
     }
 
     /// What is fitted: first what is requested, then its alternatives.
-    fn candidates(&self) -> Result<Vec<Candidate>, JobError> {
+    fn candidates(&self, options: &AnalysisOptions) -> Result<Vec<Candidate>, JobError> {
         let chosen = Candidate {
             law: self.law,
-            equilibrium: self.equilibrium()?,
+            equilibrium: self.equilibrium(options)?,
             rate: self.rate,
         };
         Ok(if self.alternatives.is_empty() {
@@ -121,7 +127,7 @@ impl Calibrate {
     /// # Errors
     /// [`JobError`] where the requested law cannot be calibrated, or the watch ends it.
     pub fn run(&self, measured: Measurement, watch: &mut dyn Watch) -> Result<Outcome<Calibrated>, JobError> {
-        let candidates = self.candidates()?;
+        let candidates = self.candidates(&measured.options)?;
         let Measurement {
             record,
             mut input,

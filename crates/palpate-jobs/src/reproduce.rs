@@ -76,6 +76,7 @@ fn reproduced(motion: &Motion, model: &ContactModel, watch: &mut dyn Watch) -> R
             shape: model.specimen.shape().clone(),
             sides: model.specimen.sides(),
             modulus: Some(model.specimen.modulus()),
+            equilibrium: model.specimen.equilibrium().clone(),
         }),
         touch: ContactChoice::AsRecorded,
         separation: Separation::Bonded,

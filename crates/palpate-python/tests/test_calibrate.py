@@ -349,6 +349,26 @@ def test_a_record_without_a_body_or_without_a_motion_is_refused(record: palpate.
         still.calibrate(test=TEST)
 
 
+def test_a_tip_on_a_gel_is_calibrated_by_the_law_of_its_description() -> None:
+    tip = {"shape": "conical tip", "half_angle": "35 deg", "thickness": "20 um", "poisson_ratio": 0.5}
+    gel = palpate.simulate({
+        "specimen": {**tip, "modulus": "1 kPa"},
+        "law": {"name": "latency", "exponent": 1, "rate_coefficient": "2 /s"},
+        "contact": {"layers": 4},
+        "step": [{"to": "1 um", "rate": "2 um/s", "hold": "20 s"}],
+    })
+    test = {"specimen": tip, "contact": {"touch": "as recorded"}}
+    record = palpate.Record.from_arrays(time_s=gel.time_s, force_n=gel.force_n, displacement_m=gel.displacement_m)
+    analysis = record.analyze(test=test)
+    assert analysis.loading_modulus_pa is not None and analysis.loading_modulus_standard_error_pa is not None
+    assert 2e3 < analysis.loading_modulus_pa < 4e3
+    fits = polars.DataFrame(analysis.fits).filter(polars.col("law") == "latency:1", polars.col("domain") == "time")
+    assert fits["equilibrium_modulus_pa"][0] == pytest.approx(1e3, rel=2e-3)
+    calibrated = record.calibrate(law="latency:1", test=test, alternatives=[]).material
+    assert calibrated.equilibrium == "hertz"
+    assert calibrated.parameters["modulus_pa"] == pytest.approx(1e3, rel=1e-2)
+
+
 @pytest.mark.parametrize(
     ("keywords", "reported"),
     [

@@ -1,7 +1,7 @@
 //! Analyses a whole record: phases, laws per hold, and what the holds say together.
 
 use palpate::analysis::{AnalysisOptions, Geometry, analyze};
-use palpate::contact::{Shape, Sides};
+use palpate::contact::{Equilibrium, Shape, Sides};
 use palpate::record::Record;
 use palpate::simulate::{Sampling, Separation, simulate};
 use palpate::test_problems::{Rng, paper_ball, paper_test_b};
@@ -18,6 +18,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
             shape: Shape::Ball { radius: 0.035 },
             sides: Sides::Two,
             modulus: Some(28e3),
+            equilibrium: Equilibrium::UniformStrain,
         }),
         separation: Separation::Bonded,
         ..AnalysisOptions::default()

@@ -19,6 +19,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         shape: ball.specimen.shape().clone(),
         sides: ball.specimen.sides(),
         modulus: None,
+        equilibrium: ball.specimen.equilibrium().clone(),
     };
     let held = [0.005, 0.010, 0.015, 0.020, 0.025];
     let data = CalibrationData::new(body, ball.separation, motion, times, forces, &held)?;

@@ -22,6 +22,7 @@ fn calibrated() -> Result<Material, Box<dyn std::error::Error>> {
         shape: ball.specimen.shape().clone(),
         sides: ball.specimen.sides(),
         modulus: None,
+        equilibrium: ball.specimen.equilibrium().clone(),
     };
     let held = [0.005, 0.010, 0.015, 0.020, 0.025];
     let data = CalibrationData::new(body, ball.separation, motion, times, forces, &held)?;

@@ -100,6 +100,7 @@ fn counted(seed: u64, counts: &mut [Counts; 2]) {
             shape: ball(RADIUS),
             sides: Sides::Two,
             modulus,
+            equilibrium: palpate::contact::Equilibrium::default(),
         }),
         instrument: instrument.clone(),
         exponents: vec![5.0],

@@ -29,7 +29,7 @@
 //! let series = simulate(&squeeze, &ball, &Sampling::Rate(20.0))?;
 //!
 //! // 4. Analyse a record: phases, laws of every hold, findings.
-//! let body = Geometry { shape: Shape::Ball { radius: 0.035 }, sides: Sides::Two, modulus: Some(28e3) };
+//! let body = Geometry { shape: Shape::Ball { radius: 0.035 }, sides: Sides::Two, modulus: Some(28e3), equilibrium: Default::default() };
 //! let record = Record::new(series.time.clone(), Some(series.displacement), series.force.clone())?;
 //! let options = AnalysisOptions { geometry: Some(body.clone()), ..AnalysisOptions::default() };
 //! let analysis = analyze(&record, &options)?;

@@ -51,6 +51,8 @@ pub enum Dimension {
     Temperature,
     /// Relative change per kelvin, 1/K.
     PerKelvin,
+    /// Angle in rad.
+    Angle,
 }
 
 impl Dimension {
@@ -74,6 +76,7 @@ impl Dimension {
             Self::Share => ("share", "0.5 %", SHARE),
             Self::Temperature => ("difference of temperature", "0.5 K", &[("K", 1.0), ("mK", 1e-3)]),
             Self::PerKelvin => ("relative change per kelvin", "-0.4 %/K", PER_KELVIN),
+            Self::Angle => ("angle", "35 deg", ANGLE),
         }
     }
 
@@ -216,6 +219,8 @@ const TORQUE: &[(&str, f64)] = &[
 ];
 const SHARE: &[(&str, f64)] = &[("1", 1.0), ("%", 1e-2), ("‰", 1e-3), ("ppm", 1e-6)];
 const PER_KELVIN: &[(&str, f64)] = &[("1/K", 1.0), ("/K", 1.0), ("%/K", 1e-2), ("ppm/K", 1e-6)];
+const DEGREE: f64 = std::f64::consts::PI / 180.0;
+const ANGLE: &[(&str, f64)] = &[("rad", 1.0), ("deg", DEGREE), ("°", DEGREE)];
 const FREQUENCY: &[(&str, f64)] = &[("Hz", 1.0), ("kHz", 1e3), ("/s", 1.0), ("1/s", 1.0)];
 
 /// Why a quantity could not be read.

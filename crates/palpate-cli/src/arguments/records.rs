@@ -207,10 +207,10 @@ pub(crate) struct CalibrateArguments {
     /// Calibrate without alternatives
     #[arg(long, conflicts_with = "alternatives")]
     pub(crate) no_alternatives: bool,
-    /// Law of the equilibrium force
-    #[arg(long, value_enum, default_value_t)]
-    pub(crate) equilibrium: jobs::Equilibrium,
-    /// Poisson's ratio for Hertz's law; 0.5 if not given
+    /// Law of the equilibrium force; if not given, that of the description
+    #[arg(long, value_enum)]
+    pub(crate) equilibrium: Option<jobs::Equilibrium>,
+    /// Poisson's ratio for Hertz's law; if not given, that of the description, or 0.5
     #[arg(long, value_name = "NUMBER")]
     pub(crate) poisson_ratio: Option<f64>,
     /// Dependence of the rate coefficient v of the latency law, with one more parameter; the other choices become alternatives

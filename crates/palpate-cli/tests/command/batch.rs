@@ -31,6 +31,40 @@ fn column(table: &[String], name: &str) -> Vec<String> {
     reader.records().map(|row| row.unwrap()[index].to_owned()).collect()
 }
 
+/// A conical tip on a gel of 1 kPa: 2/π E/(1 − ν²) tan α u² once relaxed, and with one layer, which does not relax, at any time.
+#[test]
+fn moduli_of_an_indented_gel_are_those_that_it_was_simulated_with() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    let specimen =
+        "[specimen]\nshape = \"conical tip\"\nhalf_angle = \"35 deg\"\nthickness = \"20 um\"\npoisson_ratio = 0.5\n";
+    file(folder, "cone.toml", format!("{specimen}[contact]\ntouch = \"as recorded\"\n").as_bytes());
+    fs::create_dir(folder.join("curves")).unwrap();
+    for (name, layers) in [("elastic", 1), ("soft", 4)] {
+        let law = "[law]\nname = \"latency\"\nexponent = 1\nrate_coefficient = \"2 /s\"\n";
+        let steps = "[[step]]\nto = \"1 um\"\nrate = \"2 um/s\"\nhold = \"20 s\"\n";
+        let protocol = format!("{specimen}modulus = \"1 kPa\"\n{law}[contact]\nlayers = {layers}\n{steps}");
+        file(folder, "protocol.toml", protocol.as_bytes());
+        let curve = done(folder, &["simulate", "protocol.toml"]);
+        file(folder, &format!("curves/{name}.csv"), curve.as_bytes());
+    }
+    done(folder, &["batch", "curves", "--test", "cone.toml", "--out", "holds.csv"]);
+    let table = lines(folder, "holds.csv");
+    let (records, laws) = (column(&table, "record"), column(&table, "law"));
+    let number = |name: &str, row: usize| column(&table, name)[row].parse::<f64>().unwrap();
+    // A hold that does not relax has one row without a law.
+    assert_eq!((records[0].as_str(), laws[0].as_str()), ("curves/elastic.csv", ""));
+    assert!((number("loading_modulus_pa", 0) - 1e3).abs() < 1.0, "{}", number("loading_modulus_pa", 0));
+    assert!(number("loading_relative_rmse", 0) < 1e-3);
+    assert_eq!((records[1].as_str(), laws[1].as_str()), ("curves/soft.csv", "latency:1"));
+    let relaxed = number("equilibrium_modulus_pa", 1);
+    assert!((relaxed - 1e3).abs() < 2.0, "{relaxed}");
+    assert!(number("equilibrium_modulus_standard_error_pa", 1) < 5.0);
+    // The ramp of 0.5 s leaves the excess strain of three more layers, at first in full: between E and 4 E.
+    let apparent = number("loading_modulus_pa", 1);
+    assert!((2.0 * relaxed..4.0 * relaxed).contains(&apparent), "{apparent}");
+}
+
 #[test]
 fn a_folder_becomes_one_table_of_holds_and_laws() {
     let folder = tempfile::tempdir().unwrap();

@@ -289,9 +289,7 @@ impl<'a> Chooser<'a> {
         match test.analysis.geometry.as_ref().map(|body| &body.shape) {
             None => Ok((1.0, true)),
             Some(Shape::Prism { area, .. }) => Ok((*area, false)),
-            Some(Shape::Ball { .. } | Shape::Pad { .. } | Shape::Profile { .. }) => {
-                Err(ColumnError::NoSection(stress.column.into()))
-            }
+            Some(_) => Err(ColumnError::NoSection(stress.column.into())),
         }
     }
 }

@@ -2,7 +2,9 @@
 
 use palpate_files::parquet_table::Kind::{self, Count, Number, Text};
 use palpate_files::parquet_table::{Field, Rows, Values};
-use palpate_report::document::{AnalysisDocument, FitDocument, HoldDocument, LawDocument, VerdictDocument};
+use palpate_report::document::{
+    AnalysisDocument, FitDocument, HoldDocument, LawDocument, LoadingModulusDocument, VerdictDocument,
+};
 use palpate_report::result::Parameters;
 use serde_json::Value;
 
@@ -78,12 +80,21 @@ const FIT: [Column; 5] = [
 /// Parameters of the latency law, each with its uncertainty, in the unit of the signal where they have one.
 const LATENCY: [&str; 5] = ["exponent", "equilibrium", "amplitude", "relative_rate_per_s", "rate_coefficient_per_s"];
 
-/// Columns behind those: of the latency law without an uncertainty, and what the rows depend on besides the record.
-const LAST: [Column; 5] = [
+/// Columns behind those: forces and moduli, and what the rows depend on besides the record.
+const LAST: [Column; 10] = [
     (Number, "equilibrium_force_n", |line| {
         line.of_law(|fit| fit.equilibrium_force_n.into(), |_| Value::Null)
     }),
     (Number, "excess_force_n", |line| line.of_law(|fit| fit.excess_force_n.into(), |_| Value::Null)),
+    (Number, "equilibrium_modulus_pa", |line| {
+        line.of_law(|fit| fit.equilibrium_modulus_pa.into(), |_| Value::Null)
+    }),
+    (Number, "equilibrium_modulus_standard_error_pa", |line| {
+        line.of_law(|fit| fit.equilibrium_modulus_standard_error_pa.into(), |_| Value::Null)
+    }),
+    (Number, "loading_modulus_pa", |line| line.of_ramp(|found| found.modulus_pa)),
+    (Number, "loading_modulus_standard_error_pa", |line| line.of_ramp(|found| found.standard_error_pa)),
+    (Number, "loading_relative_rmse", |line| line.of_ramp(|found| found.relative_rmse)),
     (Number, "samples", |line| line.of_law(|fit| fit.samples.into(), |_| Value::Null)),
     (Number, "residual_correlation", |line| {
         line.of_law(|fit| fit.residual_correlation.into(), |_| Value::Null)
@@ -150,6 +161,11 @@ impl Line<'_> {
             LawRow::Other(law) => other(law),
             LawRow::None => Value::Null,
         }
+    }
+
+    /// What stands in the modulus of the first ramp of the record.
+    fn of_ramp(&self, value: fn(&LoadingModulusDocument) -> f64) -> Value {
+        self.document.loading_modulus.as_ref().map(value).into()
     }
 
     /// The parameters of the law.

@@ -158,9 +158,9 @@ impl Cut {
     fn contact(&self, segmentation: &Segmentation, test: Option<&TestDescription>) -> String {
         let body = test
             .and_then(|test| test.analysis.geometry.as_ref())
-            .map(|geometry| (&geometry.shape, geometry.sides));
+            .and_then(|geometry| geometry.specimen(1.0).ok());
         let choice = test.map(|test| test.analysis.touch).unwrap_or_default();
-        let contact = find_contact_of(&self.record, segmentation, body, choice);
+        let contact = find_contact_of(&self.record, segmentation, body.as_ref(), choice);
         let mut out = String::new();
         if contact.air_travel > 0.0 {
             let _ = writeln!(

@@ -166,7 +166,7 @@ class Record(_Series):
         law: str = "latency",
         test: _Described | None = None,
         alternatives: Sequence[str] | None = None,
-        equilibrium: str = "uniform-strain",
+        equilibrium: str | None = None,
         poisson_ratio: float | None = None,
         rate: str = "constant",
         fit_until_s: float | None = None,
@@ -201,6 +201,8 @@ class Analysis(_Reported):
     fits: Final[Table]
     parameter_table: Final[Table]
     budgets: Final[Table]
+    loading_modulus_pa: Final[float | None]
+    loading_modulus_standard_error_pa: Final[float | None]
     law: Final[str | None]
     sentence: Final[str]
     findings: Final[list[Finding]]

@@ -178,7 +178,7 @@ shown! {
             columns.extend(columns!(fits, fit => law, domain));
             columns.extend(estimated.iter().map(|(name, column)| (name.as_str(), Arc::clone(column))));
             columns.extend(columns!(fits, fit =>
-                equilibrium_force_n, excess_force_n, rmse, residual_correlation, samples, delta_bic, holdout_error, termination,
+                equilibrium_force_n, excess_force_n, equilibrium_modulus_pa, equilibrium_modulus_standard_error_pa, rmse, residual_correlation, samples, delta_bic, holdout_error, termination,
                 formula
             ));
             Table::of(columns)
@@ -191,6 +191,11 @@ shown! {
         /// ``distribution``, ``standard_uncertainty``, ``sensitivity``, ``contribution``, ``share``; empty where the test description has no
         /// ``[instrument]``.
         budgets: PyResult<Table> = Table::of(budget_columns(&self.document.budgets)),
+        /// Young's modulus of the first loading ramp, Pa: an apparent one of a body that relaxes; None where the geometry is not known.
+        loading_modulus_pa: Option<f64> = self.document.loading_modulus.as_ref().map(|found| found.modulus_pa),
+        /// Its standard error, Pa: of the residuals, and of first touch where that has one.
+        loading_modulus_standard_error_pa: Option<f64> =
+            self.document.loading_modulus.as_ref().map(|found| found.standard_error_pa),
         /// The law to use for the record as a whole, as ``law=`` takes it; None where none can be recommended.
         law: Option<String> = self.document.answer.law.clone(),
         /// Which law to use, in a sentence.

@@ -374,11 +374,11 @@ shown! {
     /// alternatives : sequence of str, optional
     ///     Laws to hold against it on the same record; "standard-linear-solid", "prony:2", "prony:3" and "fung:2" if left out, none for
     ///     an empty list.
-    /// equilibrium : str
+    /// equilibrium : str, optional
     ///     Law of the force once relaxation is over: "uniform-strain" (modulus x displacement/depth x contact area, equation (11)), "hertz", or
-    ///     "table", a monotone one with a row where the jaw was held.
+    ///     "table", a monotone one with a row where the jaw was held; that of the description if left out.
     /// poisson_ratio : float, optional
-    ///     For Hertz's law, from 0 to 0.5; 0.5 if left out.
+    ///     For Hertz's law, from 0 to 0.5; that of the description, or 0.5, if left out.
     /// rate : str
     ///     What the rate coefficient v of the latency law depends on, by one more number: "constant"; "by-strain", v f^(ε_e/0.1) with
     ///     f = ``strain_factor``; or "by-direction", v after loading and f v after unloading with f = ``unloading_factor``. The other
@@ -430,7 +430,7 @@ shown! {
     /// >>> prediction = calibration.material.predict([{"to": "8 mm", "rate": "500 mm/min", "hold": "20 s"}], at_s=[10.0])
     /// >>> round(float(prediction.force_n[0]), 2)
     /// 3.45
-    #[pyo3(signature = (*, law="latency", test=None, alternatives=None, equilibrium="uniform-strain", poisson_ratio=None, rate="constant", fit_until_s=None, confidence=None, profile=false))]
+    #[pyo3(signature = (*, law="latency", test=None, alternatives=None, equilibrium=None, poisson_ratio=None, rate="constant", fit_until_s=None, confidence=None, profile=false))]
     #[expect(clippy::too_many_arguments, reason = "keywords of Python")]
     fn calibrate(
         &self,
@@ -438,7 +438,7 @@ shown! {
         law: &str,
         test: Option<&Bound<'_, PyAny>>,
         alternatives: Option<&Bound<'_, PyAny>>,
-        equilibrium: &str,
+        equilibrium: Option<&str>,
         poisson_ratio: Option<f64>,
         rate: &str,
         fit_until_s: Option<f64>,
@@ -459,7 +459,9 @@ shown! {
         let job = Calibrate {
             law,
             alternatives: alternatives.into_iter().filter(|alternative| *alternative != law).collect(),
-            equilibrium: choice("equilibrium", &["uniform-strain", "hertz", "table"], equilibrium)?,
+            equilibrium: equilibrium
+                .map(|name| choice("equilibrium", &["uniform-strain", "hertz", "table"], name))
+                .transpose()?,
             poisson_ratio,
             rate: choice("rate", &["constant", "by-strain", "by-direction"], rate)?,
             fit_until_s,

@@ -1,6 +1,6 @@
 //! `palpate.analysis/1`: one analysed record.
 
-use palpate::analysis::{Analysis, HoldAnalysis, JointAnalysis, Overlay, RateBias, Signal};
+use palpate::analysis::{Analysis, HoldAnalysis, JointAnalysis, LoadingModulus, Overlay, RateBias, Signal};
 use palpate::fit::{Estimate, ExponentChoice, LatencyFit};
 use palpate::segment::{After, Segment};
 
@@ -166,6 +166,16 @@ documents! {
         verdict: String = word(joint.comparison.verdict),
     }
 
+    /// Young's modulus of the first loading ramp: an apparent one of a body that relaxes.
+    LoadingModulusDocument(found: LoadingModulus) {
+        /// E, Pa.
+        modulus_pa: f64 = found.value,
+        /// Its standard error, Pa: of the residuals, and of first touch where that has one.
+        standard_error_pa: f64 = found.standard_error,
+        /// Root mean square residual as a share of the largest force of the ramp.
+        relative_rmse: f64 = found.relative_rmse,
+    }
+
     /// Simulation of the measured displacement with the fitted parameters.
     OverlayDocument(overlay: &Overlay) {
         /// n.
@@ -204,6 +214,8 @@ documents! {
             analysis.record.corrections().iter().map(CorrectionDocument::new).collect(),
         /// First touch.
         first_touch: TouchDocument = TouchDocument::new(analysis),
+        /// Modulus of the first loading ramp, where the geometry is known.
+        loading_modulus?: Option<LoadingModulusDocument> = analysis.loading_modulus.map(LoadingModulusDocument::new),
         /// All phases.
         segments: Vec<SegmentDocument> =
             analysis.segmentation.segments.iter().map(|segment| SegmentDocument::new(segment, time)).collect(),

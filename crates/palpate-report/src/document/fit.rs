@@ -10,6 +10,7 @@ documents! {
     FitDocument(fit: &LatencyFit, hold: &HoldAnalysis, delta_bic: Option<f64>, prediction: Option<HoldoutError>) with {
         let is_good = fit.termination.is_good() || fit.equilibrium().standard_error.is_some();
         let newtons = |value: f64| Some(value * hold.force_per_signal).filter(|_| is_good);
+        let pascals = |value: f64| newtons(value).zip(hold.force_per_modulus).map(|(force, per_modulus)| force / per_modulus);
     } {
         /// `latency:N` with the exponent given, `latency` with the exponent estimated.
         law: String = fit.law.to_string(),
@@ -23,6 +24,10 @@ documents! {
         equilibrium_force_n: Option<f64> = newtons(fit.equilibrium().value),
         /// Excess force at the start of the fit, N; `null` where it is not determined.
         excess_force_n: Option<f64> = newtons(fit.amplitude().value),
+        /// Young's modulus that the equilibrium force implies, Pa.
+        equilibrium_modulus_pa?: Option<f64> = pascals(fit.equilibrium().value),
+        /// Its standard error, Pa.
+        equilibrium_modulus_standard_error_pa?: Option<f64> = fit.equilibrium().standard_error.and_then(pascals),
         /// Root mean square residual in the unit of the fitted quantity: strain, N, or 1/s in the rate domain.
         rmse: f64 = fit.rmse,
         /// The same as a share of the excess at the start of the fit.

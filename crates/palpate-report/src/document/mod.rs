@@ -57,7 +57,7 @@ mod signals;
 mod software;
 mod watch;
 
-pub use analysis::{AnalysisDocument, HoldDocument};
+pub use analysis::{AnalysisDocument, HoldDocument, LoadingModulusDocument};
 pub use budget::{BudgetDocument, ContributionDocument};
 pub use calibration::{CalibratedLawDocument, CalibrationDocument};
 pub use comparison::{

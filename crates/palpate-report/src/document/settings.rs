@@ -1,7 +1,7 @@
 //! The settings that an analysis ran with, defaults and derived thresholds included.
 
 use palpate::analysis::Analysis;
-use palpate::contact::{Sides, Specimen};
+use palpate::contact::{Equilibrium, Sides, Specimen};
 use palpate::fit::IntervalMethod;
 use palpate::segment::ContactChoice;
 use palpate::simulate::Separation;
@@ -14,17 +14,30 @@ documents! {
         let (options, segment) = (&analysis.options, &analysis.segmentation.settings);
         let geometry = options.geometry.as_ref();
         let shape = serde_json::to_value(geometry.map(|geometry| &geometry.shape)).unwrap_or_default();
+        let (tip, layer) = (&shape["tip"], &shape["layer"]);
+        let hertz = geometry.and_then(|geometry| match geometry.equilibrium {
+            Equilibrium::Hertz { poisson_ratio } => Some(poisson_ratio),
+            Equilibrium::UniformStrain | Equilibrium::Measured { .. } => None,
+        });
     } {
-        /// `ball`, `pad`, `prism` or `none`.
+        /// `ball`, `pad`, `prism`, `profile`, `indenter` or `none`.
         shape: String = shape["kind"].as_str().unwrap_or("none").to_owned(),
-        /// Radius of a ball or a pad, m.
-        radius_m: Option<f64> = shape["radius"].as_f64(),
+        /// `sphere`, `cone`, `pyramid` or `punch` of an indenter.
+        tip?: Option<String> = tip["kind"].as_str().map(str::to_owned),
+        /// Radius of a ball, a pad, a spherical tip or a punch, m.
+        radius_m: Option<f64> = shape["radius"].as_f64().or(tip["radius"].as_f64()),
+        /// Half angle of a cone or a pyramid, rad.
+        half_angle_rad?: Option<f64> = tip["half_angle"].as_f64(),
         /// Section of a prism, m².
         area_m2: Option<f64> = shape["area"].as_f64(),
         /// Length of a prism, m.
         length_m: Option<f64> = shape["length"].as_f64(),
-        /// Thickness of a pad, m.
-        thickness_m?: Option<f64> = shape["thickness"].as_f64(),
+        /// Thickness of a pad, or of the layer under a tip, m.
+        thickness_m?: Option<f64> = shape["thickness"].as_f64().or(layer["thickness"].as_f64()),
+        /// `bonded` or `sliding` of the layer under a tip.
+        base?: Option<String> = layer["base"].as_str().map(str::to_owned),
+        /// Poisson's ratio, with Hertz's law.
+        poisson_ratio?: Option<f64> = hertz,
         /// Modulus, Pa.
         modulus_pa: Option<f64> = analysis.specimen.as_ref().map(Specimen::modulus),
         /// `given` or `estimated`.

@@ -62,6 +62,7 @@ impl Instrument {
                 shape: model.specimen.shape().clone(),
                 sides: model.specimen.sides(),
                 modulus: None,
+                equilibrium: model.specimen.equilibrium().clone(),
             }),
             ..AnalysisOptions::default()
         };

@@ -4,7 +4,7 @@ use super::holds::{HoldAnalysis, Signal};
 use super::options::{AnalysisOptions, Geometry};
 use super::together::{EstimatedModulus, ImpliedModulus};
 use crate::budget::InputQuantity;
-use crate::contact::{Shape, Specimen};
+use crate::contact::Specimen;
 use crate::fit::{ErrorParts, Fit, LatencyFit, Parameter, ParameterKind, ParameterRole, ParameterUnit};
 use crate::instrument::{Deviation, InstrumentQuantity};
 use crate::segment::ContactPoint;
@@ -148,8 +148,8 @@ impl<'a> Causes<'a> {
             (Cause::Stated(InstrumentQuantity::Temperature { .. }), Some(implied)) => implied.value,
             _ => self.modulus(cause, by)?,
         };
-        let shape: Shape = deviation.shape(specimen.shape());
-        let body = Specimen::new(shape, modulus, specimen.sides()).ok()?;
+        let geometry = self.geometry?;
+        let body = geometry.with_shape(deviation.shape(&geometry.shape)).specimen(modulus).ok()?;
         let before = per_strain(specimen, level)?;
         let after = per_strain(&body, deviation.displacement(level, hold.force_end))?;
         Some(Changed {

@@ -33,5 +33,5 @@ pub use prepare::{
     ClockSkew, Corrected, Prepared, clock_skew, corrected, corrected_watched, prepared, suspicious_signs,
 };
 pub use together::{
-    Across, EstimatedModulus, JointAnalysis, JointHolds, LevelAgreement, ModulusSource, Overlay, Trend,
+    Across, EstimatedModulus, JointAnalysis, JointHolds, LevelAgreement, LoadingModulus, ModulusSource, Overlay, Trend,
 };

@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::contact::{Layers, LayersError, Shape, Sides};
+use crate::contact::{Equilibrium, Layers, LayersError, Shape, Sides, Specimen, SpecimenError};
 use crate::fit::{ExponentChoice, FitOptions};
 use crate::forecast::CompareOptions;
 use crate::instrument::Instrument;
@@ -20,6 +20,25 @@ pub struct Geometry {
     pub sides: Sides,
     /// Young's modulus, Pa; estimated from the equilibrium forces if it is not known.
     pub modulus: Option<f64>,
+    /// Law of the equilibrium force, by which force and displacement give modulus and strain.
+    #[serde(default)]
+    pub equilibrium: Equilibrium,
+}
+
+impl Geometry {
+    /// The body with this Young's modulus (Pa).
+    ///
+    /// # Errors
+    /// [`SpecimenError`] for a shape that is none, or a law of the equilibrium force that does not go with it.
+    pub fn specimen(&self, modulus: f64) -> Result<Specimen, SpecimenError> {
+        let body = Specimen::new(self.shape.clone(), modulus, self.sides)?;
+        Ok(body.with_equilibrium(self.equilibrium.clone())?)
+    }
+
+    /// The same with another shape.
+    pub(crate) fn with_shape(&self, shape: Shape) -> Self {
+        Self { shape, ..self.clone() }
+    }
 }
 
 /// Layers of the simulation that is laid over the record.

@@ -4,7 +4,8 @@ use super::effects::Causes;
 use super::holds::{HoldAnalysis, complete_hold, fit_exponents, prepare_hold};
 use super::prepare::{ClockSkew, Prepared, corrected_watched, signal_findings};
 use super::together::{
-    Across, EstimatedModulus, ImpliedModulus, ModulusSource, Overlay, across, changing_rate, implied_modulus, overlay,
+    Across, EstimatedModulus, ImpliedModulus, LoadingModulus, ModulusSource, Overlay, across, changing_rate,
+    implied_modulus, loading_modulus, overlay,
 };
 use super::{AnalysisError, AnalysisOptions, Finding};
 use crate::budget::{Budget, Contribution, InputQuantity};
@@ -40,6 +41,8 @@ pub struct Analysis {
     /// Input quantities of the budgets, in the order of the effects in [`ErrorParts`](crate::fit::ErrorParts): those of the instrument, then first touch and modulus
     /// where they were estimated. Empty where no instrument is described.
     pub inputs: Vec<InputQuantity>,
+    /// Modulus of the first loading ramp, where the geometry is known.
+    pub loading_modulus: Option<LoadingModulus>,
     /// Every hold.
     pub holds: Vec<HoldAnalysis>,
     /// Results over several holds.
@@ -137,6 +140,7 @@ pub fn examine(record: &Record, options: &AnalysisOptions, watch: &mut dyn Watch
         modulus: modulus.estimate.value,
         standard_error: modulus.estimate.standard_error,
     }));
+    let loading_modulus = loading_modulus(&record, &segmentation, &contact, options.geometry.as_ref());
     let segments = &segmentation.segments;
     let held = (0..segments.len()).filter(|index| segments[*index].phase == Phase::Hold);
     let (mut holds, ramps): (Vec<HoldAnalysis>, Vec<Option<usize>>) = held
@@ -179,6 +183,7 @@ pub fn examine(record: &Record, options: &AnalysisOptions, watch: &mut dyn Watch
         contact,
         specimen,
         modulus_source,
+        loading_modulus,
         holds,
         across,
         overlay,
@@ -199,7 +204,7 @@ fn specimen(
     let implied = implied_modulus(record, segmentation, geometry, options);
     match (geometry.modulus, implied) {
         (Some(given), implied) => {
-            let specimen = Specimen::new(geometry.shape.clone(), given, geometry.sides)?;
+            let specimen = geometry.specimen(given)?;
             if let Some(implied) = implied.filter(|implied| !(0.8..=1.25).contains(&(implied.value / given))) {
                 findings.push(Finding::ModulusMismatch {
                     given,
@@ -209,17 +214,17 @@ fn specimen(
             Ok(Some((specimen, None)))
         }
         (None, Some(implied)) => {
-            let specimen = Specimen::new(geometry.shape.clone(), implied.value, geometry.sides)?;
+            let specimen = geometry.specimen(implied.value)?;
             Ok(Some((specimen, Some(implied))))
         }
         // Validates the geometry even where no modulus can be determined.
-        (None, None) => Specimen::new(geometry.shape.clone(), 1.0, geometry.sides).map(|_| None),
+        (None, None) => geometry.specimen(1.0).map(|_| None),
     }
 }
 
 /// A finding if the error of first touch moves an equilibrium strain by more than its interval says.
 ///
-/// ε = F/(E A(u₁)), so an error of u₁ moves it by the share A′/A · δu₁.
+/// ε = F/S(u₁), so an error of u₁ moves it by the share S′/S · δu₁.
 fn uncertain_touch(contact: &ContactPoint, specimen: &Specimen, holds: &[HoldAnalysis]) -> Option<Finding> {
     let error = contact.displacement_error?;
     let shares = holds.iter().filter_map(|hold| {
@@ -227,7 +232,7 @@ fn uncertain_touch(contact: &ContactPoint, specimen: &Specimen, holds: &[HoldAna
         let (low, high) = equilibrium.interval?;
         let u = specimen.contact_displacement(hold.displacement?);
         let moved = specimen.contact_displacement(error);
-        let shift = specimen.contact_area(u + moved) / specimen.contact_area(u) - 1.0;
+        let shift = specimen.stiffness(u + moved).0 / specimen.stiffness(u).0 - 1.0;
         Some((hold.number, shift, 0.5 * (high - low) / equilibrium.value.abs()))
     });
     let worst = shares.max_by(|a, b| (a.1 / a.2).total_cmp(&(b.1 / b.2)));

@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::CalibrateError;
-use crate::contact::RateDependence;
+use crate::contact::{Equilibrium, RateDependence};
 use crate::laws::{Law, MOST_TERMS};
 
 /// The law of the force that a body tends to, whose coefficients are to be found.
@@ -13,13 +13,25 @@ pub enum EquilibriumLaw {
     /// The paper's E ε A, equation (11): one modulus.
     #[default]
     UniformStrain,
-    /// Hertz's: one modulus, for balls and pads.
+    /// Hertz's: one modulus, for balls, pads and the tips of indenters.
     Hertz {
         /// Poisson's ratio ν, from 0 to 0.5; the data do not separate it from the modulus.
         poisson_ratio: f64,
     },
     /// A monotone table with one row per held displacement, and one at the largest displacement.
     Table,
+}
+
+impl From<&Equilibrium> for EquilibriumLaw {
+    fn from(law: &Equilibrium) -> Self {
+        match law {
+            Equilibrium::UniformStrain => Self::UniformStrain,
+            Equilibrium::Hertz { poisson_ratio } => Self::Hertz {
+                poisson_ratio: *poisson_ratio,
+            },
+            Equilibrium::Measured { .. } => Self::Table,
+        }
+    }
 }
 
 /// Whether the rate coefficient of the latency law is one parameter, or depends on the state of the layer.

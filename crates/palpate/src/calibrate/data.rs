@@ -46,7 +46,7 @@ impl CalibrationData {
     /// use palpate::contact::{Shape, Sides};
     /// use palpate::simulate::{ProtocolStep, Separation, protocol};
     /// let motion = protocol(&[ProtocolStep { to: 0.005, rate: 0.5 / 60.0, hold: 10.0 }])?;
-    /// let ball = Geometry { shape: Shape::Ball { radius: 0.035 }, sides: Sides::Two, modulus: None };
+    /// let ball = Geometry { shape: Shape::Ball { radius: 0.035 }, sides: Sides::Two, modulus: None, equilibrium: Default::default() };
     /// let times: Vec<f64> = (0..=100).map(|i| 0.1 * f64::from(i)).collect();
     /// let forces = times.iter().map(|t| 1.5 * t.min(0.6)).collect();
     /// let data = CalibrationData::new(ball, Separation::Unilateral, motion, times, forces, &[0.005])?;
@@ -84,7 +84,7 @@ impl CalibrationData {
                 until: motion.end(),
             });
         }
-        let body = Specimen::new(geometry.shape.clone(), geometry.modulus.unwrap_or(1.0), geometry.sides)?;
+        let body = geometry.specimen(geometry.modulus.unwrap_or(1.0))?;
         deep_enough(&body, &motion, separation)?;
         let samples = times.len();
         let every = samples.div_ceil(MOST_SAMPLES).max(1);
@@ -114,7 +114,7 @@ impl CalibrationData {
             segmentation,
             contact,
         } = prepared(record, options)?;
-        let body = Specimen::new(geometry.shape.clone(), 1.0, geometry.sides)?;
+        let body = geometry.specimen(1.0)?;
         let measured = measured_motion(&record, &segmentation, &body, options.separation)
             .ok_or(CalibrateError::NoDisplacement)??;
         let displacement = record.displacement().unwrap_or_default();

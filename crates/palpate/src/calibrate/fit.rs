@@ -65,7 +65,7 @@ pub struct Calibration {
 /// let (motion, model) = (paper_test_a(), paper_ball(Separation::Unilateral));
 /// let times: Vec<f64> = (0..=660).map(|i| 0.1 * f64::from(i)).collect();
 /// let forces = simulate_force(&motion, &model, &times)?;
-/// let ball = Geometry { shape: model.specimen.shape().clone(), sides: model.specimen.sides(), modulus: None };
+/// let ball = Geometry { shape: model.specimen.shape().clone(), sides: model.specimen.sides(), modulus: None, equilibrium: Default::default() };
 /// let data = CalibrationData::new(ball, model.separation, motion, times, forces, &[])?;
 /// let found = calibrate(&data, Candidate::new("latency".parse()?, EquilibriumLaw::UniformStrain), 0.95, &mut Unwatched)?;
 /// let value = |name| found.material.estimate(name).unwrap().value;

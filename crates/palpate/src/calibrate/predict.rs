@@ -117,6 +117,7 @@ impl Material {
                 shape: self.body().shape.clone(),
                 sides: self.body().sides,
                 modulus: None,
+                equilibrium: self.contact().specimen().equilibrium().clone(),
             }),
             separation: self.body().separation,
             ..options.clone()

@@ -50,7 +50,7 @@ const MOST_STEPS: usize = 40;
 /// let mut noise = Rng::new(1);
 /// let times: Vec<f64> = (0..=220).map(|i| 0.3 * f64::from(i)).collect();
 /// let forces = simulate_force(&motion, &model, &times)?.iter().map(|force| force + 0.2 * noise.normal()).collect();
-/// let ball = Geometry { shape: model.specimen.shape().clone(), sides: model.specimen.sides(), modulus: None };
+/// let ball = Geometry { shape: model.specimen.shape().clone(), sides: model.specimen.sides(), modulus: None, equilibrium: Default::default() };
 /// let data = CalibrationData::new(ball, model.separation, motion, times, forces, &[])?;
 /// let found = calibrate(&data, Candidate::new("latency".parse()?, EquilibriumLaw::UniformStrain), 0.95, &mut Unwatched)?;
 /// let exponent = profile(&data, &found, &mut Unwatched)?.into_iter().find(|parameter| parameter.name == "exponent").unwrap();

@@ -3,7 +3,9 @@
 //! | file | what | equations |
 //! |---|---|---|
 //! | `shape.rs` | the form of the body and from how many sides it is squeezed: contact area, depth, and where they come from | (7), (8) |
-//! | `equilibrium.rs` | the force that it tends to: the paper's, Hertz's, or a measured one | (11) |
+//! | `dumbbell.rs` | a tensile specimen with shoulders, by its widths | |
+//! | `tip.rs` | the tips of indenters, on half spaces and thin layers | |
+//! | `equilibrium.rs` | the force that it tends to: the paper's, Hertz's with its extensions to tips, or a measured one | (11) |
 //! | `measured.rs` | the last of them, from the rows of a table | |
 //! | `curve/` | a smooth curve through the rows of a table | |
 //! | `specimen.rs` | the body with its modulus: force, equilibrium strain, what it can take | (6), (8), (11) |
@@ -20,6 +22,7 @@
 
 mod balance;
 mod curve;
+mod dumbbell;
 #[cfg(feature = "std")]
 mod element;
 mod equilibrium;
@@ -34,6 +37,7 @@ mod measured;
 mod rate;
 mod shape;
 mod specimen;
+mod tip;
 #[cfg(feature = "std")]
 mod work;
 
@@ -43,6 +47,7 @@ pub use equilibrium::{Equilibrium, EquilibriumError};
 pub use layers::{Layers, LayersError};
 pub use shape::{Shape, ShapeDimension, Sides};
 pub use specimen::{Specimen, SpecimenError};
+pub use tip::{Base, ThinLayer, Tip};
 
 #[cfg(feature = "std")]
 pub(crate) use {

@@ -4,7 +4,7 @@ use core::f64::consts::PI;
 
 use serde::{Deserialize, Serialize};
 
-use super::Curve;
+use super::{Curve, ThinLayer, Tip};
 
 /// From how many sides the body is squeezed: decides which share of the jaw's travel one contact takes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
@@ -56,15 +56,24 @@ pub enum Shape {
         /// Contact area in m² at contact displacements in m, from first touch on.
         area: Curve,
     },
+    /// The rigid tip of an indenter, pressed into a flat sample: area and force by [`Tip`], the force by Hertz's law
+    /// ([`Equilibrium::Hertz`](super::Equilibrium::Hertz)). ε_e = u/depth is nominal, since the strain under a tip is not uniform: the depth is
+    /// the thickness of the layer; of a half space the radius of a sphere or a punch. For 0 ≤ u below the depth.
+    Indenter {
+        /// The tip.
+        tip: Tip,
+        /// The sample: a half space without it. A cone and a pyramid need it, having no length of their own.
+        layer: Option<ThinLayer>,
+    },
 }
 
 /// A length or an area that a shape is described by.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum ShapeDimension {
-    /// Radius of a ball, outer radius of a pad, m.
+    /// Radius of a ball, of a spherical tip or of a punch, outer radius of a pad, m.
     Radius,
-    /// Thickness of a pad, m.
+    /// Thickness of a pad, or of the layer under a tip, m.
     Thickness,
     /// Section of a prism, m².
     Area,
@@ -72,6 +81,8 @@ pub enum ShapeDimension {
     Length,
     /// Depth of a profile, m.
     Depth,
+    /// Half angle of a cone or pyramid, rad.
+    HalfAngle,
 }
 
 impl ShapeDimension {
@@ -84,13 +95,18 @@ impl ShapeDimension {
             Self::Area => "area",
             Self::Length => "length",
             Self::Depth => "depth",
+            Self::HalfAngle => "half_angle",
         }
     }
 
     /// Its SI unit.
     #[must_use]
     pub fn unit(self) -> &'static str {
-        if self == Self::Area { "m²" } else { "m" }
+        match self {
+            Self::Area => "m²",
+            Self::HalfAngle => "rad",
+            Self::Radius | Self::Thickness | Self::Length | Self::Depth => "m",
+        }
     }
 }
 
@@ -103,6 +119,16 @@ impl Shape {
             Self::Pad { .. } => &[ShapeDimension::Radius, ShapeDimension::Thickness],
             Self::Prism { .. } => &[ShapeDimension::Area, ShapeDimension::Length],
             Self::Profile { .. } => &[ShapeDimension::Depth],
+            Self::Indenter { tip, layer } => match (tip, layer) {
+                (Tip::Sphere { .. } | Tip::Punch { .. }, None) => &[ShapeDimension::Radius],
+                (Tip::Sphere { .. } | Tip::Punch { .. }, Some(_)) => {
+                    &[ShapeDimension::Radius, ShapeDimension::Thickness]
+                }
+                (Tip::Cone { .. } | Tip::Pyramid { .. }, None) => &[ShapeDimension::HalfAngle],
+                (Tip::Cone { .. } | Tip::Pyramid { .. }, Some(_)) => {
+                    &[ShapeDimension::HalfAngle, ShapeDimension::Thickness]
+                }
+            },
         }
     }
 
@@ -114,6 +140,12 @@ impl Shape {
             (Self::Prism { area, .. }, ShapeDimension::Area) => Some(area),
             (Self::Prism { length, .. }, ShapeDimension::Length) => Some(length),
             (Self::Profile { depth, .. }, ShapeDimension::Depth) => Some(depth),
+            (Self::Indenter { layer: Some(layer), .. }, ShapeDimension::Thickness) => Some(&mut layer.thickness),
+            (Self::Indenter { tip, .. }, dimension) => match (tip, dimension) {
+                (Tip::Sphere { radius } | Tip::Punch { radius }, ShapeDimension::Radius) => Some(radius),
+                (Tip::Cone { half_angle } | Tip::Pyramid { half_angle }, ShapeDimension::HalfAngle) => Some(half_angle),
+                _ => None,
+            },
             _ => None,
         }
     }
@@ -135,7 +167,8 @@ impl Shape {
 
     /// Distance from an undeformed contact to the plane that does not move, in m: the depth that is cut into layers.
     ///
-    /// The radius of a ball; the thickness of a pad; the length of a prism, half of it when both ends move; what a profile says.
+    /// The radius of a ball; the thickness of a pad; the length of a prism, half of it when both ends move; what a profile says; the thickness
+    /// of the layer under a tip, or else the radius of the tip.
     #[must_use]
     pub fn depth(&self, sides: Sides) -> f64 {
         match (self, sides) {
@@ -144,6 +177,19 @@ impl Shape {
             (Self::Prism { length, .. }, Sides::One) => *length,
             (Self::Prism { length, .. }, Sides::Two) => length / 2.0,
             (Self::Profile { depth, .. }, _) => *depth,
+            (Self::Indenter { tip, layer }, _) => {
+                layer.map_or_else(|| tip.length().unwrap_or(0.0), |layer| layer.thickness)
+            }
+        }
+    }
+
+    /// The rigid tip whose force on the body is that of the contact by Hertz's law: a rigid flat on an elastic ball is a rigid ball on an elastic
+    /// half space.
+    pub(super) fn tip(&self) -> Option<(Tip, Option<ThinLayer>)> {
+        match self {
+            Self::Ball { radius } | Self::Pad { radius, .. } => Some((Tip::Sphere { radius: *radius }, None)),
+            Self::Indenter { tip, layer } => Some((*tip, *layer)),
+            Self::Prism { .. } | Self::Profile { .. } => None,
         }
     }
 
@@ -157,6 +203,7 @@ impl Shape {
             }
             Self::Prism { area, .. } => (*area, 0.0),
             Self::Profile { area, .. } => area.value_and_slope(u),
+            Self::Indenter { tip, .. } => tip.area(u),
         }
     }
 
@@ -172,7 +219,9 @@ impl Shape {
             (Self::Pad { .. }, _) => depth("thickness of the pad"),
             (Self::Prism { .. }, Sides::One) => depth("length"),
             (Self::Prism { .. }, Sides::Two) => depth("half length"),
-            (Self::Profile { area, .. }, _) => depth("depth").or_table(area.end(), "last row of the table of areas"),
+            (Self::Profile { area, .. }, _) => depth("depth").or_end(area.end(), "last row of the table of areas"),
+            (Self::Indenter { layer: Some(_), .. }, _) => depth("thickness of the layer"),
+            (Self::Indenter { layer: None, .. }, _) => depth("radius of the tip"),
         }
     }
 }
@@ -184,13 +233,13 @@ pub(crate) struct Limit {
     pub(crate) at: f64,
     /// What sets it.
     pub(crate) name: &'static str,
-    /// Whether it may be reached: the end of a table may, the end of a body not.
+    /// Whether it may be reached: the end of a table or of a law may, the end of a body not.
     pub(crate) included: bool,
 }
 
 impl Limit {
-    /// The end of a table if that comes first.
-    pub(super) fn or_table(self, end: f64, name: &'static str) -> Self {
+    /// The end of a table or of a law if that comes first.
+    pub(super) fn or_end(self, end: f64, name: &'static str) -> Self {
         if end < self.at {
             return Self {
                 at: end,

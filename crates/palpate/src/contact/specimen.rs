@@ -1,10 +1,13 @@
 //! The body that is squeezed.
 
+use core::f64::consts::FRAC_PI_2;
+
 #[cfg(feature = "alloc")]
 use serde::{Deserialize, Serialize};
 
 use super::equilibrium::{Equilibrium, EquilibriumError};
 use super::shape::{Limit, Shape, Sides};
+use super::tip::Tip;
 
 /// A body with its modulus: what turns displacement and force into strain.
 #[derive(Debug, Clone, PartialEq)]
@@ -39,6 +42,26 @@ pub enum SpecimenError {
         /// What was given, m.
         found: f64,
     },
+    /// Rows of the widths of a dumbbell that make none.
+    #[error(
+        "row {row} of the widths of a dumbbell: two rows or more are needed, whose places rise and whose widths are above 0 m"
+    )]
+    Widths {
+        /// Which row, from 1.
+        row: usize,
+    },
+    /// A cone or a pyramid on a half space: neither has a length.
+    #[error("a conical or pyramidal tip needs the thickness of the sample, since the tip has no length of its own")]
+    NoDepth,
+    /// A half angle of a tip that is not between its axis and the surface.
+    #[error("the half angle of a tip must be above 0 and below 90 deg, found {} deg", .found.to_degrees())]
+    HalfAngle {
+        /// What was given, rad.
+        found: f64,
+    },
+    /// A law of the equilibrium force that does not go with the body.
+    #[error(transparent)]
+    Equilibrium(#[from] EquilibriumError),
     /// A contact displacement beyond what the body, or a table of it, has.
     #[error("contact displacement must stay below the {limit_name} of {limit} m, found {found} m")]
     TooDeep {
@@ -61,7 +84,8 @@ impl Specimen {
     /// A body of the given shape and Young's modulus `modulus` (Pa).
     ///
     /// # Errors
-    /// [`SpecimenError::NotPositive`] for a length, area or modulus that is not a finite number above zero.
+    /// [`SpecimenError::NotPositive`] for a length, area or modulus that is not a finite number above zero;
+    /// [`SpecimenError::PadTooThick`], [`SpecimenError::HalfAngle`] and [`SpecimenError::NoDepth`] for shapes that are none.
     ///
     /// ```
     /// use palpate::contact::{Shape, Sides, Specimen};
@@ -92,6 +116,21 @@ impl Specimen {
                 positive("depth", "m", *depth)?;
                 positive("area at the last row", "m²", area.value(area.end()))?;
             }
+            Shape::Indenter { tip, layer } => {
+                match *tip {
+                    Tip::Sphere { radius } | Tip::Punch { radius } => positive("radius", "m", radius)?,
+                    Tip::Cone { half_angle } | Tip::Pyramid { half_angle } => {
+                        if !(half_angle > 0.0 && half_angle < FRAC_PI_2) {
+                            return Err(SpecimenError::HalfAngle { found: half_angle });
+                        }
+                    }
+                }
+                match layer {
+                    Some(layer) => positive("thickness", "m", layer.thickness)?,
+                    None if tip.length().is_none() => return Err(SpecimenError::NoDepth),
+                    None => {}
+                }
+            }
         }
         Ok(Self {
             shape,
@@ -110,11 +149,21 @@ impl Specimen {
     /// let ball = Specimen::new(Shape::Ball { radius: 0.02 }, 1e5, Sides::One)?;
     /// let ball = ball.with_equilibrium(Equilibrium::Hertz { poisson_ratio: 0.5 })?;
     /// assert!((ball.force(ball.equilibrium_strain(1e-3), 1e-3) - 0.795_046_5).abs() < 1e-6);
+    ///
+    /// // A conical tip of 35° on a gel of 1 kPa that is thick against its indentation of 0.5 µm:
+    /// // 2/π · 1 kPa/0.75 · tan 35° · (0.5 µm)² = 0.1486 nN
+    /// use palpate::contact::{ThinLayer, Tip};
+    /// let tip = Tip::Cone { half_angle: 35f64.to_radians() };
+    /// let layer = Some(ThinLayer { thickness: 1e-3, base: Default::default() });
+    /// let gel = Specimen::new(Shape::Indenter { tip, layer }, 1e3, Sides::One)?;
+    /// let gel = gel.with_equilibrium(Equilibrium::Hertz { poisson_ratio: 0.5 })?;
+    /// assert!((gel.force(gel.equilibrium_strain(5e-7), 5e-7) - 1.486e-10).abs() < 1e-13);
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     ///
     /// # Errors
-    /// [`EquilibriumError`] for Hertz's law with a body that is not round or a Poisson's ratio that no solid has.
+    /// [`EquilibriumError`] for Hertz's law with a body that is not round, a Poisson's ratio that no solid has, or a punch that is wider than its
+    /// layer is thick.
     pub fn with_equilibrium(self, equilibrium: Equilibrium) -> Result<Self, EquilibriumError> {
         equilibrium.check(&self.shape)?;
         Ok(Self { equilibrium, ..self })
@@ -163,7 +212,7 @@ impl Specimen {
     ///
     /// A ball: A = π [r² − (r − u₁)²] = π (2 r u₁ − u₁²), equation (7), from 0 at first touch to π r² at u₁ = r;
     /// zero before first touch. A pad: the same with its outer radius, up to where it is pressed flat on the core. A prism: its section,
-    /// whatever the displacement. A profile: its table.
+    /// whatever the displacement. A profile: its table. A tip: π a² with the contact radius a of [`Tip`](super::Tip).
     #[must_use]
     pub fn contact_area(&self, contact_displacement: f64) -> f64 {
         self.shape.area(contact_displacement).0
@@ -190,6 +239,12 @@ impl Specimen {
         self.equilibrium.stiffness(&self.shape, self.modulus, self.depth(), contact_displacement)
     }
 
+    /// p of F_e ∝ uᵖ by Hertz's law on a half space: 3/2 of a round body; `None` of one without that law.
+    #[cfg(feature = "std")]
+    pub(crate) fn hertz_power(&self) -> Option<f64> {
+        self.shape.tip().map(|(tip, _)| tip.power().1)
+    }
+
     /// Contact displacements (m) between which the stiffness is smooth, up to `reach`: the rows of tables, and ever closer places to first
     /// touch where it begins like √u.
     #[cfg(feature = "std")]
@@ -213,7 +268,8 @@ impl Specimen {
 
     /// How deep the body can be squeezed; a strip in grips can be stretched further.
     pub(crate) fn limit(&self) -> Limit {
-        self.shape.limit(self.sides).or_table(self.equilibrium.end(), "last row of the table of forces")
+        let (end, name) = self.equilibrium.end(&self.shape);
+        self.shape.limit(self.sides).or_end(end, name)
     }
 
     /// Checks that a contact displacement (m) is one the body can take.
@@ -240,7 +296,7 @@ impl Specimen {
     }
 }
 
-fn positive(name: &'static str, unit: &'static str, found: f64) -> Result<(), SpecimenError> {
+pub(super) fn positive(name: &'static str, unit: &'static str, found: f64) -> Result<(), SpecimenError> {
     if found.is_finite() && found > 0.0 {
         Ok(())
     } else {

@@ -18,7 +18,7 @@ pub const STANDARD_GRAVITY: f64 = 9.806_65;
 /// (T/(μN))² + (M/(c μ N a))² > 1,
 ///
 /// the ellipse by which Howe and Cutkosky (Int. J. Robotics Research 15, 1996) approach the limit surface of a soft finger. c = 3π/16 for Hertz's
-/// pressure, which round bodies have, and 2/3 for an even one, a prism's. Of the two contacts the one counts that acceleration along the closing axis
+/// pressure, which round bodies have, 2/3 for an even one, a prism's, and π p/(8p − 4) under a tip whose force goes like uᵖ. Of the two contacts the one counts that acceleration along the closing axis
 /// unloads, by m a_closing/2. With a safety factor S the force that is needed is therefore
 ///
 /// F = S √(T² + (M/(c a))²)/μ + m |a_closing|/2.
@@ -151,6 +151,7 @@ fn torsional_share(shape: &Shape) -> f64 {
     match shape {
         Shape::Ball { .. } | Shape::Pad { .. } => 3.0 * PI / 16.0,
         Shape::Prism { .. } | Shape::Profile { .. } => 2.0 / 3.0,
+        Shape::Indenter { tip, .. } => tip.torsional_share(),
     }
 }
 

@@ -15,7 +15,7 @@ use palpate::simulate::{
     strain_wave,
 };
 use palpate::strain::{RateWindow, contact_strain, strain_rates};
-use palpate::test_problems::Rng;
+use palpate::test_problems::{Rng, paper_ball};
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
 
@@ -465,8 +465,8 @@ proptest! {
             let record = record.repaired();
             if let Ok(found) = find_phases(&record, &SegmentOptions::default()) {
                 prop_assert!(covers(&found, record.len()), "{:?}", found.segments);
-                let ball = Some(Shape::Ball { radius: 0.035 });
-                let _ = find_contact_of(&record, &found, ball.as_ref().map(|ball| (ball, Sides::Two)), ContactChoice::Auto);
+                let ball = paper_ball(Separation::Unilateral).specimen;
+                let _ = find_contact_of(&record, &found, Some(&ball), ContactChoice::Auto);
                 for hold in found.holds().filter(|hold| hold.phase == Phase::Hold) {
                     let _ = classify_relaxation(&record.force()[hold.start..hold.end]);
                 }

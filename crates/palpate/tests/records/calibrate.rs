@@ -8,7 +8,7 @@ use palpate::calibrate::{
     CalibrateError, Calibration, CalibrationData, Candidate, EquilibriumLaw, Extrapolation, MaterialParameter,
     Prediction, RateLaw, calibrate, profile,
 };
-use palpate::contact::{RateDependence, Shape, Sides};
+use palpate::contact::{Equilibrium, RateDependence, Shape, Sides};
 use palpate::record::Record;
 use palpate::simulate::{Contact, Motion, ProtocolStep, Sampling, Separation, protocol, simulate_force};
 use palpate::test_problems::{PAPER_RATE, Rng, paper_ball, paper_test_a, paper_test_b};
@@ -30,6 +30,7 @@ fn ball() -> Geometry {
         shape: Shape::Ball { radius: 0.035 },
         sides: Sides::Two,
         modulus: None,
+        equilibrium: Equilibrium::UniformStrain,
     }
 }
 

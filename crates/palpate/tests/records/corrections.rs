@@ -319,16 +319,16 @@ fn what_the_machine_gives_way_is_not_the_body() {
 
 #[test]
 fn every_rule_finds_the_ball_behind_the_air() {
-    let shape = paper_ball(Separation::Unilateral).specimen.shape().clone();
+    let body = paper_ball(Separation::Unilateral).specimen;
     for seed in 0..3 {
         let record = ball(3e-3, 0.1, 0.0, 5e-3, seed);
         let phases = find_phases(&record, &SegmentOptions::default()).unwrap();
-        let auto = find_contact_of(&record, &phases, Some((&shape, Sides::Two)), ContactChoice::Auto);
+        let auto = find_contact_of(&record, &phases, Some(&body), ContactChoice::Auto);
         assert!(auto.estimates.len() >= 4 && auto.spread.unwrap() < 0.25e-3, "{auto:?}");
         for estimate in &auto.estimates {
             println!("{}: {:.3} mm", estimate.method.name(), 1e3 * (estimate.displacement - 3e-3));
             assert!((estimate.displacement - 3e-3).abs() < 0.5e-3, "{estimate:?}");
-            let by = find_contact_of(&record, &phases, Some((&shape, Sides::Two)), ContactChoice::By(estimate.method));
+            let by = find_contact_of(&record, &phases, Some(&body), ContactChoice::By(estimate.method));
             assert_eq!((by.method, by.tare.displacement), (Some(estimate.method), estimate.displacement));
             assert_eq!(by.displacement_error, by.spread);
             assert!((by.tare.force - 0.1).abs() < 5e-3, "{by:?}");

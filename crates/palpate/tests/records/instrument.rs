@@ -34,6 +34,7 @@ fn options(radius: f64, modulus: Option<f64>, instrument: Instrument) -> Analysi
             shape: Shape::Ball { radius },
             sides: Sides::Two,
             modulus,
+            equilibrium: palpate::contact::Equilibrium::default(),
         }),
         separation: Separation::Unilateral,
         exponents: vec![5.0],

@@ -2,7 +2,7 @@
 #![expect(clippy::unwrap_used, reason = "a test that cannot run has failed")]
 
 use palpate::analysis::{Analysis, AnalysisError, AnalysisOptions, Finding, Geometry, LayersChoice, analyze};
-use palpate::contact::{Layers, Shape, Sides, Specimen};
+use palpate::contact::{Equilibrium, Layers, Shape, Sides, Specimen};
 use palpate::latency::LatencyLaw;
 use palpate::record::Record;
 use palpate::segment::{ContactChoice, ContactPoint, HoldStart, SegmentOptions, find_contact_of, find_phases};
@@ -86,8 +86,7 @@ impl Bench {
     fn touch(&self, record: &Record) -> ContactPoint {
         let record = record.repaired();
         let phases = find_phases(&record, &SegmentOptions::default()).unwrap();
-        let body = (self.model.specimen.shape(), self.model.specimen.sides());
-        find_contact_of(&record, &phases, Some(body), ContactChoice::Auto)
+        find_contact_of(&record, &phases, Some(&self.model.specimen), ContactChoice::Auto)
     }
 }
 
@@ -226,6 +225,7 @@ fn ball(modulus: Option<f64>) -> AnalysisOptions {
         shape: Shape::Ball { radius: 0.035 },
         sides: Sides::Two,
         modulus,
+        equilibrium: Equilibrium::UniformStrain,
     };
     AnalysisOptions {
         geometry: Some(geometry),
@@ -297,6 +297,7 @@ fn a_jaw_that_goes_through_the_body_is_an_error() {
             shape,
             sides,
             modulus: Some(28e3),
+            equilibrium: Equilibrium::UniformStrain,
         }),
         separation,
         ..AnalysisOptions::default()

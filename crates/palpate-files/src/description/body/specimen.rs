@@ -1,13 +1,13 @@
 //! The table `[specimen]` to shape, size and stiffness of the body.
 
-use std::f64::consts::PI;
+use std::f64::consts::{FRAC_PI_2, PI};
 
 use palpate::{
-    contact::{Curve, Equilibrium, Shape, Sides, Specimen},
+    contact::{Base, Curve, Equilibrium, Shape, Sides, Specimen, ThinLayer, Tip},
     units::Dimension,
 };
 
-use super::tables::{EquilibriumName, ShapeName, SpecimenTable};
+use super::tables::{BaseName, EquilibriumName, ShapeName, SpecimenTable};
 use crate::description::text::{error::DescriptionError, quantity::QuantityText, source::Source};
 
 impl SpecimenTable {
@@ -36,6 +36,13 @@ impl SpecimenTable {
                 area: length("width", &self.width)? * length("thickness", &self.thickness)?,
                 length: length("length", &self.length)?,
             },
+            ShapeName::Dumbbell => {
+                let (key, rows) = ("specimen.widths", self.widths.as_deref().unwrap_or_default());
+                let rows = source.rows(key, rows, (Dimension::Length, Dimension::Length))?;
+                let expected = "rows of place along the axis and width, from grip to grip";
+                Shape::dumbbell(length("thickness", &self.thickness)?, &rows)
+                    .map_err(|error| source.value(key, expected, &error))?
+            }
             ShapeName::Cylinder => Shape::Prism {
                 area: PI / 4.0 * length("diameter", &self.diameter)?.powi(2),
                 length: length("length", &self.length)?,
@@ -54,7 +61,57 @@ impl SpecimenTable {
                     area: Curve::new(&rows).map_err(|error| source.value(key, expected, &error))?,
                 }
             }
+            ShapeName::SphericalTip => self.indenter(
+                source,
+                Tip::Sphere {
+                    radius: length("radius", &self.radius)?,
+                },
+            )?,
+            ShapeName::FlatPunch => self.indenter(
+                source,
+                Tip::Punch {
+                    radius: length("radius", &self.radius)?,
+                },
+            )?,
+            ShapeName::ConicalTip => self.indenter(
+                source,
+                Tip::Cone {
+                    half_angle: self.half_angle(source)?,
+                },
+            )?,
+            ShapeName::PyramidalTip => self.indenter(
+                source,
+                Tip::Pyramid {
+                    half_angle: self.half_angle(source)?,
+                },
+            )?,
         }))
+    }
+
+    /// A tip on its sample.
+    fn indenter(&self, source: &Source<'_>, tip: Tip) -> Result<Shape, DescriptionError> {
+        let thickness = source.positive_if("specimen.thickness", self.thickness.as_ref(), Dimension::Length)?;
+        if let (None, Some(base)) = (thickness, self.base) {
+            let reason = format!("without thickness, of a sample that is a half space (found \"{base}\")");
+            return Err(source.unused("specimen.base", reason, "give the thickness of the sample, or remove base"));
+        }
+        let base = match self.base {
+            Some(BaseName::Sliding) => Base::Sliding,
+            Some(BaseName::Bonded) | None => Base::Bonded,
+        };
+        let layer = thickness.map(|thickness| ThinLayer { thickness, base });
+        Ok(Shape::Indenter { tip, layer })
+    }
+
+    /// Half angle of a tip, rad.
+    fn half_angle(&self, source: &Source<'_>) -> Result<f64, DescriptionError> {
+        let key = "specimen.half_angle";
+        let written = self.half_angle.as_ref().ok_or_else(|| source.missing(key, "an angle"))?;
+        let angle = source.positive(key, written, Dimension::Angle)?;
+        if angle < FRAC_PI_2 {
+            return Ok(angle);
+        }
+        Err(source.value(key, "an angle below 90 deg, from the axis to the surface of the tip", written))
     }
 
     /// Young's modulus in Pa, if it is given.
@@ -82,10 +139,11 @@ impl SpecimenTable {
     }
 
     /// The law of the equilibrium force, and the key that says so.
-    fn equilibrium(&self, source: &Source<'_>) -> Result<(&'static str, Equilibrium), DescriptionError> {
+    pub(crate) fn equilibrium(&self, source: &Source<'_>) -> Result<(&'static str, Equilibrium), DescriptionError> {
         let (named, ratio, measured) =
             ("specimen.equilibrium", "specimen.poisson_ratio", "specimen.equilibrium_forces");
-        match (self.equilibrium, self.poisson_ratio, &self.equilibrium_forces) {
+        let usual = (self.shape.is_tip() && self.equilibrium_forces.is_none()).then_some(EquilibriumName::Hertz);
+        match (self.equilibrium.or(usual), self.poisson_ratio, &self.equilibrium_forces) {
             (Some(_), _, Some(_)) => Err(source.both(measured, named)),
             (None | Some(EquilibriumName::UniformStrain), Some(_), _) => {
                 let reason = "without equilibrium = \"hertz\", the only law that uses it";
@@ -109,26 +167,31 @@ impl SpecimenTable {
         }
     }
 
-    /// Refuses laws of the equilibrium force where one is found from a record.
-    pub(crate) fn no_equilibrium(&self, source: &Source<'_>) -> Result<(), DescriptionError> {
-        let given = [
-            ("equilibrium", self.equilibrium.is_some()),
-            ("poisson_ratio", self.poisson_ratio.is_some()),
-            ("equilibrium_forces", self.equilibrium_forces.is_some()),
-        ];
-        match given.iter().find(|(_, given)| *given) {
-            Some((name, _)) => {
+    /// The law by which a record gives modulus and strain: a table of forces has no modulus, and `is_material` says whether one may be there.
+    pub(crate) fn equilibrium_of_test(
+        &self,
+        source: &Source<'_>,
+        shape: &Shape,
+        is_material: bool,
+    ) -> Result<Equilibrium, DescriptionError> {
+        let key = "specimen.equilibrium_forces";
+        match self.equilibrium(source)? {
+            (_, Equilibrium::Measured { .. }) if is_material => Ok(Equilibrium::UniformStrain),
+            (_, Equilibrium::Measured { .. }) => {
                 let reason = "in a test, whose strains are force over modulus and area";
-                Err(source.unused(format!("specimen.{name}"), reason, format!("keep {name} for a protocol")))
+                Err(source.unused(key, reason, "keep equilibrium_forces for a protocol"))
             }
-            None => Ok(()),
+            (key, law) => match law.check(shape) {
+                Ok(()) => Ok(law),
+                Err(error) => Err(source.value(key, "a law that applies to the body", &error)),
+            },
         }
     }
 
     /// Refuses a body without a shape, which cannot be simulated.
     fn known_shape(&self, source: &Source<'_>) -> Result<Shape, DescriptionError> {
         self.shape(source)?.ok_or_else(|| {
-            let expected = "\"ball\", \"pad\", \"strip\", \"cylinder\", \"block\" or \"profile\"";
+            let expected = "the shape of a body, such as \"ball\"";
             source.value("specimen.shape", expected, "\"none\"")
         })
     }
@@ -136,26 +199,29 @@ impl SpecimenTable {
     /// All sizes of the shape must be there, and no other.
     fn check_sizes(&self, source: &Source<'_>) -> Result<(), DescriptionError> {
         let shape = self.shape;
-        let wanted = self.shape.sizes();
-        let areas = self.areas.as_ref().map(|rows| format!("{} rows", rows.len()));
+        let (wanted, optional) = (self.shape.sizes(), self.shape.optional());
+        let rows = |rows: &Option<Vec<_>>| rows.as_ref().map(|rows| format!("{} rows", rows.len()));
         let written = |size: &Option<QuantityText>| size.as_ref().map(ToString::to_string);
         let given = [
             ("radius", written(&self.radius)),
             ("diameter", written(&self.diameter)),
             ("width", written(&self.width)),
             ("thickness", written(&self.thickness)),
+            ("half_angle", written(&self.half_angle)),
+            ("base", self.base.map(|base| format!("\"{base}\""))),
             ("area", written(&self.area)),
             ("length", written(&self.length)),
             ("depth", written(&self.depth)),
-            ("areas", areas),
+            ("widths", rows(&self.widths)),
+            ("areas", rows(&self.areas)),
         ];
         for (name, size) in given {
             let key = format!("specimen.{name}");
             match size {
-                Some(size) if !wanted.contains(&name) => {
+                Some(size) if !wanted.contains(&name) && !optional.contains(&name) => {
                     let sizes = match wanted {
                         [] => "has no sizes".to_owned(),
-                        _ => format!("takes {}", wanted.join(", ")),
+                        _ => format!("takes {}", [wanted, optional].concat().join(", ")),
                     };
                     let reason = format!("with shape = \"{shape}\", which {sizes} (found {size})");
                     return Err(source.unused(&key, &reason, format!("remove {name}")));
@@ -163,6 +229,11 @@ impl SpecimenTable {
                 None if wanted.contains(&name) => {
                     let example = match name {
                         "area" => "\"40 mm^2\"",
+                        "half_angle" => "\"35 deg\"",
+                        "thickness" if shape.is_tip() => "\"10 um\"",
+                        "widths" => {
+                            "[[\"0 mm\", \"12 mm\"], [\"10 mm\", \"4 mm\"], [\"30 mm\", \"4 mm\"], [\"40 mm\", \"12 mm\"]]"
+                        }
                         "areas" => "[[\"0 mm\", \"0 mm^2\"], [\"1 mm\", \"40 mm^2\"]]",
                         _ => "\"35 mm\"",
                     };
@@ -180,6 +251,6 @@ impl SpecimenTable {
 pub(crate) fn usual_sides(shape: &Shape) -> Sides {
     match shape {
         Shape::Ball { .. } => Sides::Two,
-        Shape::Pad { .. } | Shape::Prism { .. } | Shape::Profile { .. } => Sides::One,
+        Shape::Pad { .. } | Shape::Prism { .. } | Shape::Profile { .. } | Shape::Indenter { .. } => Sides::One,
     }
 }

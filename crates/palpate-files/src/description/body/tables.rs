@@ -7,35 +7,42 @@ use serde::{Deserialize, Serialize};
 use crate::description::text::quantity::QuantityText;
 
 /// Shape, size and stiffness of the body. Give the sizes of its shape: a ball takes radius; a pad takes
-/// radius and thickness; a strip takes width, thickness and length; a cylinder takes diameter and length; a block takes area and length;
-/// a profile takes depth and areas.
+/// radius and thickness; a strip takes width, thickness and length; a dumbbell takes thickness and widths; a cylinder takes diameter and length; a block takes area and length;
+/// a profile takes depth and areas; a spherical tip or a flat punch takes radius and may take thickness and base; a conical or pyramidal tip
+/// takes half_angle and thickness and may take base. Tips also take poisson_ratio.
 #[derive(Debug, Clone, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 #[schemars(rename = "Specimen")]
 pub(crate) struct SpecimenTable {
     /// The shape of the body.
     pub(crate) shape: ShapeName,
-    /// Radius of a ball; outer radius of a pad.
+    /// Radius of a ball, a spherical tip or a flat punch; outer radius of a pad.
     pub(crate) radius: Option<QuantityText>,
     /// Diameter of a cylinder that is loaded along its axis.
     pub(crate) diameter: Option<QuantityText>,
     /// Width of the section of a strip.
     pub(crate) width: Option<QuantityText>,
-    /// Thickness of the section of a strip; of the soft layer of a pad, at most its radius.
+    /// Thickness of the section of a strip or a dumbbell; of the soft layer of a pad, at most its radius; of the sample under a tip, a half space without it.
     pub(crate) thickness: Option<QuantityText>,
+    /// Half angle of a conical or pyramidal tip, from its axis to its surface or face, such as "35 deg".
+    pub(crate) half_angle: Option<QuantityText>,
+    /// Far side of the sample under a tip, with its thickness: bonded (the default) to its rigid base, or sliding on it.
+    pub(crate) base: Option<BaseName>,
     /// Area of the section of a block, which carries the force.
     pub(crate) area: Option<QuantityText>,
     /// Free length along the force, from grip to grip or plate to plate: of a strip, a cylinder or a block.
     pub(crate) length: Option<QuantityText>,
     /// Depth of a profile, from the undeformed contact to the plane that does not move.
     pub(crate) depth: Option<QuantityText>,
+    /// Widths of a dumbbell along its axis, from grip to grip: rows of place and width, such as ["0 mm", "12 mm"].
+    pub(crate) widths: Option<Vec<(QuantityText, QuantityText)>>,
     /// Contact area of a profile: rows of contact displacement and area, from first touch on, such as ["1 mm", "40 mm^2"].
     pub(crate) areas: Option<Vec<(QuantityText, QuantityText)>>,
     /// Young's modulus.
     pub(crate) modulus: Option<QuantityText>,
-    /// Law of the equilibrium force, in a protocol: uniform strain (the paper's law, the default) or hertz.
+    /// Law of the equilibrium force: uniform strain (the paper's law, the default) or hertz (the default of tips).
     pub(crate) equilibrium: Option<EquilibriumName>,
-    /// Poisson's ratio of a body with hertz, from 0 to 0.5.
+    /// Poisson's ratio with hertz, from 0 to 0.5.
     pub(crate) poisson_ratio: Option<f64>,
     /// Measured equilibrium force, in a protocol: rows of contact displacement and force, from first touch on, such as
     /// ["1 mm", "0.2 N"]. In place of modulus and equilibrium.
@@ -48,10 +55,22 @@ pub(crate) enum EquilibriumName {
     /// Force = modulus × displacement/depth × contact area.
     #[serde(rename = "uniform strain")]
     UniformStrain,
-    /// Force = 4/3 modulus/(1 − ν²) √radius displacement^(3/2).
+    /// Force = 4/3 modulus/(1 − ν²) √radius displacement^(3/2) of a ball, a pad or a spherical tip; its extensions to other tips.
     #[serde(rename = "hertz")]
     Hertz,
 }
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize, Serialize, JsonSchema)]
+#[schemars(rename = "Base")]
+#[serde(rename_all = "lowercase")]
+pub(crate) enum BaseName {
+    /// The sample adheres to a rigid base.
+    Bonded,
+    /// The sample slides on a rigid base without friction.
+    Sliding,
+}
+
+shown_as_written!(BaseName);
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize, Serialize, JsonSchema)]
 #[serde(rename_all = "lowercase")]
@@ -62,12 +81,26 @@ pub(crate) enum ShapeName {
     Pad,
     /// A strip of rectangular section, pulled or pressed along its length.
     Strip,
+    /// A dumbbell (ISO 37, ASTM D412) pulled along its length.
+    Dumbbell,
     /// A cylinder, pulled or pressed along its axis.
     Cylinder,
     /// Any body of constant section.
     Block,
     /// Any other body, by a table of its contact area.
     Profile,
+    /// A rigid sphere on the sample, such as a bead on a cantilever.
+    #[serde(rename = "spherical tip")]
+    SphericalTip,
+    /// A rigid cone on the sample.
+    #[serde(rename = "conical tip")]
+    ConicalTip,
+    /// A rigid four-sided pyramid on the sample.
+    #[serde(rename = "pyramidal tip")]
+    PyramidalTip,
+    /// The flat end of a rigid cylinder on the sample.
+    #[serde(rename = "flat punch")]
+    FlatPunch,
     /// Unknown shape: palpate fits forces and computes no strain.
     None,
 }
@@ -75,17 +108,34 @@ pub(crate) enum ShapeName {
 shown_as_written!(ShapeName);
 
 impl ShapeName {
-    /// The sizes that describe it.
+    /// The sizes that describe it; see also [`optional`](Self::optional).
     pub(crate) fn sizes(self) -> &'static [&'static str] {
         match self {
             Self::Ball => &["radius"],
             Self::Pad => &["radius", "thickness"],
             Self::Strip => &["width", "thickness", "length"],
+            Self::Dumbbell => &["thickness", "widths"],
             Self::Cylinder => &["diameter", "length"],
             Self::Block => &["area", "length"],
             Self::Profile => &["depth", "areas"],
+            Self::SphericalTip | Self::FlatPunch => &["radius"],
+            Self::ConicalTip | Self::PyramidalTip => &["half_angle", "thickness"],
             Self::None => &[],
         }
+    }
+
+    /// What it may take besides its sizes.
+    pub(crate) fn optional(self) -> &'static [&'static str] {
+        match self {
+            Self::SphericalTip | Self::FlatPunch => &["thickness", "base"],
+            Self::ConicalTip | Self::PyramidalTip => &["base"],
+            _ => &[],
+        }
+    }
+
+    /// Whether it is the tip of an indenter.
+    pub(crate) fn is_tip(self) -> bool {
+        self.optional().contains(&"base")
     }
 }
 

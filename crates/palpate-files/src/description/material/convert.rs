@@ -130,12 +130,12 @@ fn equilibrium(
     name: CalibratedEquilibriumName,
     model: &Contact,
 ) -> Result<(EquilibriumLaw, Vec<f64>), DescriptionError> {
-    let (law, levels) = match model.specimen().equilibrium() {
-        Equilibrium::UniformStrain => (EquilibriumLaw::UniformStrain, Vec::new()),
-        Equilibrium::Hertz { poisson_ratio: ratio } => (EquilibriumLaw::Hertz { poisson_ratio: *ratio }, Vec::new()),
+    let equilibrium = model.specimen().equilibrium();
+    let law = EquilibriumLaw::from(equilibrium);
+    let levels = match equilibrium {
+        Equilibrium::UniformStrain | Equilibrium::Hertz { .. } => Vec::new(),
         Equilibrium::Measured { force_per_displacement } => {
-            let places = force_per_displacement.points().into_iter().skip(1).map(|(place, _)| place);
-            (EquilibriumLaw::Table, places.collect())
+            force_per_displacement.points().into_iter().skip(1).map(|(place, _)| place).collect()
         }
     };
     let of_body = CalibratedEquilibriumName::from(law);

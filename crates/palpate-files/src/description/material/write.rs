@@ -2,7 +2,7 @@
 
 use palpate::{
     calibrate::SystematicEffect,
-    contact::{Equilibrium, Shape, Sides},
+    contact::{Base, Equilibrium, Shape, Sides, Tip},
     number::{exact, significant},
     simulate::{Contact, LinearContact, Memory, Separation},
 };
@@ -64,13 +64,30 @@ impl MaterialFile {
                 let rows: String = area.points().into_iter().map(row).collect();
                 format!("\"profile\"\ndepth = {}\nareas = [\n{rows}]", si(*depth, "m"))
             }
+            Shape::Indenter { tip, layer } => {
+                let (name, key, size, unit) = match *tip {
+                    Tip::Sphere { radius } => ("spherical tip", "radius", radius, "m"),
+                    Tip::Cone { half_angle } => ("conical tip", "half_angle", half_angle, "rad"),
+                    Tip::Pyramid { half_angle } => ("pyramidal tip", "half_angle", half_angle, "rad"),
+                    Tip::Punch { radius } => ("flat punch", "radius", radius, "m"),
+                };
+                let layer = layer.map_or_else(String::new, |layer| {
+                    let base = if layer.base == Base::Bonded { "bonded" } else { "sliding" };
+                    format!("\nthickness = {}\nbase = \"{base}\"", si(layer.thickness, "m"))
+                });
+                format!("\"{name}\"\n{key} = {}{layer}", si(size, unit))
+            }
         };
         let contact = self.material.contact();
         let specimen = contact.specimen();
         let modulus =
             || format!("modulus = {}{}\n", si(specimen.modulus(), "Pa"), self.interval("modulus_pa", 1e-3, " kPa"));
         let stiffness = match specimen.equilibrium() {
-            Equilibrium::UniformStrain => modulus(),
+            // That of a tip is another one if none is stated.
+            Equilibrium::UniformStrain => match body.shape {
+                Shape::Indenter { .. } => format!("{}equilibrium = \"uniform strain\"\n", modulus()),
+                _ => modulus(),
+            },
             Equilibrium::Hertz { poisson_ratio } => {
                 format!("{}equilibrium = \"hertz\"\npoisson_ratio = {poisson_ratio:?}\n", modulus())
             }

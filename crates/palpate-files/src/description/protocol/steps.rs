@@ -136,7 +136,7 @@ fn check_displacement(
         Err(SpecimenError::TooDeep { limit, limit_name, .. }) => {
             let most = limit / specimen.contact_displacement(1.0) * 1e3;
             let why = match limit_name {
-                table if table.contains("table") => format!("the {table}"),
+                end if end.contains("table") || end.contains("contact") => format!("the {end}"),
                 _ => "where the body would have no thickness".to_owned(),
             };
             format!("a displacement below {most} mm, {why}")

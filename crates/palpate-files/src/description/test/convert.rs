@@ -102,12 +102,13 @@ fn geometry(source: &Source<'_>, tables: &TestTables) -> Result<Option<Geometry>
     let sides = tables.contact.squeezed_from.map(Sides::from);
     let (mut shape, mut modulus) = (None, None);
     if let Some(specimen) = &tables.specimen {
-        if tables.calibration.is_none() {
-            specimen.no_equilibrium(source)?;
+        modulus = specimen.modulus(source)?;
+        if let Some(form) = specimen.shape(source)? {
+            let equilibrium = specimen.equilibrium_of_test(source, &form, tables.calibration.is_some())?;
+            shape = Some((form, equilibrium));
         }
-        (shape, modulus) = (specimen.shape(source)?, specimen.modulus(source)?);
     }
-    let Some(shape) = shape else {
+    let Some((shape, equilibrium)) = shape else {
         return match (sides, modulus) {
             (Some(_), _) => Err(needs_body(source, "contact.squeezed_from")),
             (None, Some(_)) => Err(needs_body(source, "specimen.modulus")),
@@ -118,6 +119,7 @@ fn geometry(source: &Source<'_>, tables: &TestTables) -> Result<Option<Geometry>
         sides: sides.unwrap_or_else(|| specimen::usual_sides(&shape)),
         shape,
         modulus,
+        equilibrium,
     }))
 }
 

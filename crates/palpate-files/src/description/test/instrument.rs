@@ -53,6 +53,8 @@ pub(crate) struct InstrumentTable {
     length: Option<Uncertain>,
     /// Depth of a profile.
     depth: Option<Uncertain>,
+    /// Half angle of a conical or pyramidal tip.
+    half_angle: Option<Uncertain>,
     /// The given modulus.
     modulus: Option<Uncertain>,
     /// Temperature of the body, with what it changes.
@@ -165,7 +167,7 @@ pub(super) fn checked(
         section(specimen.and_then(|table| table.thickness.as_ref()).filter(|_| is_strip), "thickness", 1.0)?;
     let diameter = section(specimen.and_then(|table| table.diameter.as_ref()), "diameter", 2.0)?;
     let of_thickness = if is_strip { ShapeDimension::Area } else { ShapeDimension::Thickness };
-    let entries: [(&Option<Uncertain>, Key); 15] = [
+    let entries: [(&Option<Uncertain>, Key); 16] = [
         (&table.force, ("force", InstrumentQuantity::Force, Dimension::Force, 1.0)),
         (&table.force_gain, ("force_gain", InstrumentQuantity::ForceGain, Dimension::Share, 1.0)),
         (&table.displacement, ("displacement", InstrumentQuantity::Displacement, Dimension::Length, 1.0)),
@@ -182,6 +184,7 @@ pub(super) fn checked(
         (&table.area, ("area", body(ShapeDimension::Area), Dimension::Area, 1.0)),
         (&table.length, ("length", body(ShapeDimension::Length), Dimension::Length, 1.0)),
         (&table.depth, ("depth", body(ShapeDimension::Depth), Dimension::Length, 1.0)),
+        (&table.half_angle, ("half_angle", body(ShapeDimension::HalfAngle), Dimension::Angle, 1.0)),
         (&table.modulus, ("modulus", InstrumentQuantity::Modulus, Dimension::Pressure, 1.0)),
         (&table.temperature, ("temperature", temperature(source, table)?, Dimension::Temperature, 1.0)),
     ];
@@ -239,6 +242,7 @@ fn sizes(shape: &Shape) -> &'static str {
         Shape::Pad { .. } => "radius and thickness",
         Shape::Prism { .. } => "width, thickness and length, diameter and length, or area and length",
         Shape::Profile { .. } => "depth",
+        Shape::Indenter { .. } => "those of the tip (radius or half_angle) and thickness",
     }
 }
 

@@ -61,7 +61,7 @@ fn needed(key: &str) -> &'static str {
             "a table [law] with name and the parameters of that law (exponent and rate_coefficient of \"latency\")"
         }
         "step" => "one or more [[step]] tables with to and rate",
-        "shape" => "\"ball\", \"pad\", \"strip\", \"cylinder\" or \"block\"",
+        "shape" => "\"ball\", \"pad\", \"strip\", \"cylinder\", \"block\" or \"spherical tip\"",
         "name" => "a law: \"latency\", \"standard-linear-solid\", \"prony\", \"fung\" or \"fractional-zener\"",
         "overshoot" => "a number above 0, such as 3",
         "share" => "a number above 0, such as 0.3",

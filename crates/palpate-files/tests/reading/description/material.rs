@@ -8,7 +8,7 @@ use palpate::calibrate::{
     Body, CalibrationRange, Candidate, EquilibriumLaw, Material, MaterialParameter, MaterialParts, MaterialUncertainty,
     MaterialUnit, RateLaw, SystematicEffect,
 };
-use palpate::contact::{Curve, Shape, Sides};
+use palpate::contact::{Base, Curve, Shape, Sides, ThinLayer, Tip};
 use palpate::fit::Estimate;
 use palpate::simulate::Separation;
 use palpate_files::description::{
@@ -118,6 +118,15 @@ fn what_is_written_is_read_again_to_the_last_digit() {
     };
     let area = Curve::new(&[(0.0, 0.0), (0.001, 1e-5), (0.004, 1e-4 / 3.0)]).unwrap();
     let profile = Shape::Profile { depth: 0.02, area };
+    let layer = |thickness, base| Some(ThinLayer { thickness, base });
+    let bead = Shape::Indenter {
+        tip: Tip::Sphere { radius: 0.01 / 3.0 },
+        layer: layer(0.01, Base::Sliding),
+    };
+    let cone = Shape::Indenter {
+        tip: Tip::Cone { half_angle: 1.0 / 3.0 },
+        layer: layer(0.02, Base::Bonded),
+    };
     for law in ["latency", "latency:5", "standard-linear-solid", "prony:2", "prony:3", "fung:1", "fung:2"] {
         for (equilibrium, shape) in [
             (EquilibriumLaw::UniformStrain, ball()),
@@ -126,6 +135,10 @@ fn what_is_written_is_read_again_to_the_last_digit() {
             (EquilibriumLaw::Table, ball()),
             (hertz, ball()),
             (hertz, pad.clone()),
+            (hertz, bead.clone()),
+            (hertz, cone.clone()),
+            (EquilibriumLaw::UniformStrain, cone.clone()),
+            (EquilibriumLaw::Table, cone.clone()),
         ] {
             let file = material(law, equilibrium, shape);
             let text = file.to_toml();

@@ -1,7 +1,7 @@
 //! Protocols.
 
 use palpate::{
-    contact::{Shape, Sides},
+    contact::{Base, Equilibrium, Shape, Sides, ThinLayer, Tip},
     simulate::{Contact, LinearLaw, Memory, ProgramStep, Sampling, Separation, simulate},
 };
 
@@ -126,6 +126,80 @@ fn shapes_and_choices() {
 }
 
 #[test]
+fn tips_of_indenters_and_dumbbells() {
+    let body = |text: &str| {
+        let text = with("shape = \"ball\"\nradius = \"35 mm\"", text);
+        protocol(&text.replace("to = \"5 mm\"", "to = \"3 um\""))
+    };
+    let sphere = "shape = \"spherical tip\"\nradius = \"5 um\"\npoisson_ratio = 0.5";
+    let specimen = body(sphere).unwrap().contact.specimen().clone();
+    let tip = Tip::Sphere { radius: 5e-6 };
+    assert_eq!(specimen.shape(), &Shape::Indenter { tip, layer: None });
+    assert_eq!(specimen.equilibrium(), &Equilibrium::Hertz { poisson_ratio: 0.5 });
+    assert_eq!((specimen.depth(), specimen.sides()), (5e-6, Sides::One));
+    let thin = body(&format!("{sphere}\nthickness = \"8 um\"\nbase = \"sliding\"")).unwrap();
+    let layer = Some(ThinLayer {
+        thickness: 8e-6,
+        base: Base::Sliding,
+    });
+    assert_eq!(thin.contact.specimen().shape(), &Shape::Indenter { tip, layer });
+    // √(R u) = h/2 at u = h²/(4 R)
+    says(
+        body(&format!("{sphere}\nthickness = \"7 um\"")),
+        "step[1].to",
+        "the contact is as wide as the layer is thick, found \"3 um\"",
+        "",
+    );
+    let cone = "shape = \"conical tip\"\nhalf_angle = \"35 deg\"\nthickness = \"1 mm\"\npoisson_ratio = 0.4";
+    let Shape::Indenter {
+        tip: Tip::Cone { half_angle },
+        layer: Some(ThinLayer { base: Base::Bonded, .. }),
+    } = *body(cone).unwrap().contact.specimen().shape()
+    else {
+        panic!("no cone on a layer that is bonded");
+    };
+    assert!((half_angle - 35f64.to_radians()).abs() < 1e-15);
+    assert!(body(&cone.replace("conical", "pyramidal")).is_ok());
+    says(body(&sphere.replace("poisson_ratio = 0.5", "")), "specimen.poisson_ratio", "Hertz's law", "");
+    says(
+        body(&format!("{sphere}\nbase = \"bonded\"")),
+        "specimen.base",
+        "without thickness",
+        "give the thickness",
+    );
+    says(
+        body(&format!("{sphere}\nhalf_angle = \"3 deg\"")),
+        "specimen.half_angle",
+        "takes radius, thickness, base",
+        "",
+    );
+    says(
+        body(&cone.replace("thickness = \"1 mm\"", "")),
+        "specimen.thickness",
+        "the thickness of a conical tip",
+        "",
+    );
+    says(body(&cone.replace("35 deg", "95 deg")), "specimen.half_angle", "an angle below 90 deg", "");
+    says(body(&cone.replace("35 deg", "35 mm")), "specimen.half_angle", "\"35 mm\"", "rad, deg");
+    let punch = sphere.replace("spherical tip", "flat punch");
+    says(
+        body(&format!("{punch}\nthickness = \"8 um\"")),
+        "specimen.equilibrium",
+        "at most as wide as the layer is thick",
+        "",
+    );
+
+    let rows = "widths = [[\"0 mm\", \"12 mm\"], [\"10 mm\", \"4 mm\"], [\"30 mm\", \"4 mm\"], [\"40 mm\", \"12 mm\"]]";
+    let dumbbell = format!("shape = \"dumbbell\"\nthickness = \"2 mm\"\n{rows}");
+    let Shape::Prism { area, length } = *body(&dumbbell).unwrap().contact.specimen().shape() else {
+        panic!("no prism");
+    };
+    assert!((area - 8e-6).abs() < 1e-18 && (length - (0.02 + 0.01 * 3f64.ln())).abs() < 1e-15);
+    says(body(&dumbbell.replace("30 mm", "9 mm")), "specimen.widths", "row 3 of the widths", "");
+    says(body(&dumbbell.replace(rows, "")), "specimen.widths", "the widths of a dumbbell", "");
+}
+
+#[test]
 fn quantities_want_units() {
     let length = "accepted";
     for (found, shown) in [("\"35\"", "\"35\""), ("35", "= 35:"), ("35.0", "= 35:")] {
@@ -213,7 +287,7 @@ fn absurd_values_name_their_keys() {
             "\"ball\"",
             "\"bal\"",
             "specimen.shape",
-            "\"ball\", \"pad\", \"strip\", \"cylinder\", \"block\", \"profile\" or \"none\", found \"bal\"",
+            "\"ball\", \"pad\", \"strip\", \"dumbbell\", \"cylinder\", \"block\", \"profile\", \"spherical tip\", \"conical tip\", \"pyramidal tip\", \"flat punch\" or \"none\", found \"bal\"",
         ),
         ("\"latency\"", "\"maxwell\"", "law.name", "or \"fractional-zener\", found \"maxwell\""),
         (
@@ -227,7 +301,7 @@ fn absurd_values_name_their_keys() {
             "shape = \"ball\"\nradius = \"35 mm\"",
             "shape = \"none\"",
             "specimen.shape",
-            "\"block\" or \"profile\", found \"none\"",
+            "the shape of a body, such as \"ball\", found \"none\"",
         ),
         (
             "\"35 mm\"",

@@ -13,7 +13,7 @@ fn schemas_have_titles_words_and_strict_keys() {
     assert_eq!(material["required"], serde_json::json!(["specimen", "law", "calibration"]));
     assert!(material["$defs"]["CalibratedParameter"]["properties"]["interval"].is_object());
     let text = protocol.to_string();
-    for word in ["two sides", "layer_thickness", "such as \\\"35 mm\\\"", "Radius of a ball; outer radius of a pad."] {
+    for word in ["two sides", "layer_thickness", "such as \\\"35 mm\\\"", "a flat punch; outer radius of a pad."] {
         assert!(text.contains(word), "{word}");
     }
     let test = schema_test();

@@ -3,7 +3,7 @@
 use palpate::{
     analysis::LayersChoice,
     budget::Evaluation,
-    contact::{Shape, Sides},
+    contact::{Equilibrium, Shape, Sides},
     instrument::InstrumentQuantity,
     segment::{ContactChoice, GivenHold, HoldMode, HoldStart},
     simulate::Separation,
@@ -94,6 +94,28 @@ fn the_shape_sets_what_is_usual() {
     let body = block.analysis.geometry.unwrap();
     assert_eq!((body.sides, body.shape.depth(body.sides), body.modulus), (Sides::One, 0.02, None));
     assert_eq!(test("[specimen]\nshape = \"none\"").unwrap().analysis.geometry, None);
+}
+
+#[test]
+fn a_test_may_state_the_law_of_its_body() {
+    let tip =
+        "[specimen]\nshape = \"pyramidal tip\"\nhalf_angle = \"20 deg\"\nthickness = \"5 um\"\npoisson_ratio = 0.5";
+    let test_of_tip = test(tip).unwrap();
+    assert_eq!(
+        (test_of_tip.analysis.touch, test_of_tip.analysis.separation),
+        (ContactChoice::Auto, Separation::Unilateral)
+    );
+    let body = test_of_tip.analysis.geometry.unwrap();
+    assert_eq!(body.equilibrium, Equilibrium::Hertz { poisson_ratio: 0.5 });
+    assert!(body.specimen(1e3).is_ok());
+    let ball = "[specimen]\nshape = \"ball\"\nradius = \"35 mm\"\n";
+    let hertz = test(&format!("{ball}equilibrium = \"hertz\"\npoisson_ratio = 0.45")).unwrap();
+    assert_eq!(hertz.analysis.geometry.unwrap().equilibrium, Equilibrium::Hertz { poisson_ratio: 0.45 });
+    let block = "[specimen]\nshape = \"block\"\narea = \"1 cm^2\"\nlength = \"2 cm\"\n";
+    let block = format!("{block}equilibrium = \"hertz\"\npoisson_ratio = 0.45");
+    says(test(&block), "specimen.equilibrium", "Hertz's law needs", "");
+    let forces = format!("{ball}equilibrium_forces = [[\"0 mm\", \"0 N\"], [\"1 mm\", \"0.2 N\"]]");
+    says(test(&forces), "specimen.equilibrium_forces", "in a test", "keep equilibrium_forces for a protocol");
 }
 
 #[test]

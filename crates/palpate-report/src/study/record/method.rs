@@ -1,13 +1,14 @@
 //! How an analysis was made: the settings that a page tells.
 
 use palpate::analysis::Analysis;
+use palpate::contact::Equilibrium;
 use palpate::record::Correction;
 use palpate::segment::{ContactChoice, HoldStart};
 
 use crate::number::significant;
 use crate::page::Block;
 
-const METHOD: &str = "The phases are detected in the record without labels. Strain is force over contact area and modulus, ε = f/(E A), with the area at the displacement of one contact. The latency law ε̇ = −v sgn(ε − εₑ)|ε − εₑ|ⁿ is fitted to the strain of each hold over time by its closed form (preferred), and to strain rate against strain as in the paper. The least-squares search needs no starting values. Standard errors and intervals account for the correlation of the residuals. Without a known geometry the force is fitted directly.";
+const METHOD: &str = "The phases are detected in the record without labels. Strain is force over the stiffness of the contact, ε = f/S: contact area times modulus, E A, at the displacement of one contact, or the equilibrium force over u/depth by Hertz's law where the description names that. The latency law ε̇ = −v sgn(ε − εₑ)|ε − εₑ|ⁿ is fitted to the strain of each hold over time by its closed form (preferred), and to strain rate against strain as in the paper. The least-squares search needs no starting values. Standard errors and intervals account for the correlation of the residuals. Without a known geometry the force is fitted directly.";
 
 /// The method in words, then the settings it ran with.
 pub(super) fn blocks(analysis: &Analysis) -> Vec<Block> {
@@ -90,6 +91,9 @@ fn fits(analysis: &Analysis) -> Pairs {
     ];
     if let Some(specimen) = &analysis.specimen {
         pairs.push(("Modulus", format!("{} kPa", significant(specimen.modulus() / 1e3, 4))));
+        if let Equilibrium::Hertz { poisson_ratio } = specimen.equilibrium() {
+            pairs.push(("Equilibrium force", format!("Hertz's law, Poisson's ratio {poisson_ratio}")));
+        }
         pairs.push(("Depth cut into layers", format!("{} mm", number(1e3 * specimen.depth()))));
     }
     pairs

@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 use super::compared::{comparison_findings, fitted, not_a_hold};
 use super::rate_bias::{RateBias, rate_bias};
 use crate::analysis::{AnalysisOptions, Finding};
-use crate::contact::Specimen;
+use crate::contact::{Shape, Specimen};
 use crate::fit::{ExponentChoice, LatencyFit, OrderSelection, Samples, Termination, select_order};
 use crate::forecast::{Comparison, KnownFit, RampChoice, compare_laws_watched};
 use crate::laws::Loading;
@@ -54,6 +54,8 @@ pub struct HoldAnalysis {
     pub signal: Signal,
     /// Newtons per unit of the signal at this hold: E A, or 1.
     pub force_per_signal: f64,
+    /// Equilibrium force per modulus at this hold, N/Pa: the modulus that an equilibrium force F_e implies is F_e over it.
+    pub force_per_modulus: Option<f64>,
     /// Times since the start of the fit, s.
     pub times: Vec<f64>,
     /// The signal at those times.
@@ -136,6 +138,7 @@ pub(in crate::analysis) fn prepare_hold(
         force_end: mean(&force[force.len() - tail..]),
         signal: if specimen.is_some() { Signal::Strain } else { Signal::Force },
         force_per_signal: 1.0,
+        force_per_modulus: None,
         times: Vec::new(),
         values: Vec::new(),
         fitted: 0,
@@ -217,8 +220,11 @@ fn take_signal(hold: &mut HoldAnalysis, record: &Record, specimen: Option<&Speci
         (Some(specimen), Some(displacement), Some(level)) => {
             let contact = specimen.contact_displacement(level);
             hold.force_per_signal = specimen.force(1.0, contact);
-            // So close to first touch the area is the difference of two nearly equal numbers.
-            let shallow = contact < 0.01 * specimen.depth() && specimen.contact_area(0.0) == 0.0;
+            let relaxed = specimen.force(specimen.equilibrium_strain(contact), contact) / specimen.modulus();
+            hold.force_per_modulus = Some(relaxed).filter(|force| *force > 0.0);
+            // So close to first touch the area is the difference of two nearly equal numbers, but under a tip, whose depth is that of the sample.
+            let is_tip = matches!(specimen.shape(), Shape::Indenter { .. });
+            let shallow = contact < 0.01 * specimen.depth() && specimen.contact_area(0.0) == 0.0 && !is_tip;
             for i in samples {
                 match contact_strain(record.force()[i], displacement[i], specimen) {
                     Some(strain) if !shallow => {

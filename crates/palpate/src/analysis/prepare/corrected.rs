@@ -176,10 +176,11 @@ impl Corrected {
     /// The same set to zero at first touch.
     pub(in crate::analysis) fn prepared(&self, options: &AnalysisOptions) -> Result<Prepared, AnalysisError> {
         let segmentation = self.segmentation.clone()?;
-        let body = options.geometry.as_ref().map(|geometry| (&geometry.shape, geometry.sides));
-        let contact = find_contact_of(&self.record, &segmentation, body, options.touch);
+        // First touch is one of geometry, and so is the limit below; any modulus will do.
+        let body = options.geometry.as_ref().map(|geometry| geometry.specimen(1.0)).transpose()?;
+        let contact = find_contact_of(&self.record, &segmentation, body.as_ref(), options.touch);
         let record = self.record.tared(contact.tare);
-        beyond_body(&record, options)?;
+        beyond_body(&record, body.as_ref(), options.separation)?;
         Ok(Prepared {
             record,
             segmentation,
@@ -191,16 +192,14 @@ impl Corrected {
 /// An error if the jaw goes as far as the body is deep: a unit, a radius or a number of sides is wrong.
 ///
 /// A ball and a body between plates have that limit; a strip in grips can be stretched beyond its own length.
-fn beyond_body(record: &Record, options: &AnalysisOptions) -> Result<(), AnalysisError> {
-    let (Some(geometry), Some(displacement)) = (&options.geometry, record.displacement()) else {
+fn beyond_body(record: &Record, body: Option<&Specimen>, separation: Separation) -> Result<(), AnalysisError> {
+    let (Some(body), Some(displacement)) = (body, record.displacement()) else {
         return Ok(());
     };
-    let is_strip = matches!(geometry.shape, Shape::Prism { .. }) && options.separation == Separation::Bonded;
+    let is_strip = matches!(body.shape(), Shape::Prism { .. }) && separation == Separation::Bonded;
     if is_strip {
         return Ok(());
     }
-    // The limit is one of geometry; any modulus will do.
-    let body = Specimen::new(geometry.shape.clone(), 1.0, geometry.sides)?;
     let share = body.contact_displacement(1.0);
     for (index, travel) in displacement.iter().enumerate() {
         if let Err(SpecimenError::TooDeep { limit, limit_name, .. }) =

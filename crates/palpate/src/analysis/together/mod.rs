@@ -4,11 +4,13 @@
 //! |---|---|
 //! | `across.rs` | common exponent, trend of v, agreement of equilibrium strains |
 //! | `joint.rs` | one law for several holds against one for each |
-//! | `modulus.rs` | the modulus that the equilibrium forces imply |
+//! | `loading.rs` | the modulus of the first loading ramp |
+//! | `modulus.rs` | the modulus that the equilibrium forces imply, and that of the first ramp |
 //! | `overlay.rs` | the same displacement simulated with the fitted parameters |
 
 mod across;
 mod joint;
+mod loading;
 mod modulus;
 mod overlay;
 
@@ -16,6 +18,8 @@ pub(super) use across::across;
 pub use across::{Across, LevelAgreement, Trend};
 pub(super) use joint::changing_rate;
 pub use joint::{JointAnalysis, JointHolds};
+pub use loading::LoadingModulus;
+pub(super) use loading::loading_modulus;
 pub use modulus::{EstimatedModulus, ModulusSource};
 pub(super) use modulus::{ImpliedModulus, implied_modulus};
 pub use overlay::Overlay;

@@ -59,7 +59,8 @@ struct RelaxedHold {
     fits: Vec<LatencyFit>,
 }
 
-/// E from the holds: weighted least squares of F_e = E · A(u₁) · u₁/depth, which is equation (11) at equilibrium.
+/// E from the holds: weighted least squares of F_e = E g(u₁), with g the equilibrium force of the body at 1 Pa: A(u₁) u₁/depth in
+/// equation (11).
 ///
 /// F_e is where the force of each hold tends to by the law with the exponent that all holds have in common; it needs no E,
 /// since force and strain of a hold differ by a factor. Holds whose fit did not end well do not count; the others count by
@@ -72,7 +73,7 @@ pub(in crate::analysis) fn implied_modulus(
     geometry: &Geometry,
     options: &AnalysisOptions,
 ) -> Option<ImpliedModulus> {
-    let body = Specimen::new(geometry.shape.clone(), 1.0, geometry.sides).ok()?;
+    let body = geometry.specimen(1.0).ok()?;
     let displacement = record.displacement()?;
     let holds: Vec<RelaxedHold> = segmentation
         .holds()
@@ -124,7 +125,7 @@ impl ImpliedModulus {
     /// What the same holds imply with a quantity of the instrument off its estimate, Pa, at the temperature that is stated; `None` where they
     /// imply none.
     pub(in crate::analysis) fn with(&self, geometry: &Geometry, deviation: &Deviation) -> Option<f64> {
-        let body = Specimen::new(deviation.shape(&geometry.shape), 1.0, geometry.sides).ok()?;
+        let body = geometry.with_shape(deviation.shape(&geometry.shape)).specimen(1.0).ok()?;
         let changed = |found: &RelaxedForce| RelaxedForce {
             displacement: deviation.displacement(found.displacement, found.force),
             force: deviation.force(found.force),

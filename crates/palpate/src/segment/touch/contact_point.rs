@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 
 use super::estimators::{Approach, TouchEstimate, TouchMethod};
 use super::loading_curve::{LoadingCurve, Touch};
-use crate::contact::{Shape, Sides};
+use crate::contact::Specimen;
 use crate::record::{Record, Tare};
 use crate::segment::segmentation::{Phase, Segment, Segmentation};
 use crate::statistics::{bounds, mean, median, noise, range};
@@ -94,6 +94,7 @@ const BASELINE: usize = 5;
 ///
 /// The first ramp in which the force rises decides. The curve that a body under the latency law must draw in it, with n, v
 /// and the equilibrium force of the hold that follows, is laid over the force by least squares; where it begins is first touch.
+/// The curve takes its form from `body`, of any modulus; without one the section counts as constant.
 /// Only if that lies clearly behind the foot of the ramp (3 standard errors and 2 % of the travel), and the force is flat
 /// up to there, has the jaw travelled through air. Otherwise first touch is the foot of the ramp, and the zero of the force
 /// is its median at rest before it, or nothing is subtracted from a force without such a rest.
@@ -101,7 +102,7 @@ const BASELINE: usize = 5;
 pub fn find_contact_of(
     record: &Record,
     segmentation: &Segmentation,
-    body: Option<(&Shape, Sides)>,
+    body: Option<&Specimen>,
     choice: ContactChoice,
 ) -> ContactPoint {
     let as_recorded = ContactPoint::at(record, 0.0);
@@ -123,7 +124,7 @@ pub fn free_samples(record: &Record, segmentation: &Segmentation) -> Vec<Range<u
     };
     let foot = ramp.start.saturating_sub(1);
     let displacement = record.displacement().unwrap_or_else(|| record.time());
-    let approach = Approach::of(displacement, record.force(), 0..foot, foot..ramp.end);
+    let approach = Approach::of(displacement, record.force(), 0..foot, foot..ramp.end, None);
     let touch = approach.and_then(|approach| approach.estimate(TouchMethod::Threshold));
     let (Some(touch), Some(displacement)) = (touch, record.displacement()) else {
         return std::iter::once(0..foot + 1).collect();
@@ -154,7 +155,7 @@ fn automatic(
     record: &Record,
     displacement: &[f64],
     segmentation: &Segmentation,
-    body: Option<(&Shape, Sides)>,
+    body: Option<&Specimen>,
     choice: ContactChoice,
 ) -> Option<ContactPoint> {
     let (ramp, hold) = first_rise(record, segmentation)?;
@@ -173,7 +174,7 @@ fn automatic(
         .and_then(|hold| LoadingCurve::of(record, displacement, ramp, hold, body))
         .and_then(|curve| curve.touch(from, travel))
         .filter(|touch| (from..displacement[ramp.end - 1]).contains(&touch.displacement));
-    let estimates = estimates(record, displacement, foot, ramp, curve.as_ref());
+    let estimates = estimates(record, displacement, foot, ramp, (body, curve.as_ref()));
     let spread = spread(&estimates);
     let by_rule = estimates.iter().find(|estimate| choice == ContactChoice::By(estimate.method)).copied();
     let by_curve = curve
@@ -221,7 +222,7 @@ fn estimates(
     displacement: &[f64],
     foot: usize,
     ramp: &Segment,
-    curve: Option<&Touch>,
+    (body, curve): (Option<&Specimen>, Option<&Touch>),
 ) -> Vec<TouchEstimate> {
     const RULES: [TouchMethod; 4] =
         [TouchMethod::Threshold, TouchMethod::TwoLines, TouchMethod::Hertz, TouchMethod::VarianceRatio];
@@ -229,7 +230,7 @@ fn estimates(
         method: TouchMethod::LoadingCurve,
         displacement: touch.displacement,
     });
-    let approach = Approach::of(displacement, record.force(), 0..foot, foot..ramp.end);
+    let approach = Approach::of(displacement, record.force(), 0..foot, foot..ramp.end, body);
     let rules = approach.iter().flat_map(|approach| RULES.into_iter().filter_map(|rule| approach.estimate(rule)));
     curve.into_iter().chain(rules).collect()
 }

@@ -5,6 +5,7 @@ use std::ops::Range;
 use serde::{Deserialize, Serialize};
 
 use super::loading_curve::solved;
+use crate::contact::Specimen;
 use crate::statistics::{median, noise};
 
 /// Rule for first touch from the force over the travel of the first ramp.
@@ -21,8 +22,8 @@ pub enum TouchMethod {
     Threshold,
     /// Where two straight lines through the first third of the rise meet, by least squares.
     TwoLines,
-    /// Where Hertz's F₀ + k (d − d₀)^(3/2) begins (with a sloping F₀ where that is the likelier), by least squares over the
-    /// first third of the rise.
+    /// Where Hertz's F₀ + k (d − d₀)^p begins (with a sloping F₀ where that is the likelier), by least squares over the
+    /// first third of the rise; p is 3/2, or that of the tip of an indenter.
     Hertz,
     /// Where the variance of the force right behind, over that right before, is largest.
     VarianceRatio,
@@ -63,6 +64,8 @@ pub(super) struct Approach {
     base: f64,
     noise: f64,
     rise: f64,
+    /// p of Hertz's law.
+    power: f64,
 }
 
 /// Samples of a ramp that are fitted, at most.
@@ -76,7 +79,13 @@ const FEWEST: usize = 8;
 
 impl Approach {
     /// The samples `ramp` (its foot first), and the force in `rest` before them. `None` for too few, or without a rise.
-    pub(super) fn of(displacement: &[f64], force: &[f64], rest: Range<usize>, ramp: Range<usize>) -> Option<Self> {
+    pub(super) fn of(
+        displacement: &[f64],
+        force: &[f64],
+        rest: Range<usize>,
+        ramp: Range<usize>,
+        body: Option<&Specimen>,
+    ) -> Option<Self> {
         if ramp.len() < FEWEST {
             return None;
         }
@@ -95,6 +104,7 @@ impl Approach {
             base,
             noise,
             rise,
+            power: body.and_then(Specimen::hertz_power).unwrap_or(1.5),
         })
     }
 
@@ -144,7 +154,7 @@ impl Approach {
     fn hertz(&self) -> Option<f64> {
         let (travel, force) = self.start()?;
         let from = travel[0];
-        let power = |x: f64, touch: f64| (x - touch).max(0.0).powf(1.5);
+        let power = |x: f64, touch: f64| (x - touch).max(0.0).powf(self.power);
         let level = |touch: f64| fitted(&travel, &force, &|x| [1.0, power(x, touch), 0.0]);
         let sloping = |touch: f64| fitted(&travel, &force, &|x| [1.0, power(x, touch), x - from]);
         let flat = self.best(&travel, &level)?;
@@ -210,10 +220,15 @@ fn fitted(travel: &[f64], force: &[f64], columns: &dyn Fn(f64) -> [f64; 3]) -> O
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::contact::{Base, Shape, Sides, ThinLayer, Tip};
     use crate::random::Rng;
 
     /// A ramp of 2 mm that meets the body at 0.8 mm; force `law`(d − d₀ in mm) in N.
     fn approach(law: impl Fn(f64) -> f64, noise: f64, tilt: f64, seed: u64) -> Approach {
+        approach_of(law, noise, tilt, seed, None)
+    }
+
+    fn approach_of(law: impl Fn(f64) -> f64, noise: f64, tilt: f64, seed: u64, body: Option<&Specimen>) -> Approach {
         let mut random = Rng::new(seed);
         let travel = |i: u32| 2e-3 * f64::from(i.saturating_sub(100)) / 400.0;
         let displacement: Vec<f64> = (0..500).map(travel).collect();
@@ -221,7 +236,7 @@ mod tests {
             .iter()
             .map(|d| 0.2 + tilt * 1e3 * d + law((1e3 * d - 0.8).max(0.0)) + noise * random.normal())
             .collect();
-        Approach::of(&displacement, &force, 0..99, 99..500).unwrap()
+        Approach::of(&displacement, &force, 0..99, 99..500, body).unwrap()
     }
 
     #[track_caller]
@@ -241,6 +256,20 @@ mod tests {
             within(&hertz, TouchMethod::Hertz, 0.03, 0.03);
             within(&hertz, TouchMethod::Threshold, 0.0, 0.12);
         }
+    }
+
+    /// Without the tip the power is 3/2, and first touch of a parabola comes late.
+    #[test]
+    fn the_power_is_that_of_the_tip() {
+        let layer = Some(ThinLayer {
+            thickness: 1.0,
+            base: Base::Bonded,
+        });
+        let tip = Tip::Cone { half_angle: 0.6 };
+        let cone = Specimen::new(Shape::Indenter { tip, layer }, 1.0, Sides::One).unwrap();
+        let parabola = |body| approach_of(|s| 3.0 * s * s, 0.0, 0.0, 1, body);
+        within(&parabola(Some(&cone)), TouchMethod::Hertz, 1e-4, 1e-4);
+        assert!(parabola(None).estimate(TouchMethod::Hertz).unwrap().displacement > 0.82e-3);
     }
 
     #[test]
@@ -266,7 +295,7 @@ mod tests {
     fn without_a_rise_there_is_no_touch() {
         let flat: Vec<f64> = (0..50).map(|i| f64::from(i * 7 % 5)).collect();
         let travel: Vec<f64> = (0..50).map(f64::from).collect();
-        assert!(Approach::of(&travel, &flat, 0..10, 10..50).is_none());
-        assert!(Approach::of(&travel, &travel, 0..1, 1..4).is_none());
+        assert!(Approach::of(&travel, &flat, 0..10, 10..50, None).is_none());
+        assert!(Approach::of(&travel, &travel, 0..1, 1..4, None).is_none());
     }
 }

@@ -2,7 +2,7 @@
 
 use std::rc::Rc;
 
-use crate::contact::{Shape, Sides};
+use crate::contact::Specimen;
 use crate::fit::{ExponentChoice, FitOptions, LatencyFit, fit_hold};
 use crate::record::Record;
 use crate::segment::segmentation::Segment;
@@ -25,23 +25,23 @@ pub(super) struct Touch {
 
 /// A first ramp at constant speed, and the law of the hold behind it.
 ///
-/// With s = d − d₀ the travel since first touch, A the contact area and index 1 for the end of the ramp,
+/// With s = d − d₀ the travel since first touch, S the stiffness of the body and index 1 for the end of the ramp,
 ///
 /// ```text
-/// F(s) = F₀ + A(s)/A(s₁) · [ (F_e − F₀) s/s₁ + X y(s/s₀) ],    dy/dτ = 1 − yⁿ, y(0) = 0,    s₀ = ḋ X¹⁻ⁿ/v
+/// F(s) = F₀ + S(s)/S(s₁) · [ (F_e − F₀) s/s₁ + X y(s/s₀) ],    dy/dτ = 1 − yⁿ, y(0) = 0,    s₀ = ḋ X¹⁻ⁿ/v
 /// ```
 ///
 /// is equation (11) with the excess strain that (10) gives at a constant drive: X is the excess force at which the drive and
 /// the relaxation balance. n, v and F_e come from the hold; d₀, X and F₀ are found here.
-pub(super) struct LoadingCurve {
+pub(super) struct LoadingCurve<'a> {
     displacement: Vec<f64>,
     force: Vec<f64>,
     /// Displacement of the hold, m.
     level: f64,
     /// Speed of the jaw, m/s.
     speed: f64,
-    /// Radius in jaw travel, m; `None` for a constant section.
-    radius: Option<f64>,
+    /// The body, of any modulus; `None` for a constant section.
+    body: Option<&'a Specimen>,
     /// Laws of the hold with one exponent each.
     laws: Vec<HoldLaw>,
     rise: f64,
@@ -71,14 +71,14 @@ impl HoldLaw {
 /// Samples of ramp and rest that are fitted, at most.
 const MOST: usize = 600;
 
-impl LoadingCurve {
+impl<'a> LoadingCurve<'a> {
     /// `None` if the hold has no law, or does not relax downwards.
     pub(super) fn of(
         record: &Record,
         displacement: &[f64],
         ramp: &Segment,
         hold: &Segment,
-        body: Option<(&Shape, Sides)>,
+        body: Option<&'a Specimen>,
     ) -> Option<Self> {
         let laws = laws(record, hold)?;
         let foot = ramp.start.saturating_sub(1);
@@ -99,11 +99,7 @@ impl LoadingCurve {
             force: samples.iter().map(|i| force[*i]).collect(),
             level: median(&mut displacement[hold.start..hold.end].to_vec()),
             speed,
-            radius: match body {
-                Some((Shape::Ball { radius } | Shape::Pad { radius, .. }, Sides::Two)) => Some(2.0 * radius),
-                Some((Shape::Ball { radius } | Shape::Pad { radius, .. }, Sides::One)) => Some(*radius),
-                _ => None,
-            },
+            body,
             laws,
             rise: top - force[foot],
             deviation: noise(&force[..ramp.end]),
@@ -188,11 +184,11 @@ impl LoadingCurve {
         if s <= 0.0 {
             return base;
         }
-        let area = |s: f64| self.radius.map_or(1.0, |radius| s * (2.0 * radius - s));
+        let stiffness = |s: f64| self.body.map_or(1.0, |body| body.stiffness(body.contact_displacement(s)).0);
         let balance = balance.exp();
         let transient = self.speed * balance.powf(1.0 - law.curve.exponent) / law.coefficient;
         let excess = balance * law.curve.at(s / transient);
-        base + area(s) / area(whole) * ((law.relaxed - base) * s / whole + excess)
+        base + stiffness(s) / stiffness(whole) * ((law.relaxed - base) * s / whole + excess)
     }
 
     fn residuals(&self, law: &HoldLaw, parameters: &[f64; 3]) -> Vec<f64> {
