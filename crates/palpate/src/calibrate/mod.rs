@@ -13,6 +13,7 @@
 //! | `profile.rs` | intervals by the profile of the residual sum of squares | |
 //! | `material.rs` | the body with its parameters | |
 //! | `predict.rs` | what it does under any drive, with intervals | |
+//! | `several/` | several records at once: shared and own parameters, the spread between specimens | |
 //! | `error.rs` | why one could not be made | |
 
 mod candidate;
@@ -26,6 +27,7 @@ mod prepared;
 mod problem;
 mod profile;
 mod search;
+mod several;
 
 pub use candidate::{Candidate, EquilibriumLaw, RateLaw};
 pub use data::CalibrationData;
@@ -36,3 +38,7 @@ pub use material::{
 };
 pub use predict::{Extrapolation, Prediction};
 pub use profile::{ParameterProfile, profile};
+pub use several::{
+    BatchParameter, BatchRecord, Between, CalibratedSpecimen, SeveralCalibration, SeveralError, Sharing, Spread,
+    calibrate_several,
+};
