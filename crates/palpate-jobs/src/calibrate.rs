@@ -77,6 +77,23 @@ impl Default for Calibrate {
     }
 }
 
+impl Equilibrium {
+    /// The law, with Poisson's ratio where it has one.
+    pub(crate) fn law(self, poisson_ratio: Option<f64>) -> Result<EquilibriumLaw, JobError> {
+        match (self, poisson_ratio) {
+            (Self::Hertz, ratio) => Ok(EquilibriumLaw::Hertz {
+                poisson_ratio: ratio.unwrap_or(0.5),
+            }),
+            (_, Some(_)) => Err(JobError::option(
+                "⟨poisson_ratio⟩ is for Hertz's law, which is not requested",
+                "add ⟨equilibrium=hertz⟩, or leave ⟨poisson_ratio⟩ out",
+            )),
+            (Self::UniformStrain, None) => Ok(EquilibriumLaw::UniformStrain),
+            (Self::Table, None) => Ok(EquilibriumLaw::Table),
+        }
+    }
+}
+
 /// A calibrated record.
 #[derive(Debug)]
 pub struct Calibrated {
@@ -87,26 +104,11 @@ pub struct Calibrated {
 }
 
 impl Calibrate {
-    /// The law of the equilibrium force.
-    fn equilibrium(&self) -> Result<EquilibriumLaw, JobError> {
-        match (self.equilibrium, self.poisson_ratio) {
-            (Equilibrium::Hertz, ratio) => Ok(EquilibriumLaw::Hertz {
-                poisson_ratio: ratio.unwrap_or(0.5),
-            }),
-            (_, Some(_)) => Err(JobError::option(
-                "⟨poisson_ratio⟩ is for Hertz's law, which is not requested",
-                "add ⟨equilibrium=hertz⟩, or leave ⟨poisson_ratio⟩ out",
-            )),
-            (Equilibrium::UniformStrain, None) => Ok(EquilibriumLaw::UniformStrain),
-            (Equilibrium::Table, None) => Ok(EquilibriumLaw::Table),
-        }
-    }
-
     /// What is fitted: first what is requested, then its alternatives.
     fn candidates(&self) -> Result<Vec<Candidate>, JobError> {
         let chosen = Candidate {
             law: self.law,
-            equilibrium: self.equilibrium()?,
+            equilibrium: self.equilibrium.law(self.poisson_ratio)?,
             rate: self.rate,
         };
         Ok(if self.alternatives.is_empty() {
@@ -171,6 +173,7 @@ impl Calibrated {
             origin: MaterialOrigin {
                 record: record.input.called(),
                 sha256: record.input.sha256.clone(),
+                specimens: None,
                 test: record.input.test.clone(),
                 palpate: Software::this().release(),
                 samples: record.data.fitted(),
@@ -199,7 +202,12 @@ impl Results for Calibrated {
 
 /// Why there is no calibration: because of what was requested, of the record, of the body or of the samples.
 fn uncalibrated(error: &CalibrateError, place: &str) -> JobError {
-    let kind = match error {
+    JobError::new(kind_of(error), error, error.hint()).of(place)
+}
+
+/// What kind of failure it is.
+pub(crate) fn kind_of(error: &CalibrateError) -> ErrorKind {
+    match error {
         CalibrateError::Cancelled(_) => ErrorKind::Cancelled,
         CalibrateError::NoGeometry
         | CalibrateError::NotALaw { .. }
@@ -212,6 +220,5 @@ fn uncalibrated(error: &CalibrateError, place: &str) -> JobError {
         | CalibrateError::Motion(_)
         | CalibrateError::Simulate(_) => ErrorKind::Model,
         _ => ErrorKind::Record,
-    };
-    JobError::new(kind, error, error.hint().to_owned()).of(place)
+    }
 }

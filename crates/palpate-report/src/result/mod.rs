@@ -10,12 +10,14 @@
 //! | `answer.rs` | which law for a record and its holds |
 //! | `compared.rs` | laws compared on the holds of a record |
 //! | `calibrated.rs` | laws calibrated on a record, with remarks |
+//! | `calibrated_batch.rs` | several records calibrated together, with remarks |
 //! | `gripped.rs`, `grip_sentences.rs` | a body in a gripper with an answer; the answer in sentences |
 //! | `reproduced.rs` | the paper's study |
 //! | `words.rs` | the words for what the library says |
 
 mod answer;
 mod calibrated;
+mod calibrated_batch;
 mod compared;
 mod grip_sentences;
 mod gripped;
@@ -29,6 +31,7 @@ pub use crate::word::word;
 pub(crate) use answer::law_of_record;
 pub use answer::{Answer, HoldAnswer, formula};
 pub use calibrated::{CalibratedRecord, formula_of_material};
+pub use calibrated_batch::CalibratedBatch;
 pub use compared::{ComparedHold, ComparedRecord, LeftOut, Quantity};
 pub(crate) use grip_sentences::lasted;
 pub use gripped::GrippedBody;

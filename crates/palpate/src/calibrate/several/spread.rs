@@ -3,8 +3,8 @@
 use serde::{Deserialize, Serialize};
 use statrs::distribution::{ChiSquared, ContinuousCDF};
 
+use crate::calibrate::problem::dot;
 use crate::optimise::Cholesky;
-use crate::statistics::dot;
 
 /// How much a parameter differs between specimens: τ, the standard deviation of its natural logarithm (0.1: by 10 %, to first order).
 ///
