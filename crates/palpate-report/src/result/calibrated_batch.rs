@@ -54,11 +54,13 @@ impl CalibratedBatch {
                         percent(low),
                         percent(high)
                     )
-                } else {
+                } else if high > 0.0 {
                     format!(
                         "The {title} does not differ distinguishably between specimens: by less than {} %.",
                         percent(high)
                     )
+                } else {
+                    format!("The {title} differs less between specimens than the errors of the records explain.")
                 });
             }
         }
@@ -80,7 +82,7 @@ impl CalibratedBatch {
             (None, _) => {
                 "Two records do not determine how own parameters differ together: there is no material of another specimen, which needs 3 records or more, or all parameters shared.".to_owned()
             }
-            (Some(_), false) => "All parameters are shared: the material is the body that all records tested.".to_owned(),
+            (Some(_), false) => "All parameters are shared: the material is the one that all records tested, without a spread.".to_owned(),
             (Some(_), true) => format!(
                 "The material is that of a specimen of the batch that was not tested: its intervals contain the spread between the {count} specimens, with {} degrees of freedom.",
                 count - 1

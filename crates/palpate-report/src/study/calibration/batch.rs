@@ -26,9 +26,10 @@ fn batch_table(batch: &CalibratedBatch) -> Table {
             let (low, high) = spread.interval;
             Cell::text(format!("{} % ({} to {} %)", figure(spread.deviation), figure(low), figure(high)))
         }
-        Between::Own { spread, .. } => {
+        Between::Own { spread, .. } if spread.interval.1 > 0.0 => {
             Cell::text(format!("< {} %, not distinguishable from 0", figure(spread.interval.1)))
         }
+        Between::Own { .. } => Cell::text("not distinguishable from 0"),
         Between::Shared { .. } | Between::Given { .. } => Cell::text(""),
     };
     let one_value = |parameter: &BatchParameter| match parameter.between {

@@ -22,7 +22,7 @@ use crate::optimise::Cholesky;
 pub struct Spread {
     /// τ, 0 or more.
     pub deviation: f64,
-    /// Its confidence interval.
+    /// Its confidence interval; (0, 0) of estimates that differ less than all but few of such errors would have it.
     pub interval: (f64, f64),
 }
 
