@@ -3,7 +3,7 @@
 //!
 //! Specimens of the paper's ball (35 mm; 28 kPa, n = 5, v = 2·10⁴ 1/s, ℓ = 4.375 mm) whose modulus, layer thickness and, in the last case, rate
 //! coefficient differ, each through the paper's test (a) at 20 Hz with noise of 0.2 N and 1 µm. Of a sixth specimen the force in another squeeze is
-//! predicted: at its peak, and 10 s and 60 s later. Run it with `cargo run --release -p palpate --example batch_study [batches]`.
+//! predicted: at its peak, and 10 s and 60 s later. Run it with `cargo run --release -p palpate --example batch_study [batches] [case, from 1]`.
 
 #[path = "calibration_study/instrument.rs"]
 mod instrument;
@@ -180,10 +180,12 @@ fn squeeze() -> (Motion, Vec<f64>) {
 }
 
 fn main() {
-    let batches: u64 = std::env::args().nth(1).and_then(|text| text.parse().ok()).unwrap_or(200);
+    let argument = |place| std::env::args().nth(place).and_then(|text| text.parse::<u64>().ok());
+    let batches = argument(1).unwrap_or(200);
+    let is_wanted = |number: usize| argument(2).is_none_or(|wanted| wanted == number as u64 + 1);
     println!("| spread between specimens | quantity | covered |");
     println!("|---|---|---:|");
-    for (number, case) in CASES.iter().enumerate() {
+    for (number, case) in CASES.iter().enumerate().filter(|(number, _)| is_wanted(*number)) {
         let halves = std::thread::scope(|scope| {
             let halves = [0..batches / 2, batches / 2..batches];
             let work = halves.map(|seeds| {

@@ -3,8 +3,8 @@
 
 use palpate::analysis::Geometry;
 use palpate::calibrate::{
-    BatchRecord, Between, CalibrationData, Candidate, EquilibriumLaw, SeveralCalibration, SeveralError, Spread,
-    calibrate, calibrate_several,
+    BatchRecord, Between, CalibrationData, Candidate, EquilibriumLaw, MaterialParameter, SeveralCalibration,
+    SeveralError, Spread, calibrate, calibrate_several,
 };
 use palpate::contact::{Layers, Shape, Specimen};
 use palpate::fit::Estimate;
@@ -155,6 +155,26 @@ fn records_contradict_what_they_do_not_share() {
     let (same, different) = (batch([0.004; 3]), batch([0.003, 0.004, 0.005]));
     let p = |records| shared(&together(records, "latency", "layer_thickness").unwrap(), "layer_thickness_m").1.unwrap();
     assert!(p(&same) > 0.01 && p(&different) < 1e-6);
+}
+
+/// A record of a few noisy readings in the holds alone leaves its parameters open. What it shares with the others closes them.
+#[test]
+fn a_record_that_is_open_alone_is_determined_by_the_others() {
+    let (mut open, mut random) = (0, Rng::new(8));
+    let model = specimen(0.035, 28e3, 0.0044);
+    for _ in 0..4 {
+        let records: Vec<BatchRecord> = [("a", 10.0, 0.05), ("b", 10.0, 0.05), ("sparse", 0.3, 0.2)]
+            .into_iter()
+            .map(|(name, rate_hz, noise)| record(name, &model, rate_hz, noise, &mut random))
+            .collect();
+        let found = together(&records, "latency", "exponent,rate_coefficient,layer_thickness").unwrap();
+        let alone = calibrate(&records[2].data, found.candidate, 0.95, &mut Unwatched).unwrap();
+        let is_open = |parameter: &MaterialParameter| parameter.estimate.standard_error.is_none();
+        open += usize::from(alone.material.parameters().iter().any(is_open));
+        let modulus = found.specimens[2].material.estimate("modulus_pa").unwrap();
+        assert!((modulus.value - 28e3).abs() < 4.0 * modulus.standard_error.unwrap(), "{modulus:?}");
+    }
+    assert!(open > 0, "no record is open alone");
 }
 
 /// A short form of `validation/batches.sh`: of 40 batches of five specimens the intervals contain the truth 33 times at least, which 95 % does

@@ -6,6 +6,7 @@ use super::result::{BatchParameter, BatchRecord, Between, CalibratedSpecimen, Se
 use super::sharing::Layout;
 use super::specimen::{Another, range_of};
 use super::spread::{Spread, one_value_p};
+use super::start::{is_determined, log_of, log_variance, start};
 use super::{SeveralError, Sharing};
 use crate::calibrate::fit::FARTHEST;
 use crate::calibrate::prepared::Prepared;
@@ -91,12 +92,19 @@ pub fn calibrate_several(
         layout,
     };
     stages.enter(0.5 * (1.0 - ALONE));
-    let optimum = joint.descend(&start(&joint.layout, &alone)?, &mut stages)?;
+    let open = || {
+        let open = records.iter().zip(&alone).filter(|(_, made)| !is_determined(&joint.layout, made));
+        open.map(|(record, _)| record.name.clone()).collect()
+    };
+    let optimum = joint.descend(&start(&joint.layout, &alone), &mut stages).map_err(|error| match error {
+        SeveralError::NoOptimum { .. } => SeveralError::NoOptimum { open: open() },
+        error => error,
+    })?;
     let names = Material::names(candidate, 0);
     let named = |parameters: &[usize]| parameters.iter().map(|index| names[*index].0.clone()).collect();
     let data: Vec<&CalibrationData> = records.iter().map(|record| &record.data).collect();
     let covariance = Covariance::of(&joint, &optimum, &data, &named, &mut stages)?;
-    let another = Another::of(&joint, &optimum, &covariance).ok_or(SeveralError::NoOptimum)?;
+    let another = Another::of(&joint, &optimum, &covariance).ok_or_else(|| SeveralError::NoOptimum { open: open() })?;
     let samples: usize = data.iter().map(|data| data.fitted()).sum();
     let batch = Batch {
         candidate,
@@ -142,39 +150,6 @@ fn check(records: &[BatchRecord], candidate: Candidate) -> Result<(), SeveralErr
         }
     }
     Ok(())
-}
-
-/// Where the search starts: own parameters as calibrated alone, shared ones at their mean weighted by the information of each record. A record
-/// whose own search ended at no optimum starts from the mean of the others.
-fn start(layout: &Layout, alone: &[Calibration]) -> Result<Vec<f64>, SeveralError> {
-    let is_good = |made: &&Calibration| made.termination.is_good();
-    let mean = |parameter: usize| {
-        let (mut sum, mut weights) = (0.0, 0.0);
-        for made in alone.iter().filter(is_good) {
-            let weight = log_variance(made, parameter).map_or(1e-6, |variance| 1.0 / variance);
-            sum += weight * log_of(made, parameter);
-            weights += weight;
-        }
-        if weights > 0.0 { sum / weights } else { log_of(&alone[0], parameter) }
-    };
-    let own = alone.iter().flat_map(|made| {
-        let log = |parameter: &usize| {
-            if is_good(&made) { log_of(made, *parameter) } else { mean(*parameter) }
-        };
-        layout.own.iter().map(log).collect::<Vec<f64>>()
-    });
-    Ok(layout.shared.iter().map(|parameter| mean(*parameter)).chain(own).collect())
-}
-
-fn log_of(made: &Calibration, parameter: usize) -> f64 {
-    made.material.parameters()[parameter].estimate.value.ln()
-}
-
-/// Variance of the logarithm of a parameter of a record calibrated alone; `None` where it is not determined.
-fn log_variance(made: &Calibration, parameter: usize) -> Option<f64> {
-    let uncertainty = made.material.uncertainty()?;
-    made.material.parameters()[parameter].estimate.standard_error?;
-    Some(uncertainty.covariance[parameter][parameter]).filter(|variance| *variance > 0.0)
 }
 
 /// An estimate from its logarithm, the variance of that and the variance if residuals were white noise.

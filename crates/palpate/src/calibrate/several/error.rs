@@ -56,9 +56,12 @@ pub enum SeveralError {
         /// Which.
         names: Vec<String>,
     },
-    /// No optimum within the steps allowed.
-    #[error("the joint search did not end at an optimum: the residual still falls")]
-    NoOptimum,
+    /// No optimum within the range that is searched, or within the steps allowed.
+    #[error("the joint search did not end at an optimum{}", alone(open))]
+    NoOptimum {
+        /// Records that do not determine their parameters when each is calibrated alone.
+        open: Vec<String>,
+    },
     /// Parameters that make no material.
     #[error(transparent)]
     Material(#[from] MaterialError),
@@ -87,13 +90,21 @@ impl SeveralError {
             Self::Repeated { .. } => "give each record once".to_owned(),
             Self::Table => "use another equilibrium law: uniform-strain or hertz".to_owned(),
             Self::Record { error, .. } => error.hint(),
-            Self::Undetermined { .. } => {
+            Self::Undetermined { .. } | Self::NoOptimum { .. } => {
                 "share more parameters, leave the record out, or use a law with fewer parameters".to_owned()
             }
-            Self::SharedUndetermined { .. } | Self::NoOptimum => {
+            Self::SharedUndetermined { .. } => {
                 "use a law with fewer parameters, or add records with holds of different excess strain".to_owned()
             }
             _ => String::new(),
         }
     }
+}
+
+/// Which records determine nothing alone.
+fn alone(open: &[String]) -> String {
+    if open.is_empty() {
+        return String::new();
+    }
+    format!(": calibrated alone, the parameters stay open of {}", open.join(", "))
 }

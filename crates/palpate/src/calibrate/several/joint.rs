@@ -158,17 +158,18 @@ impl Joint<'_> {
     /// Damped steps from `start` to the nearest optimum.
     ///
     /// # Errors
-    /// [`SeveralError::NoOptimum`] where there is none to be reached.
+    /// [`SeveralError::NoOptimum`] where there is none to be reached, with no record named.
     pub(super) fn descend(&self, start: &[f64], stages: &mut Stages<'_>) -> Result<Optimum, SeveralError> {
         let size = start.len();
+        let none = || SeveralError::NoOptimum { open: Vec::new() };
         let mut logs = start.to_vec();
-        let mut states = self.states(&logs).ok_or(SeveralError::NoOptimum)?;
+        let mut states = self.states(&logs).ok_or_else(none)?;
         let mut square = self.square(&states);
         let mut damping = 1e-3;
         let mut is_optimal = false;
         for step in 0..MOST_STEPS {
             stages.reach(step as f64 / MOST_STEPS as f64)?;
-            let linear = self.linearised(&logs, &states, stages)?.ok_or(SeveralError::NoOptimum)?;
+            let linear = self.linearised(&logs, &states, stages)?.ok_or_else(none)?;
             if is_optimal {
                 return Ok(Optimum { logs, states, linear });
             }
@@ -204,11 +205,11 @@ impl Joint<'_> {
                 }
                 damping = (8.0 * damping).max(1e-6);
                 if damping > 1e12 {
-                    return Err(SeveralError::NoOptimum);
+                    return Err(none());
                 }
             }
         }
-        Err(SeveralError::NoOptimum)
+        Err(none())
     }
 }
 

@@ -6,6 +6,7 @@
 //! | file | what |
 //! |---|---|
 //! | `sharing.rs` | which parameters are shared |
+//! | `start.rs` | where the search starts |
 //! | `joint.rs` | the parameters with the least weighted squares of all residuals |
 //! | `covariance.rs` | their covariance, for residuals that correlate as those of each record do |
 //! | `spread.rs` | the standard deviation between specimens, with its interval |
@@ -22,6 +23,7 @@ mod result;
 mod sharing;
 mod specimen;
 mod spread;
+mod start;
 
 pub use calibrate::calibrate_several;
 pub use error::SeveralError;
