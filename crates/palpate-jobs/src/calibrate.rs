@@ -77,6 +77,31 @@ impl Default for Calibrate {
     }
 }
 
+/// The law of the equilibrium force: the requested one, or that of the description.
+pub(crate) fn equilibrium_law(
+    requested: Option<Equilibrium>,
+    poisson_ratio: Option<f64>,
+    options: &AnalysisOptions,
+) -> Result<EquilibriumLaw, JobError> {
+    let described = options.geometry.as_ref().map(|geometry| EquilibriumLaw::from(&geometry.equilibrium));
+    let (usual, ratio) = match described.unwrap_or_default() {
+        EquilibriumLaw::UniformStrain => (Equilibrium::UniformStrain, 0.5),
+        EquilibriumLaw::Hertz { poisson_ratio } => (Equilibrium::Hertz, poisson_ratio),
+        EquilibriumLaw::Table => (Equilibrium::Table, 0.5),
+    };
+    match (requested.unwrap_or(usual), poisson_ratio) {
+        (Equilibrium::Hertz, given) => Ok(EquilibriumLaw::Hertz {
+            poisson_ratio: given.unwrap_or(ratio),
+        }),
+        (_, Some(_)) => Err(JobError::option(
+            "⟨poisson_ratio⟩ is for Hertz's law, which is not requested",
+            "add ⟨equilibrium=hertz⟩, or leave ⟨poisson_ratio⟩ out",
+        )),
+        (Equilibrium::UniformStrain, None) => Ok(EquilibriumLaw::UniformStrain),
+        (Equilibrium::Table, None) => Ok(EquilibriumLaw::Table),
+    }
+}
+
 /// A calibrated record.
 #[derive(Debug)]
 pub struct Calibrated {
@@ -87,32 +112,11 @@ pub struct Calibrated {
 }
 
 impl Calibrate {
-    /// The law of the equilibrium force: the requested one, or that of the description.
-    fn equilibrium(&self, options: &AnalysisOptions) -> Result<EquilibriumLaw, JobError> {
-        let described = options.geometry.as_ref().map(|geometry| EquilibriumLaw::from(&geometry.equilibrium));
-        let (usual, ratio) = match described.unwrap_or_default() {
-            EquilibriumLaw::UniformStrain => (Equilibrium::UniformStrain, 0.5),
-            EquilibriumLaw::Hertz { poisson_ratio } => (Equilibrium::Hertz, poisson_ratio),
-            EquilibriumLaw::Table => (Equilibrium::Table, 0.5),
-        };
-        match (self.equilibrium.unwrap_or(usual), self.poisson_ratio) {
-            (Equilibrium::Hertz, requested) => Ok(EquilibriumLaw::Hertz {
-                poisson_ratio: requested.unwrap_or(ratio),
-            }),
-            (_, Some(_)) => Err(JobError::option(
-                "⟨poisson_ratio⟩ is for Hertz's law, which is not requested",
-                "add ⟨equilibrium=hertz⟩, or leave ⟨poisson_ratio⟩ out",
-            )),
-            (Equilibrium::UniformStrain, None) => Ok(EquilibriumLaw::UniformStrain),
-            (Equilibrium::Table, None) => Ok(EquilibriumLaw::Table),
-        }
-    }
-
     /// What is fitted: first what is requested, then its alternatives.
     fn candidates(&self, options: &AnalysisOptions) -> Result<Vec<Candidate>, JobError> {
         let chosen = Candidate {
             law: self.law,
-            equilibrium: self.equilibrium(options)?,
+            equilibrium: equilibrium_law(self.equilibrium, self.poisson_ratio, options)?,
             rate: self.rate,
         };
         Ok(if self.alternatives.is_empty() {
@@ -177,6 +181,7 @@ impl Calibrated {
             origin: MaterialOrigin {
                 record: record.input.called(),
                 sha256: record.input.sha256.clone(),
+                specimens: None,
                 test: record.input.test.clone(),
                 palpate: Software::this().release(),
                 samples: record.data.fitted(),
@@ -205,7 +210,12 @@ impl Results for Calibrated {
 
 /// Why there is no calibration: because of what was requested, of the record, of the body or of the samples.
 fn uncalibrated(error: &CalibrateError, place: &str) -> JobError {
-    let kind = match error {
+    JobError::new(kind_of(error), error, error.hint()).of(place)
+}
+
+/// What kind of failure it is.
+pub(crate) fn kind_of(error: &CalibrateError) -> ErrorKind {
+    match error {
         CalibrateError::Cancelled(_) => ErrorKind::Cancelled,
         CalibrateError::NoGeometry
         | CalibrateError::NotALaw { .. }
@@ -218,6 +228,5 @@ fn uncalibrated(error: &CalibrateError, place: &str) -> JobError {
         | CalibrateError::Motion(_)
         | CalibrateError::Simulate(_) => ErrorKind::Model,
         _ => ErrorKind::Record,
-    };
-    JobError::new(kind, error, error.hint().to_owned()).of(place)
+    }
 }

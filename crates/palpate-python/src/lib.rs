@@ -59,6 +59,7 @@ mod _palpate {
         records::forecast::forecast,
         records::read::{read, read_all},
         records::record::Record,
+        records::several::{SeveralCalibrations, calibrate},
         table::Table,
     };
 }

@@ -60,10 +60,10 @@ def _hold(samples: int = 24) -> tuple[Any, Any]:
     return t, 0.2 + 0.1 * (1 + 2 * t) ** -0.25 + 1e-4 * np.sin(40 * t)
 
 
-def _record() -> palpate.Record:
+def _record(stiffness: float = 2.0) -> palpate.Record:
     t = np.linspace(0.0, 20.0, 80)
     depth = np.minimum(t, 1.0)
-    force = 2 * depth * (1 + 0.5 * np.exp(-t / 3)) + 1e-3 * np.sin(50 * t)
+    force = stiffness * depth * (1 + 0.5 * np.exp(-t / 3)) + 1e-3 * np.sin(50 * t)
     return palpate.Record.from_arrays(time_s=t, displacement_m=5e-3 * depth, force_n=force)
 
 
@@ -126,6 +126,9 @@ EXAMPLES: dict[str, Callable[[], Any]] = {
     "Finding": lambda: palpate.read(BALL[0]).analyze(compare=False).findings[0],
     "RecordComparison": lambda: _record().compare(laws=["latency", "maxwell"]),
     "Calibration": lambda: _record().calibrate(alternatives=["maxwell"], test={"specimen": {"shape": "ball", "radius": "35 mm"}}),
+    "SeveralCalibrations": lambda: palpate.calibrate(
+        [_record(), _record(2.2)], shared="all", law="prony:1", test={"specimen": {"shape": "ball", "radius": "35 mm"}}
+    ),
     "Material": _material,
     "Material, linear": lambda: _record().calibrate(law="prony:2", alternatives=[], test={"specimen": SCENE["specimen"]}).material,
     "Prediction": lambda: _material().predict(SQUEEZE, at_s=[0.5, 1.0, 2.0]),

@@ -14,8 +14,8 @@ use palpate_jobs as jobs;
 use palpate_jobs::BUILD;
 use palpate_jobs::typed::{Choice, one_of};
 use palpate_report::document::{
-    AnalysisDocument, CalibrationDocument, ComparisonDocument, GripDocument, ReproductionDocument, Software,
-    WatchDocument,
+    AnalysisDocument, CalibrationDocument, ComparisonDocument, GripDocument, ReproductionDocument,
+    SeveralCalibrationsDocument, Software, WatchDocument,
 };
 use schemars::{JsonSchema, schema_for};
 use serde_json::Value;
@@ -61,6 +61,7 @@ Examples:
   palpate batch curves --out holds.parquet       thousands of records, one table
   palpate compare test.csv                       which law of relaxation to use, with its certainty
   palpate calibrate test.csv --test ball.toml --out material.toml   one parameter set for the record
+  palpate calibrate batch-*.csv --test ball.toml --shared exponent  a batch, with its spread
   palpate predict material.toml --protocol grip.toml --at \"60 s\"    force at 60 s, with its interval
   palpate grip material.toml --mass 150g --friction 0.6   the least squeeze that holds, time to slip
   palpate watch gripper.csv --slip-force \"2 N\"    holds and time to slip from a log, as if live
@@ -122,6 +123,11 @@ const SCHEMAS: &[Choice<fn() -> Value>] = &[
     ("material", "Material file of `palpate calibrate`", schema_material),
     ("analysis", "Result of `palpate analyze --format json`", schema::<AnalysisDocument>),
     ("calibration", "Result of `palpate calibrate --format json`", schema::<CalibrationDocument>),
+    (
+        "several-calibrations",
+        "Result of `palpate calibrate --format json` of several records",
+        schema::<SeveralCalibrationsDocument>,
+    ),
     ("comparison", "Result of `palpate compare --format json`", schema::<ComparisonDocument>),
     ("grip", "Result of `palpate grip --format json`", schema::<GripDocument>),
     ("watch", "A line of `palpate watch --format jsonl`", schema::<WatchDocument>),
@@ -130,6 +136,11 @@ const SCHEMAS: &[Choice<fn() -> Value>] = &[
     ("job-analyze", "Options of `palpate analyze` as a job", schema::<jobs::Analyze>),
     ("job-compare", "Options of `palpate compare` as a job", schema::<jobs::Compare>),
     ("job-calibrate", "Options of `palpate calibrate` as a job", schema::<jobs::Calibrate>),
+    (
+        "job-calibrate-several",
+        "Options of `palpate calibrate` of several records as a job",
+        schema::<jobs::CalibrateSeveral>,
+    ),
     ("job-predict", "Options of `palpate predict` as a job", schema::<jobs::Predict>),
     ("job-grip", "Options of `palpate grip` as a job", schema::<jobs::PlanGrip>),
     ("job-watch", "Options of `palpate watch` as a job", schema::<jobs::WatchLog>),
@@ -157,7 +168,9 @@ mod tests {
     fn what_is_not_typed_is_as_the_jobs_have_it() {
         assert!(matches!(parsed(&["analyze", "r"]), Command::Analyze(a) if a.job == jobs::Analyze::default()));
         assert!(matches!(parsed(&["compare", "r"]), Command::Compare(a) if a.job == jobs::Compare::default()));
-        assert!(matches!(parsed(&["calibrate", "r"]), Command::Calibrate(a) if a.job() == jobs::Calibrate::default()));
+        assert!(
+            matches!(parsed(&["calibrate", "r"]), Command::Calibrate(a) if a.job().is_ok_and(|job| job == jobs::Calibrate::default()))
+        );
         let predict = ["predict", "m", "--protocol", "p"];
         assert!(matches!(parsed(&predict), Command::Predict(a) if a.job == jobs::Predict::default()));
         assert!(matches!(parsed(&["watch", "r"]), Command::Watch(a) if a.job() == jobs::WatchLog::default()));

@@ -3,8 +3,9 @@
 use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
-use palpate::calibrate::RateLaw;
+use palpate::calibrate::{RateLaw, Sharing};
 use palpate::laws::Law;
+use palpate::number::counted;
 use palpate_files::description::NamedColumns;
 use palpate_jobs as jobs;
 use palpate_jobs::JobError;
@@ -177,12 +178,17 @@ pub(crate) struct CompareArguments {
 }
 
 /// Calibrate a body on a whole record, ramps and holds: one set of parameters for prediction.
+///
+/// Several records of one body or of one batch are calibrated together: with shared and own parameters, and the spread between specimens.
 #[derive(Debug, Args)]
 #[command(after_help = "\
 The parameters are those of the law and of the equilibrium force: for the latency law n, v, the
 layer thickness and a modulus (or a table of forces). A material file stores them with their
 intervals; palpate predict reads it, --test accepts it for the body, and a protocol refers to it by
 material = \"FILE\".
+
+Of several records the material file is that of another specimen of the batch: its intervals contain
+the spread between specimens. With --shared all it is the one body that all records tested.
 
 Laws: latency, latency:N (n given), standard-linear-solid, prony:K (K terms), fung:K.
 
@@ -191,17 +197,29 @@ Examples:
   palpate calibrate press.csv --test ball.toml --fit-until \"60 s\"     held-out error after 60 s
   palpate calibrate press.csv --test ball.toml --equilibrium table     equilibrium forces as a table
   palpate calibrate steps.csv --test ball.toml --rate by-strain        v as a function of strain
+  palpate calibrate a.csv b.csv c.csv --test ball.toml --shared exponent,rate_coefficient
+  palpate calibrate a.csv b.csv --test a.toml --test b.toml --shared all   one body, tested twice
   palpate schema material                                             the fields of a material file")]
 pub(crate) struct CalibrateArguments {
-    /// Record with time, displacement and force
-    #[arg(value_name = "RECORD")]
-    pub(crate) record: PathBuf,
-    #[command(flatten)]
-    pub(crate) described: DescribedArguments,
+    /// Record with time, displacement and force; several are calibrated together
+    #[arg(value_name = "RECORD", required = true)]
+    pub(crate) records: Vec<PathBuf>,
+    /// Test description (TOML): columns, units, geometry, options; for all records, or given once for each in their order
+    #[arg(long, value_name = "TEST.toml")]
+    pub(crate) test: Vec<PathBuf>,
+    /// Columns of the record by name or number, with their units; they take precedence over the description
+    #[arg(long, value_name = "QUANTITY=COLUMN:UNIT,…", value_parser = columns)]
+    pub(crate) columns: Option<NamedColumns>,
+    /// Test of a file with several tests: its name (a sheet, a curve, a `test_id`), or its number from 1
+    #[arg(long, value_name = "NAME")]
+    pub(crate) part: Option<String>,
+    /// Parameters with one value for all of several records: none, all, or names such as exponent,rate_coefficient; none if not given
+    #[arg(long, value_name = "NAME,…")]
+    pub(crate) shared: Option<Sharing>,
     /// Law of the material
     #[arg(long, value_name = "LAW", default_value_t = jobs::Calibrate::default().law, value_parser = law)]
     pub(crate) law: Law,
-    /// Alternative laws to fit to the same record
+    /// Alternative laws to fit to the same record; for a single record only
     #[arg(long, value_name = "LAW,…", value_delimiter = ',', value_parser = law, default_value = named(&jobs::Calibrate::default().alternatives))]
     pub(crate) alternatives: Vec<Law>,
     /// Calibrate without alternatives
@@ -216,10 +234,10 @@ pub(crate) struct CalibrateArguments {
     /// Dependence of the rate coefficient v of the latency law, with one more parameter; the other choices become alternatives
     #[arg(long, value_parser = one_of(RATES), default_value = "constant")]
     pub(crate) rate: RateLaw,
-    /// Fit up to this time of the record and report the held-out error after it
+    /// Fit up to this time of the record and report the held-out error after it; for a single record only
     #[arg(long, value_name = "TIME", value_parser = time, allow_hyphen_values = true)]
     pub(crate) fit_until: Option<f64>,
-    /// Add profile intervals, which are asymmetric, and unbounded where the record does not determine a parameter
+    /// Add profile intervals, which are asymmetric, and unbounded where the record does not determine a parameter; for a single record only
     #[arg(long)]
     pub(crate) profile: bool,
     /// Coverage of the intervals, between 0 and 1; if not given, that of the description, or 0.95
@@ -237,8 +255,41 @@ pub(crate) struct CalibrateArguments {
 }
 
 impl CalibrateArguments {
-    pub(crate) fn job(&self) -> jobs::Calibrate {
-        jobs::Calibrate {
+    /// The descriptions of the records, in their order.
+    ///
+    /// # Errors
+    /// [`JobError`] where one cannot be read, or there are several but not one for each record.
+    pub(crate) fn described(&self) -> Result<Vec<Described>, JobError> {
+        let read = |test: Option<&PathBuf>| {
+            let described = Described::read(test.map(PathBuf::as_path), self.part.as_deref())?;
+            Ok(described.with_columns(self.columns.as_ref()))
+        };
+        match &self.test[..] {
+            [] | [_] => Ok(vec![read(self.test.first())?; self.records.len()]),
+            tests if tests.len() == self.records.len() => tests.iter().map(|test| read(Some(test))).collect(),
+            tests => Err(JobError::option(
+                format!(
+                    "expected one test description for all records or one for each, found {} for {}",
+                    tests.len(),
+                    counted(self.records.len(), "record")
+                ),
+                "give ⟨test⟩ once, or once for each record in their order",
+            )),
+        }
+    }
+
+    /// The job of one record.
+    ///
+    /// # Errors
+    /// [`JobError`] for what only several records have.
+    pub(crate) fn job(&self) -> Result<jobs::Calibrate, JobError> {
+        if self.shared.is_some() {
+            return Err(JobError::option(
+                "⟨shared⟩ is for two or more records, found 1 record",
+                "name further records of the body or the batch, or leave ⟨shared⟩ out",
+            ));
+        }
+        Ok(jobs::Calibrate {
             law: self.law,
             alternatives: if self.no_alternatives { Vec::new() } else { self.alternatives.clone() },
             equilibrium: self.equilibrium,
@@ -247,7 +298,33 @@ impl CalibrateArguments {
             fit_until_s: self.fit_until,
             profile: self.profile,
             confidence: self.confidence,
+        })
+    }
+
+    /// The job of several records.
+    ///
+    /// # Errors
+    /// [`JobError`] for what only a single record has.
+    pub(crate) fn several(&self) -> Result<jobs::CalibrateSeveral, JobError> {
+        let of_one = [
+            ("alternatives", self.alternatives != jobs::Calibrate::default().alternatives),
+            ("fit_until", self.fit_until.is_some()),
+            ("profile", self.profile),
+        ];
+        if let Some((name, _)) = of_one.into_iter().find(|(_, is_given)| *is_given) {
+            return Err(JobError::option(
+                format!("⟨{name}⟩ is for a single record, found {}", counted(self.records.len(), "record")),
+                &format!("leave ⟨{name}⟩ out, or calibrate each record alone"),
+            ));
         }
+        Ok(jobs::CalibrateSeveral {
+            law: self.law,
+            shared: self.shared.clone().unwrap_or_default(),
+            equilibrium: self.equilibrium,
+            poisson_ratio: self.poisson_ratio,
+            rate: self.rate,
+            confidence: self.confidence,
+        })
     }
 }
 

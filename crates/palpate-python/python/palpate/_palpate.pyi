@@ -35,10 +35,12 @@ __all__ = [
     "RecordComparison",
     "RecordError",
     "Schedule",
+    "SeveralCalibrations",
     "Table",
     "Trajectory",
     "_Piece",
     "batch",
+    "calibrate",
     "command",
     "compare",
     "convert",
@@ -227,6 +229,17 @@ class Calibration(_Series, _Reported):
     force_n: Final[_Doubles]
     simulated_n: Final[_Doubles]
     residual_n: Final[_Doubles]
+    def report(self) -> str: ...
+    def _repr_html_(self) -> str: ...
+
+@final
+class SeveralCalibrations(_Reported):
+    specimen: Final[Material | None]
+    materials: Final[list[Material]]
+    parameter_table: Final[Table]
+    record_table: Final[Table]
+    remarks: Final[list[str]]
+    def __len__(self) -> int: ...
     def report(self) -> str: ...
     def _repr_html_(self) -> str: ...
 
@@ -544,6 +557,17 @@ def latency(
 ) -> _Doubles: ...
 def law_names() -> list[str]: ...
 def command(arguments: Sequence[str]) -> int: ...
+def calibrate(
+    records: Sequence[Record],
+    *,
+    shared: str | Sequence[str] | None = None,
+    law: str = "latency",
+    test: _Described | None = None,
+    equilibrium: str | None = None,
+    poisson_ratio: float | None = None,
+    rate: str = "constant",
+    confidence: float | None = None,
+) -> SeveralCalibrations: ...
 def compare(
     time_s: ArrayLike,
     signal: ArrayLike,

@@ -155,12 +155,13 @@ shown! {
             ];
             named.into_py_dict(py)
         },
-        /// Where the parameters come from: ``record``, ``sha256`` of its file, ``test`` description, version of ``palpate``, ``samples`` fitted.
+        /// Where the parameters come from: ``record``, ``sha256`` of its file, number of ``specimens`` of a batch another of which it is, ``test`` description, version of ``palpate``, ``samples`` fitted.
         origin<'py>(py): PyResult<Bound<'py, PyDict>> = {
             let origin = &self.source.file.origin;
             let dict = PyDict::new(py);
             dict.set_item("record", &origin.record)?;
             dict.set_item("sha256", &origin.sha256)?;
+            dict.set_item("specimens", origin.specimens)?;
             dict.set_item("test", &origin.test)?;
             dict.set_item("palpate", &origin.palpate)?;
             dict.set_item("samples", origin.samples)?;

@@ -6,3 +6,4 @@ pub(crate) mod forecast;
 pub(crate) mod kept;
 pub(crate) mod read;
 pub(crate) mod record;
+pub(crate) mod several;

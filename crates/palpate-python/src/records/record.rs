@@ -147,7 +147,7 @@ impl Record {
     }
 
     /// What jobs take of it, described as it is or by `test`.
-    fn measured(&self, test: Given<'_, '_>) -> PyResult<Measurement> {
+    pub(crate) fn measured(&self, test: Given<'_, '_>) -> PyResult<Measurement> {
         let mut input = self.input.clone();
         let options = match test {
             None => self.described.options(),

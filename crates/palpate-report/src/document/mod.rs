@@ -8,6 +8,7 @@
 //! | `settings.rs` | the resolved settings |
 //! | `signals.rs` | the columns of a record, their corrections, first touch |
 //! | `calibration.rs` | `palpate.calibration/1`, laws calibrated on a whole record |
+//! | `several_calibrations.rs` | `palpate.several-calibrations/1`, one calibration of several records |
 //! | `comparison.rs` | `palpate.comparison/1`, laws compared on the holds of records |
 //! | `grip.rs` | `palpate.grip/1`, a planned grip |
 //! | `finding.rs`, `software.rs` | what stands in several of them |
@@ -53,6 +54,7 @@ mod fit;
 mod grip;
 mod reproduction;
 mod settings;
+mod several_calibrations;
 mod signals;
 mod software;
 mod watch;
@@ -68,5 +70,7 @@ pub use grip::{
     BackOffDocument, ForceHoldDocument, GripDocument, PositionHoldDocument, ScheduleDocument, TimeToSlipDocument,
 };
 pub use reproduction::ReproductionDocument;
+pub(crate) use several_calibrations::of_between;
+pub use several_calibrations::{BatchParameterDocument, SeveralCalibrationsDocument, SpecimenDocument};
 pub use software::Software;
 pub use watch::{ObservationDocument, WatchDocument, WatchSummaryDocument, WatchedHoldDocument};

@@ -1,7 +1,7 @@
 //! What a calibration of a record is shown with.
 
 use palpate::calibrate::{
-    CalibrateError, Calibration, CalibrationData, Candidate, Material, ParameterProfile, RateLaw,
+    CalibrateError, Calibration, CalibrationData, CalibrationRange, Candidate, Material, ParameterProfile, RateLaw,
 };
 use palpate::fit::Termination;
 use palpate::number::significant;
@@ -156,12 +156,17 @@ fn remarks_of(made: &Calibration) -> Vec<String> {
             significant(100.0 * made.relative, 2)
         ));
     }
-    let range = made.material.range();
+    remarks.push(range_remark(made.material.range()));
+    remarks
+}
+
+/// The range of the tests, in a sentence.
+pub(super) fn range_remark(range: &CalibrationRange) -> String {
     let retreat = match range.farthest_retreat {
         0.0 => "loading alone".to_owned(),
         retreat => format!("retreats of up to {}", quantity(retreat, "m", 3)),
     };
-    remarks.push(format!(
+    format!(
         "Calibration range: holds of up to {}, displacements of up to {}, ramps of {} to {}, forces of up to {}, {retreat}, {}. Predictions beyond this range are marked as extrapolations, and their intervals are wider.",
         quantity(range.longest_hold, "s", 3),
         quantity(range.deepest, "m", 3),
@@ -169,8 +174,7 @@ fn remarks_of(made: &Calibration) -> Vec<String> {
         quantity(range.fastest, "m/s", 3),
         quantity(range.largest_force, "N", 3),
         counted(range.loadings as usize, "loading")
-    ));
-    remarks
+    )
 }
 
 /// The law of a material with its values put in: the latency law as its rate, a linear law as the ratio of force and equilibrium force

@@ -11,6 +11,7 @@
 //! | `compared.rs` | laws compared on the holds of a record |
 //! | `calibrated.rs` | laws calibrated on a record, with remarks |
 //! | `budget.rs` | uncertainty budgets of results |
+//! | `calibrated_batch.rs` | several records calibrated together, with remarks |
 //! | `gripped.rs`, `grip_sentences.rs` | a body in a gripper with an answer; the answer in sentences |
 //! | `reproduced.rs` | the paper's study |
 //! | `words.rs` | the words for what the library says |
@@ -18,6 +19,7 @@
 mod answer;
 mod budget;
 mod calibrated;
+mod calibrated_batch;
 mod compared;
 mod grip_sentences;
 mod gripped;
@@ -32,6 +34,7 @@ pub(crate) use answer::law_of_record;
 pub use answer::{Answer, HoldAnswer, formula};
 pub use budget::{BudgetedResult, budgets_of_analysis, budgets_of_material};
 pub use calibrated::{CalibratedRecord, formula_of_material};
+pub use calibrated_batch::CalibratedBatch;
 pub use compared::{ComparedHold, ComparedRecord, LeftOut, Quantity};
 pub(crate) use grip_sentences::lasted;
 pub use gripped::GrippedBody;

@@ -40,7 +40,7 @@ pub fn parameter_title(name: &str) -> String {
 pub type Parameters = BTreeMap<String, ParameterDocument>;
 
 impl ParameterDocument {
-    fn new(estimate: Option<&Estimate>, unit: String, role: ParameterRole) -> Self {
+    pub(crate) fn new(estimate: Option<&Estimate>, unit: String, role: ParameterRole) -> Self {
         let finite = |end: f64| Some(end).filter(|end| end.is_finite());
         Self {
             value: estimate.and_then(|estimate| finite(estimate.value)),

@@ -28,8 +28,8 @@ mod simulate;
 
 pub use bundle::{Bundle, Pictures, StudyError};
 pub use calibration::{
-    calibration_figure, calibration_page, calibration_text, material_table, prediction_figure, prediction_table,
-    write_prediction,
+    batch_figure, batch_page, batch_text, calibration_figure, calibration_page, calibration_text, material_table,
+    prediction_figure, prediction_table, write_prediction,
 };
 pub use comparison::{comparison_bundle, comparison_markdown, comparison_text};
 pub use grip::{grip_bundle, grip_figure, grip_table, grip_text, neighbour_table, schedule_table, sensitivity_table};

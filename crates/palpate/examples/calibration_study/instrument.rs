@@ -3,7 +3,7 @@
 use palpate::analysis::{AnalysisOptions, Geometry};
 use palpate::calibrate::CalibrationData;
 use palpate::record::Record;
-use palpate::simulate::{Motion, Separation, simulate_force};
+use palpate::simulate::{ContactModel, Motion, Separation, simulate_force};
 use palpate::test_problems::{Rng, paper_ball};
 
 /// Noise of the force.
@@ -38,13 +38,18 @@ impl Default for Instrument {
 }
 
 impl Instrument {
-    /// A record of the motion, cut and prepared as that of a machine is.
+    /// A record of the paper's ball under the motion, cut and prepared as that of a machine is.
+    #[allow(dead_code, reason = "of some studies alone")]
     pub(crate) fn record(&self, motion: &Motion, seed: u64) -> CalibrationData {
-        let model = paper_ball(Separation::Unilateral);
+        self.record_of(&paper_ball(Separation::Unilateral), motion, seed)
+    }
+
+    /// The same of another body.
+    pub(crate) fn record_of(&self, model: &ContactModel, motion: &Motion, seed: u64) -> CalibrationData {
         let mut random = Rng::new(seed + 1);
         let count = (motion.end() * self.rate_hz) as u32;
         let time: Vec<f64> = (0..=count).map(|i| f64::from(i) / self.rate_hz).collect();
-        let force = simulate_force(motion, &model, &time).expect("a simulation");
+        let force = simulate_force(motion, model, &time).expect("a simulation");
         let mut state = random.normal();
         let mut noise = || match self.force {
             Force::White => random.normal(),

@@ -174,6 +174,12 @@ impl CalibrationData {
         depths.len()
     }
 
+    /// Shape and sides of the body.
+    #[must_use]
+    pub fn geometry(&self) -> &Geometry {
+        &self.geometry
+    }
+
     /// The motion of the jaw.
     #[must_use]
     pub fn motion(&self) -> &Motion {

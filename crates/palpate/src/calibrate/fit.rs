@@ -7,7 +7,7 @@ use super::search::search;
 use super::systematic::systematic_effects;
 use super::{
     CalibrateError, CalibrationData, CalibrationRange, Candidate, Material, MaterialParameter, MaterialParts,
-    MaterialUncertainty, SystematicEffect,
+    MaterialUncertainty,
 };
 use crate::analysis::HoldoutError;
 use crate::fit::{Assessed, Estimate, NoiseModel, Scale, Termination};
@@ -164,11 +164,7 @@ pub fn calibrate(
     let uncertainty = assessed.as_ref().filter(|_| is_found).and_then(|assessed| {
         let uncertainty = assessed.uncertainty.as_ref()?;
         let mut covariance = transformed(&uncertainty.covariance, &gradients);
-        for SystematicEffect { logs, .. } in &systematic {
-            for (row, a) in covariance.iter_mut().zip(logs) {
-                row.iter_mut().zip(logs).for_each(|(entry, b)| *entry += a * b);
-            }
-        }
+        systematic.iter().for_each(|effect| effect.add_to(&mut covariance));
         Some(MaterialUncertainty {
             confidence,
             freedom: uncertainty.freedom,

@@ -63,6 +63,15 @@ pub struct SystematicEffect {
     pub logs: Vec<f64>,
 }
 
+impl SystematicEffect {
+    /// Adds its part to a covariance of the logarithms of the parameters.
+    pub(super) fn add_to(&self, covariance: &mut [Vec<f64>]) {
+        for (row, a) in covariance.iter_mut().zip(&self.logs) {
+            row.iter_mut().zip(&self.logs).for_each(|(entry, b)| *entry += a * b);
+        }
+    }
+}
+
 /// Joint uncertainty of the parameters of a material.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct MaterialUncertainty {

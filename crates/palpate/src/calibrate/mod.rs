@@ -15,6 +15,7 @@
 //! | `material.rs` | the body with its parameters | |
 //! | `range.rs`, `extrapolation.rs` | what the test has shown; what lies beyond, and what it adds to the errors |
 //! | `predict.rs` | what it does under any drive, with intervals | |
+//! | `several/` | several records at once: shared and own parameters, the spread between specimens | |
 //! | `error.rs` | why one could not be made | |
 
 mod candidate;
@@ -30,6 +31,7 @@ mod problem;
 mod profile;
 mod range;
 mod search;
+mod several;
 mod systematic;
 
 pub use candidate::{Candidate, EquilibriumLaw, RateLaw};
@@ -43,3 +45,7 @@ pub use material::{
 pub use predict::Prediction;
 pub use profile::{ParameterProfile, profile};
 pub use range::CalibrationRange;
+pub use several::{
+    BatchParameter, BatchRecord, Between, CalibratedSpecimen, SeveralCalibration, SeveralError, Sharing, Spread,
+    calibrate_several,
+};

@@ -176,6 +176,28 @@ impl Prepared {
         rises
     }
 
+    /// The searched parameters whose [`values`](Self::values) these are, terms in the order of their times; `None` for a layer that is no
+    /// thinner than the body, and for a table of equilibrium forces.
+    pub(super) fn searched_of(&self, values: &[f64]) -> Option<Vec<f64>> {
+        if self.candidate.equilibrium == EquilibriumLaw::Table {
+            return None;
+        }
+        let (modulus, law) = values.split_first()?;
+        let mut theta = vec![modulus.ln()];
+        match self.candidate.law {
+            Law::Latency { exponent } => {
+                let (n, factor) = (law[0], law.get(3).copied());
+                let overshoot = self.specimen.depth() / law[2] - 1.0;
+                let there = self.candidate.rate.with(factor.unwrap_or(1.0)).times(1.0, self.reference_strain());
+                theta.extend((exponent == ExponentChoice::Free).then(|| n.ln()));
+                theta.extend([(law[1] * there / self.coefficient(n, 1.0, overshoot)).ln(), overshoot.ln()]);
+                theta.extend(factor.map(f64::ln));
+            }
+            _ => theta.extend(law.chunks_exact(2).flat_map(|term| [term[0].ln(), -term[1].ln()])),
+        }
+        Some(theta).filter(|theta| theta.iter().all(|value| value.is_finite()))
+    }
+
     /// The parameters of the material, in the order of [`names`].
     pub(super) fn values(&self, theta: &[f64]) -> Vec<f64> {
         let (stiffnesses, law) = theta.split_at(self.stiffnesses());
@@ -252,6 +274,51 @@ impl Scales {
             ramp: usual(&mut ramps, 0.1 * duration).min(duration),
             strain: usual(&mut strains, deepest / body.depth()).max(1e-9),
             deepest,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::analysis::Geometry;
+    use crate::calibrate::Candidate;
+    use crate::contact::{Shape, Sides};
+    use crate::simulate::{ProtocolStep, Separation, protocol};
+
+    #[test]
+    fn searched_parameters_come_back_from_those_of_the_material() {
+        let motion = protocol(&[ProtocolStep {
+            to: 0.005,
+            rate: 0.01,
+            hold: 10.0,
+        }])
+        .unwrap();
+        let ball = Geometry {
+            shape: Shape::Ball { radius: 0.035 },
+            sides: Sides::Two,
+            modulus: None,
+            equilibrium: Equilibrium::default(),
+        };
+        let times: Vec<f64> = (0..=100).map(|i| 0.1 * f64::from(i)).collect();
+        let data = CalibrationData::new(ball, Separation::Unilateral, motion, times.clone(), times, &[]).unwrap();
+        for (law, rate) in [
+            ("latency", RateLaw::Constant),
+            ("latency", RateLaw::ByStrain),
+            ("latency:3", RateLaw::ByDirection),
+            ("prony:2", RateLaw::Constant),
+        ] {
+            let candidate = Candidate {
+                rate,
+                ..Candidate::new(law.parse().unwrap(), EquilibriumLaw::UniformStrain)
+            };
+            let prepared = Prepared::new(candidate, &data).unwrap();
+            let theta: Vec<f64> = (0..prepared.searched.len()).map(|i| 0.3 - 0.2 * i as f64).collect();
+            let back = prepared.searched_of(&prepared.values(&theta)).unwrap();
+            assert_eq!(back.len(), theta.len());
+            for (back, theta) in back.iter().zip(&theta) {
+                assert!((back - theta).abs() < 1e-12, "{law}: {back} {theta}");
+            }
         }
     }
 }

@@ -13,4 +13,5 @@ mod phases;
 #[path = "../common/repeats.rs"]
 mod repeats;
 mod segmentation_suite;
+mod several;
 mod touch_and_modulus;

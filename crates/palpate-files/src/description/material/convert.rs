@@ -96,6 +96,7 @@ pub fn parse_material(text: &str, path: &Path) -> Result<MaterialFile, Descripti
         origin: MaterialOrigin {
             record: table.record.clone(),
             sha256: table.sha256.clone(),
+            specimens: table.specimens,
             test: table.test.clone(),
             palpate: table.palpate.clone(),
             samples: table.samples,

@@ -17,10 +17,12 @@ pub struct MaterialFile {
 /// Provenance of the parameters of a material.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct MaterialOrigin {
-    /// The record.
+    /// The record, or all of them with commas between.
     pub record: String,
-    /// SHA-256 of the record's file, hexadecimal.
+    /// SHA-256 of the record's file, hexadecimal, or of all of them.
     pub sha256: String,
+    /// Specimens of the batch, another of which this material is; none of a body that was itself tested.
+    pub specimens: Option<usize>,
     /// Its test description, if there was one.
     pub test: Option<String>,
     /// Version of palpate that calibrated.

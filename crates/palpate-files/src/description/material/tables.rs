@@ -34,6 +34,10 @@ pub(crate) struct CalibrationTable {
     pub(crate) record: String,
     /// SHA-256 of its file.
     pub(crate) sha256: String,
+    /// Number of tested specimens of the batch, another of which this material is: intervals and covariance contain the spread between
+    /// specimens. None of a body that was itself tested.
+    #[schemars(range(min = 3))]
+    pub(crate) specimens: Option<usize>,
     /// Its test description.
     pub(crate) test: Option<String>,
     /// Version of palpate that calibrated.

@@ -26,8 +26,13 @@ impl MaterialFile {
 
     fn head(&self) -> String {
         let Self { material, origin } = self;
+        let batch = origin.specimens.map_or_else(String::new, |specimens| {
+            format!(
+                "# A specimen of the batch that was not tested: intervals contain the spread between the {specimens} specimens that were.\n"
+            )
+        });
         format!(
-            "# Calibrated by palpate {} on {}: {}, {} samples,\n# {} N of residual noise. palpate predict takes this file, and a protocol that says material = \"…\".\n",
+            "# Calibrated by palpate {} on {}: {}, {} samples,\n# {} N of residual noise. palpate predict takes this file, and a protocol that says material = \"…\".\n{batch}",
             origin.palpate,
             // A text that ends no comment.
             origin.record.replace(|letter: char| letter.is_control(), " "),
@@ -155,9 +160,10 @@ impl MaterialFile {
     fn calibration(&self) -> String {
         let Self { material, origin } = self;
         let equilibrium = CalibratedEquilibriumName::from(material.candidate().equilibrium);
+        let specimens = origin.specimens.map_or_else(String::new, |specimens| format!("specimens = {specimens}\n"));
         let test = origin.test.as_ref().map_or_else(String::new, |test| format!("test = {}\n", quoted(test)));
         let mut out = format!(
-            "\n# What follows is not for editing: the parameters above with their errors, and where they come from.\n[calibration]\nversion = {MATERIAL_VERSION}\nrecord = {}\nsha256 = {}\n{test}palpate = {}\nsamples = {}\nlaw = {}\nequilibrium = \"{equilibrium}\"\nresidual = {}\n",
+            "\n# What follows is not for editing: the parameters above with their errors, and where they come from.\n[calibration]\nversion = {MATERIAL_VERSION}\nrecord = {}\nsha256 = {}\n{specimens}{test}palpate = {}\nsamples = {}\nlaw = {}\nequilibrium = \"{equilibrium}\"\nresidual = {}\n",
             quoted(&origin.record),
             quoted(&origin.sha256),
             quoted(&origin.palpate),

@@ -90,6 +90,7 @@ fn material(law: &str, equilibrium: EquilibriumLaw, shape: Shape) -> MaterialFil
         origin: MaterialOrigin {
             record: "press \"3\"\n.csv".to_owned(),
             sha256: "ab12".to_owned(),
+            specimens: None,
             test: Some("ball.toml".to_owned()),
             palpate: "0.1.0".to_owned(),
             samples: 2061,
@@ -225,6 +226,19 @@ fn a_material_without_intervals_is_one_too() {
     file.material = Material::new(parts).unwrap();
     file.origin.test = None;
     assert_eq!(parse_material(&file.to_toml(), Path::new("m.toml")).unwrap(), file);
+}
+
+#[test]
+fn a_specimen_of_a_batch_says_that_it_is_one() {
+    let mut file = usual();
+    file.origin.specimens = Some(5);
+    let text = file.to_toml();
+    assert!(text.contains(
+        "\n# A specimen of the batch that was not tested: intervals contain the spread between the 5 specimens"
+    ));
+    assert!(text.contains("\nspecimens = 5\n"));
+    assert_eq!(parse_material(&text, Path::new("m.toml")).unwrap(), file);
+    assert!(!usual().to_toml().contains("specimens"));
 }
 
 #[test]
