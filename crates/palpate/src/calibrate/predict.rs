@@ -7,7 +7,7 @@ use super::{CalibrateError, CalibrationData, Material};
 use crate::analysis::{AnalysisOptions, Geometry};
 use crate::record::Record;
 use crate::simulate::{Contact, Drive, ProgramStep, Sampling, SimulateError, Trajectory, simulate_watched};
-use crate::statistics::coverage_factor;
+use crate::statistics::{coverage_factor, normal_factor};
 use crate::watch::{Cancelled, Stages, Unwatched, Watch};
 
 /// A predicted course with its uncertainty; SI units.
@@ -167,8 +167,11 @@ impl Material {
         let freedom = self.uncertainty().map_or(f64::INFINITY, |uncertainty| uncertainty.freedom);
         let beyond = Beyond::of(self, drive, &trajectory, &mut stages)?;
         stages.finish()?;
+        let factor = coverage_factor(confidence, freedom);
+        // A judgement is no sample: few degrees of freedom of the calibration do not widen it.
+        let share = (normal_factor(confidence) / factor).powi(2);
         let errors = |inside: Vec<f64>, beyond: &[f64]| {
-            let sum = inside.iter().zip(beyond).map(|(inside, beyond)| (inside + beyond).sqrt());
+            let sum = inside.iter().zip(beyond).map(|(inside, beyond)| (inside + share * beyond).sqrt());
             self.uncertainty().map(|_| sum.collect())
         };
         Ok(Prediction {
@@ -178,7 +181,7 @@ impl Material {
             extrapolations: beyond.extrapolations,
             noise: self.noise(),
             confidence,
-            factor: coverage_factor(confidence, freedom),
+            factor,
         })
     }
 
