@@ -151,6 +151,7 @@ impl Shape {
     }
 
     /// The same shape with one of its dimensions put through `change`; unchanged where it has no such dimension.
+    #[cfg(feature = "std")]
     #[must_use]
     pub(crate) fn with(mut self, dimension: ShapeDimension, change: impl Fn(f64) -> f64) -> Self {
         if let Some(value) = self.dimension_mut(dimension) {

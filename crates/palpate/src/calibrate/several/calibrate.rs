@@ -196,13 +196,13 @@ impl Batch<'_> {
     }
 
     fn parameters(&self) -> Vec<BatchParameter> {
-        let layout = &self.joint.layout;
+        let (layout, common) = (&self.joint.layout, self.common_effects());
         let between = |index: usize| {
             if let Some(at) = layout.shared.iter().position(|shared| *shared == index) {
                 let determined = |made: &Calibration| Some((log_of(made, index), log_variance(made, index)?));
                 let (values, variances): (Vec<f64>, Vec<f64>) = self.alone.iter().filter_map(determined).unzip();
                 return Between::Shared {
-                    estimate: self.estimate_at(at),
+                    estimate: self.beside(index, self.estimate_at(at), &common),
                     one_value_p: if values.len() < 2 { None } else { one_value_p(&values, &variances) },
                 };
             }
@@ -221,7 +221,7 @@ impl Batch<'_> {
             let variance = self.another.of_means[mean][mean];
             let factor = coverage_factor(self.confidence, (layout.records - 1) as f64);
             Between::Own {
-                mean: estimate(self.another.logs[mean], variance, variance, factor),
+                mean: self.beside(index, estimate(self.another.logs[mean], variance, variance, factor), &common),
                 spread: Spread::of(&values, &errors, self.confidence),
             }
         };
@@ -313,6 +313,12 @@ impl Batch<'_> {
         found
     }
 
+    /// An estimate of a parameter with what the instrument adds.
+    fn beside(&self, index: usize, estimate: Estimate, effects: &[SystematicEffect]) -> Estimate {
+        let squares: f64 = effects.iter().map(|effect| effect.logs[index].powi(2)).sum();
+        estimate.beside(estimate.value.powi(2) * squares, normal_factor(self.confidence))
+    }
+
     /// A body with estimates in the order of [`Layout::parameters`] and their covariance, with degrees of freedom and what the instrument adds.
     fn material(
         &self,
@@ -337,9 +343,7 @@ impl Batch<'_> {
             })
             .collect();
         for (index, estimate) in order.into_iter().zip(estimates) {
-            let squares = systematic.iter().map(|effect| effect.logs[index].powi(2));
-            let variance = estimate.value.powi(2) * squares.sum::<f64>();
-            parameters[index].estimate = estimate.beside(variance, normal_factor(self.confidence));
+            parameters[index].estimate = self.beside(index, estimate, &systematic);
         }
         systematic.iter().for_each(|effect| effect.add_to(&mut full));
         Ok(Material::new(MaterialParts {
