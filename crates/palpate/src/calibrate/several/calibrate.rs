@@ -45,7 +45,7 @@ const ALONE: f64 = 0.8;
 ///     model.specimen = Specimen::new(ball.specimen.shape().clone(), modulus, ball.specimen.sides())?;
 ///     let times: Vec<f64> = (0..=330).map(|i| 0.2 * f64::from(i)).collect();
 ///     let forces = simulate_force(&motion, &model, &times)?.iter().map(|force| force + 0.05 * noise.normal()).collect();
-///     let geometry = Geometry { shape: model.specimen.shape().clone(), sides: model.specimen.sides(), modulus: None };
+///     let geometry = Geometry { shape: model.specimen.shape().clone(), sides: model.specimen.sides(), modulus: None, equilibrium: Default::default() };
 ///     let data = CalibrationData::new(geometry, model.separation, motion.clone(), times, forces, &[])?;
 ///     records.push(BatchRecord { name: name.to_owned(), data });
 /// }
