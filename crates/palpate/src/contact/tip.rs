@@ -182,7 +182,8 @@ fn power(scale: f64, exponent: f64, u: f64) -> (f64, f64) {
         return (scale, 0.0);
     }
     if u > 0.0 {
-        let value = scale * u.powf(exponent);
+        // A square root is rounded the same everywhere, a power is not.
+        let value = scale * if exponent == 0.5 { u.sqrt() } else { u.powf(exponent) };
         return (value, exponent * value / u);
     }
     let is_straight = u >= 0.0 && (1.0..2.0).contains(&exponent);
