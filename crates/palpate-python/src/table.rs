@@ -120,7 +120,7 @@ pub(crate) fn budget_columns(budgets: &[BudgetDocument]) -> Vec<(&'static str, A
         expanded_uncertainty = row.0.expanded_uncertainty,
         input = row.1.input.clone(),
         input_unit = row.1.unit.clone(),
-        r#type = row.1.evaluation.clone(),
+        evaluation = row.1.evaluation.clone(),
         distribution = row.1.distribution.clone(),
         standard_uncertainty = row.1.standard_uncertainty,
         sensitivity = row.1.sensitivity,

@@ -272,7 +272,7 @@ def test_an_instrument_gives_budgets(record: palpate.Record) -> None:
     budgets = polars.DataFrame(calibration.budgets)
     modulus = budgets.filter(polars.col("parameter") == "modulus_pa")
     assert modulus["input"].to_list() == ["scatter of the samples", "gain of the force", "radius"]
-    assert modulus["type"].to_list() == ["A", "B", "A"]
+    assert modulus["evaluation"].to_list() == ["A", "B", "A"]
     # E is proportional to the force: c u = E 0.01/√3.
     gain = modulus["contribution"][1] / modulus["value"][1]
     assert abs(gain - 0.01 / np.sqrt(3)) < 1e-6

@@ -166,7 +166,9 @@ def test_the_least_squeeze_holds_exactly_as_long_as_is_requested(material: palpa
     assert least.holds and least.assured_time_s == pytest.approx(60.0, rel=1e-3) and least.squeeze_m is not None
     assert least.probability == pytest.approx(0.95, abs=1e-6)
     less = material.grip(**LOAD, squeeze_m=0.99 * least.squeeze_m, hold_s=60.0)
-    assert not less.holds and less.time_to_slip_s is not None and 0 < less.time_to_slip_s < 60
+    # What lies beyond the test counts: the best estimate lasts longer than what is sure.
+    assert not less.holds and less.assured_time_s is not None and 0 < less.assured_time_s < 60
+    assert less.probability is not None and less.probability < 0.95
     back_off, schedule, pressed = least.back_off, least.schedule, least.force_held
     assert back_off is not None and schedule is not None and pressed is not None
     assert abs(back_off.drift_n) < 1e-9 < -back_off.plain_drift_n and back_off.plain.course is None
@@ -214,7 +216,7 @@ def test_all_of_it_comes_back(least: palpate.Grip) -> None:
             assert twin == thing and repr(twin) == repr(thing) and str(twin) == str(thing)
     assert least.squeeze is not None and least.squeeze.course is not None
     assert pickle.loads(pickle.dumps(least.squeeze)).course == least.squeeze.course
-    assert repr(least).startswith("<palpate.Grip: Yes: a squeeze of 6.") and "<svg" in (least._repr_html_() or "")
+    assert repr(least).startswith("<palpate.Grip: Yes: a force of 3.") and "<svg" in (least._repr_html_() or "")
     assert repr(least.schedule).startswith("<palpate.Schedule: ") and least != least.squeeze
 
 

@@ -187,7 +187,7 @@ shown! {
         /// ``standard_error``, ``low``, ``high``, ``termination``, ``white_standard_error``, ``role``, ``domain``, ``recommended``.
         parameter_table: PyResult<Table> = Table::of(parameter_columns(&self.document.parameter_rows())),
         /// Uncertainty budgets (JCGM 100) of the parameters of the law of the record, a row for each input quantity of each: ``hold``, ``law``,
-        /// ``parameter``, ``unit``, ``value``, ``combined_standard_uncertainty``, ``expanded_uncertainty``, ``input``, ``input_unit``, ``type``,
+        /// ``parameter``, ``unit``, ``value``, ``combined_standard_uncertainty``, ``expanded_uncertainty``, ``input``, ``input_unit``, ``evaluation``,
         /// ``distribution``, ``standard_uncertainty``, ``sensitivity``, ``contribution``, ``share``; empty where the test description has no
         /// ``[instrument]``.
         budgets: PyResult<Table> = Table::of(budget_columns(&self.document.budgets)),

@@ -142,8 +142,7 @@ impl Beyond {
     ) -> Result<Self, SimulateError> {
         let (tested, contact) = (material.range(), material.contact());
         let way = Way::of(drive, contact)?;
-        let end = course.time.last().copied().unwrap_or(0.0);
-        let extrapolations = extrapolations(tested, &way, course, end);
+        let extrapolations = extrapolations(tested, &way, course);
         let body = contact.specimen();
         let mut beyond = Self {
             extrapolations,
@@ -193,8 +192,8 @@ impl Beyond {
     }
 }
 
-fn extrapolations(tested: &CalibrationRange, way: &Way, course: &Trajectory, end: f64) -> Vec<Extrapolation> {
-    let done = way.until(end);
+fn extrapolations(tested: &CalibrationRange, way: &Way, course: &Trajectory) -> Vec<Extrapolation> {
+    let done = way.until(f64::INFINITY);
     let most = |values: &[f64]| values.iter().copied().fold(0.0, f64::max);
     type Requested = (f64, f64, fn(f64, f64) -> Extrapolation);
     let kinds: [Requested; 5] = [
@@ -223,6 +222,6 @@ fn extrapolations(tested: &CalibrationRange, way: &Way, course: &Trajectory, end
             tested: tested.loadings,
         });
     }
-    found.extend(way.holds_force(end).then_some(Extrapolation::ForceHeld));
+    found.extend(way.holds_force().then_some(Extrapolation::ForceHeld));
     found
 }

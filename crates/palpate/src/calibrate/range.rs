@@ -152,11 +152,9 @@ impl Way {
         }
     }
 
-    /// Whether a force is prescribed before a time (s).
-    pub(super) fn holds_force(&self, until: f64) -> bool {
-        self.corners
-            .windows(2)
-            .any(|pair| pair[0].time < until && matches!(pair[1].held, Held::Force | Held::Pressed))
+    /// Whether a force is prescribed.
+    pub(super) fn holds_force(&self) -> bool {
+        self.corners.iter().any(|corner| matches!(corner.held, Held::Force | Held::Pressed))
     }
 
     /// What the jaw has done up to a time (s).
