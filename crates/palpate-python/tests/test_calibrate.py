@@ -283,7 +283,7 @@ def test_an_instrument_gives_budgets(record: palpate.Record) -> None:
     assert pickle.loads(pickle.dumps(material)) == material and "[[calibration.systematic]]" in material.to_toml()
     analysis = record.analyze(test=test)
     strains = polars.DataFrame(analysis.budgets).filter(polars.col("parameter") == "equilibrium")
-    assert set(strains["hold"]) == {1, 2, 3, 4, 5} and strains["combined_standard_uncertainty"].min() > 0
+    assert set(strains["hold"]) == {1, 2, 3, 4, 5} and (strains["combined_standard_uncertainty"].to_numpy() > 0).all()
     assert len(record.calibrate(alternatives=[]).budgets) == 0
 
 

@@ -79,6 +79,7 @@ def test_all_of_it_comes_back(found: palpate.SeveralCalibrations) -> None:
 def test_its_text_is_that_of_the_command_line(batch: list[palpate.Record], tmp_path: Path) -> None:
     paths = [tmp_path / f"{index}.csv" for index in range(3)]
     for path, record in zip(paths, batch):
+        assert record.displacement_m is not None
         columns = np.column_stack([record.time_s, 1e3 * record.displacement_m, record.force_n])
         np.savetxt(path, columns, delimiter=",", header="time (s),displacement (mm),force (N)", comments="", fmt="%.17g")
     test = tmp_path / "ball.toml"
