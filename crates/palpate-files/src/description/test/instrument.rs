@@ -196,10 +196,39 @@ pub(super) fn checked(
         belongs(source, key, geometry, specimen)?;
         inputs.push(InstrumentInput {
             quantity: key.1,
-            uncertainty: uncertain.checked(source, key)?,
+            uncertainty: believable(source, key, uncertain.checked(source, key)?, geometry)?,
         });
     }
     Ok(Instrument { inputs })
+}
+
+/// Refuses an uncertainty that no instrument has: a slip of the exponent or of the unit.
+fn believable(
+    source: &Source<'_>,
+    (name, quantity, ..): Key,
+    input: InputQuantity,
+    geometry: Option<&Geometry>,
+) -> Result<InputQuantity, DescriptionError> {
+    let shape = geometry.map(|geometry| &geometry.shape);
+    let most = match quantity {
+        InstrumentQuantity::Body { dimension } => shape.and_then(|shape| shape.dimension(dimension)),
+        InstrumentQuantity::Modulus => geometry.and_then(|geometry| geometry.modulus),
+        InstrumentQuantity::Force => Some(1e6),
+        InstrumentQuantity::ForceGain
+        | InstrumentQuantity::DisplacementGain
+        | InstrumentQuantity::Compliance
+        | InstrumentQuantity::Displacement
+        | InstrumentQuantity::Touch => Some(1.0),
+        InstrumentQuantity::Temperature { .. } => Some(1e3),
+    };
+    let most = most.unwrap_or(f64::INFINITY);
+    if input.standard_uncertainty < most {
+        return Ok(input);
+    }
+    let unit = quantity.unit();
+    let expected = format!("a standard uncertainty below {most} {unit}");
+    let found = format!("{} {unit}", input.standard_uncertainty);
+    Err(source.value(format!("instrument.{name}"), expected, &found))
 }
 
 /// Refuses what the body of the test does not have.

@@ -355,6 +355,8 @@ fn an_instrument_that_says_nothing_is_refused() {
         ("temperature = \"0.5 K\"", "instrument.temperature.modulus_per_k", "what it changes", ""),
         ("modulus = \"1 kPa\"", "instrument.modulus", "given modulus", ""),
         ("area = \"1 mm^2\"", "instrument.area", "whose sizes are radius", "state radius"),
+        ("radius = \"70 mm\"", "instrument.radius", "below 0.035 m", ""),
+        ("force = \"1e300 N\"", "instrument.force", "below 1000000 N", ""),
         ("loadcell = \"1 N\"", "instrument.loadcell", "force", ""),
     ] {
         says(test(&format!("{ball}[instrument]\n{instrument}")), key, message, hint);
