@@ -368,6 +368,20 @@ pub fn suited(unit: &str, largest: f64) -> (&str, f64) {
     (symbol, if factor > 1.0 { factor.round() } else { factor })
 }
 
+/// The name of a parameter without the unit that it ends in: `rate_coefficient` of `rate_coefficient_per_s`.
+///
+/// ```
+/// use palpate::units::without_unit;
+/// assert_eq!(["time_constant_1_s", "modulus_pa", "exponent"].map(without_unit), ["time_constant_1", "modulus", "exponent"]);
+/// ```
+#[must_use]
+pub fn without_unit(name: &str) -> &str {
+    ["_per_s", "_pa", "_n", "_m", "_s"]
+        .into_iter()
+        .find_map(|unit| name.strip_suffix(unit))
+        .unwrap_or(name)
+}
+
 /// A value of this unit in words, in the unit that suits its size: `284 mN`.
 ///
 /// ```

@@ -3,7 +3,7 @@
 use palpate::calibrate::{
     CalibrateError, Calibration, CalibrationData, CalibrationRange, Candidate, Material, ParameterProfile, RateLaw,
 };
-use palpate::fit::Termination;
+use palpate::fit::{NoiseModel, Termination};
 use palpate::number::significant;
 use palpate::units::quantity;
 
@@ -111,6 +111,11 @@ impl CalibratedRecord {
     }
 }
 
+/// Whether residuals of this noise and of this share of the peak force show a law that does not describe all of the record.
+pub(super) fn are_systematic(noise: NoiseModel, relative: f64) -> bool {
+    relative > 5e-3 && noise.correlations(1).first().is_some_and(|correlation| *correlation > 0.9)
+}
+
 /// The remark where no instrument is described.
 const EXACT: &str = "The intervals are those of the scatter of the samples (Type A): load cell, displacement, first touch and the sizes of the body count as exact. [instrument] in the test description states their uncertainty.";
 
@@ -149,8 +154,7 @@ fn remarks_of(made: &Calibration) -> Vec<String> {
         let how = how.replace("{}", name);
         remarks.push(format!("The record {how}. Holds of different excess strain would determine it."));
     }
-    let correlation = made.noise.correlations(1).first().copied().unwrap_or(0.0);
-    if correlation > 0.9 && made.relative > 5e-3 {
+    if are_systematic(made.noise, made.relative) {
         remarks.push(format!(
             "The residuals ({} % of the peak) are systematic: the law does not describe all of the record. Standard errors and intervals account for their correlation, not for a law of another form; --fit-until reports a held-out error.",
             significant(100.0 * made.relative, 2)

@@ -3,7 +3,7 @@
 use palpate::calibrate::{BatchParameter, Between, CalibratedSpecimen, CalibrationData, SeveralCalibration};
 use palpate::number::{counted, significant};
 
-use super::calibrated::{formula_of_material, range_remark};
+use super::calibrated::{are_systematic, formula_of_material, range_remark};
 use super::input::Input;
 use super::parameters::parameter_title;
 use super::words::percent;
@@ -93,9 +93,7 @@ impl CalibratedBatch {
             remarks
                 .push(format!("The bodies differ in geometry: the material has that of {}.", found.specimens[0].name));
         }
-        let systematic = |specimen: &&CalibratedSpecimen| {
-            specimen.relative > 5e-3 && specimen.noise.correlations(1).first().is_some_and(|lag| *lag > 0.9)
-        };
+        let systematic = |specimen: &&CalibratedSpecimen| are_systematic(specimen.noise, specimen.relative);
         let systematic: Vec<&str> =
             found.specimens.iter().filter(systematic).map(|specimen| specimen.name.as_str()).collect();
         if !systematic.is_empty() {

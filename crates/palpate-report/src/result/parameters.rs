@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use palpate::calibrate::{Material, MaterialParameter, MaterialUnit};
 use palpate::fit::{Estimate, Fit, Parameter, ParameterRole, ParameterUnit};
-use palpate::units::suited;
+use palpate::units::{suited, without_unit};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -32,8 +32,7 @@ pub struct ParameterDocument {
 /// A parameter as people name it: without the unit, which stands beside it. `time_constant_1_s` is "time constant 1".
 #[must_use]
 pub fn parameter_title(name: &str) -> String {
-    let stem = ["_per_s", "_pa", "_n", "_m", "_s"].into_iter().find_map(|unit| name.strip_suffix(unit));
-    stem.unwrap_or(name).replace('_', " ")
+    without_unit(name).replace('_', " ")
 }
 
 /// Parameters by their names.

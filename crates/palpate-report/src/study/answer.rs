@@ -11,6 +11,7 @@ use crate::result::{
     percent, word,
 };
 use crate::table::{Cell, Table};
+use crate::word::capitalised;
 use crate::wrap::{indented, width, wrapped};
 
 /// Up to so many holds each has its parameters below its formula; more share a table.
@@ -135,9 +136,7 @@ pub(super) fn parameters_of_holds(record: &ComparedRecord, answer: &Answer) -> O
 
 /// A parameter as a heading names it: without its unit, which stands behind it.
 fn heading(name: &str) -> String {
-    let name = parameter_title(name);
-    let mut letters = name.chars();
-    letters.next().map_or(String::new(), |first| first.to_uppercase().chain(letters).collect())
+    capitalised(&parameter_title(name))
 }
 
 /// The findings that matter most, cautions and warnings alone.

@@ -6,6 +6,7 @@ use palpate::units::suited;
 use crate::number::significant;
 use crate::result::{BudgetedResult, parameter_title, percent, word};
 use crate::table::{Cell, Table};
+use crate::word::capitalised;
 
 /// Both tables; none without results.
 pub(super) fn tables(results: &[BudgetedResult], confidence: f64) -> Vec<Table> {
@@ -71,7 +72,5 @@ fn contributions(results: &[BudgetedResult], confidence: f64) -> Table {
 
 /// A name as a heading.
 fn title(name: &str) -> String {
-    let name = name.replace('_', " ");
-    let mut letters = name.chars();
-    letters.next().map_or(String::new(), |first| first.to_uppercase().chain(letters).collect())
+    capitalised(&name.replace('_', " "))
 }

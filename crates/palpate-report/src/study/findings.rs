@@ -5,6 +5,7 @@ use palpate::analysis::{Analysis, Finding as RecordFinding, HoldAnalysis, Severi
 use crate::page::Finding;
 use crate::result::{ComparedRecord, word};
 use crate::spelling::with_flags;
+use crate::word::capitalised;
 use crate::wrap::{indented, width};
 
 /// Different words for one code that are written out; more are counted.
@@ -35,7 +36,7 @@ impl Gathered {
             self.lines.first().map_or(("", ""), |(place, observed)| (place.as_str(), observed.as_str()));
         let severity = word(self.severity);
         let place = if place.is_empty() { String::new() } else { format!(", {}", place.to_lowercase()) };
-        format!("{}{}{place}: {observed}.", severity[..1].to_uppercase(), &severity[1..])
+        format!("{}{place}: {observed}.", capitalised(&severity))
     }
 
     /// As a page shows it.
@@ -178,9 +179,7 @@ fn holds_named(holds: &[usize]) -> String {
 }
 
 fn sentence(text: &str) -> String {
-    let mut characters = text.chars();
-    let first = characters.next().map(|c| c.to_uppercase().to_string()).unwrap_or_default();
-    format!("{first}{}.", characters.as_str())
+    format!("{}.", capitalised(text))
 }
 
 /// All findings of a compared record and of its holds.

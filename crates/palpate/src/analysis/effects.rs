@@ -92,8 +92,10 @@ impl<'a> Causes<'a> {
     /// The uncertainty of the modulus that the equilibrium forces imply.
     pub(in crate::analysis) fn of_modulus(&self, implied: &ImpliedModulus) -> EstimatedModulus {
         let effect = |(cause, input): (&Cause, &InputQuantity)| match cause {
-            Cause::Stated(_) => {
-                let sides = sides(input, |by| self.modulus(*cause, by));
+            Cause::Stated(quantity) => {
+                // At the temperature that is stated.
+                let at_stated = |by| 1.0 + Deviation::of(*quantity, by).modulus_at_temperature;
+                let sides = sides(input, |by| Some(self.modulus(*cause, by)? / at_stated(by)));
                 sides.map_or(0.0, |[low, high]| 0.5 * (high - low))
             }
             // Its own scatter.
@@ -113,7 +115,7 @@ impl<'a> Causes<'a> {
         normal_factor(self.options.fit.confidence)
     }
 
-    /// The modulus of the body at the test, Pa, and what of it a change of the temperature leaves to the reported one.
+    /// The modulus of the body at the test with a cause off its estimate by `by`, Pa.
     fn modulus(&self, cause: Cause, by: f64) -> Option<f64> {
         let geometry = self.geometry?;
         match (cause, self.implied, geometry.modulus) {
@@ -143,13 +145,8 @@ impl<'a> Causes<'a> {
         let per_strain = |specimen: &Specimen, displacement: f64| {
             Some(specimen.force(1.0, specimen.contact_displacement(displacement))).filter(|force| *force > 0.0)
         };
-        // The temperature of the test is that of an estimated modulus, too.
-        let modulus = match (cause, self.implied) {
-            (Cause::Stated(InstrumentQuantity::Temperature { .. }), Some(implied)) => implied.value,
-            _ => self.modulus(cause, by)?,
-        };
         let geometry = self.geometry?;
-        let body = geometry.with_shape(deviation.shape(&geometry.shape)).specimen(modulus).ok()?;
+        let body = geometry.with_shape(deviation.shape(&geometry.shape)).specimen(self.modulus(cause, by)?).ok()?;
         let before = per_strain(specimen, level)?;
         let after = per_strain(&body, deviation.displacement(level, hold.force_end))?;
         Some(Changed {

@@ -70,12 +70,6 @@ pub enum InputError {
         /// What was given.
         found: f64,
     },
-    /// A coverage factor that is not a finite number above zero.
-    #[error("a coverage factor must be a finite number above 0, found {found}")]
-    CoverageFactor {
-        /// What was given.
-        found: f64,
-    },
     /// Fewer than one degree of freedom.
     #[error("degrees of freedom must be 1 or more, found {found}")]
     Freedom {
@@ -137,28 +131,6 @@ impl InputQuantity {
         Ok(Self {
             distribution,
             ..Self::standard(name, unit, estimate, half_width / factor)?
-        })
-    }
-
-    /// The same quantity with an expanded uncertainty U = k u in place of its own (JCGM 100, 4.3.3).
-    ///
-    /// # Errors
-    /// [`InputError::Negative`] and [`InputError::CoverageFactor`].
-    pub fn expanded(self, uncertainty: f64, coverage_factor: f64) -> Result<Self, InputError> {
-        if !(coverage_factor.is_finite() && coverage_factor > 0.0) {
-            return Err(InputError::CoverageFactor { found: coverage_factor });
-        }
-        let Self {
-            distribution,
-            freedom,
-            evaluation,
-            ..
-        } = self;
-        Ok(Self {
-            distribution,
-            freedom,
-            evaluation,
-            ..Self::standard(self.name, self.unit, self.estimate, uncertainty / coverage_factor)?
         })
     }
 

@@ -1,8 +1,7 @@
 //! What the noise of the measured displacement adds to the errors of the parameters.
 
 use super::CalibrationData;
-use super::problem::{Found, Problem, dot};
-use crate::optimise::Cholesky;
+use super::problem::{Found, Problem, Response};
 use crate::simulate::Motion;
 use crate::watch::{Cancelled, Stages};
 
@@ -24,9 +23,7 @@ pub(super) fn from_displacement(
     let Some(measured) = data.measured().filter(|measured| measured.noise > 0.0) else {
         return Ok(None);
     };
-    let size = open.len();
-    let normal: Vec<f64> = (0..size * size).map(|at| dot(&open[at / size], &open[at % size])).collect();
-    let Some(factor) = Cholesky::new(&normal, size) else {
+    let Some(response) = Response::new(open) else {
         return Ok(None);
     };
     let motion = data.motion();
@@ -58,9 +55,7 @@ pub(super) fn from_displacement(
         .map(|moved| {
             let change: Vec<f64> =
                 found.residuals.iter().zip(moved).map(|(still, moved)| (still - moved) / step).collect();
-            let mut effect: Vec<f64> = open.iter().map(|column| dot(column, &change)).collect();
-            factor.solve(&mut effect);
-            effect
+            response.to(&change)
         })
         .collect();
     let covariance = measured.covariance(&chosen);
@@ -70,5 +65,6 @@ pub(super) fn from_displacement(
         };
         every as f64 * covariance.iter().enumerate().map(row).sum::<f64>()
     };
+    let size = open.len();
     Ok(Some((0..size).map(|i| (0..size).map(|j| entry(i, j)).collect()).collect()))
 }

@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::range::{Held, Way, equilibrium_force};
+use super::range::{Held, Way};
 use super::{CalibrationRange, Material};
 use crate::number::significant;
 use crate::simulate::{Drive, Sampling, SimulateError, Trajectory, simulate_watched};
@@ -144,6 +144,7 @@ impl Beyond {
         let way = Way::of(drive, contact)?;
         let extrapolations = extrapolations(tested, &way, course);
         let body = contact.specimen();
+        let relaxed_at = |displacement: f64| body.equilibrium_force(body.contact_displacement(displacement));
         let mut beyond = Self {
             extrapolations,
             force: vec![0.0; course.len()],
@@ -154,13 +155,14 @@ impl Beyond {
         }
         // Samples in a hold that lasts longer than any of the test, and when it had lasted as long.
         let mut longer: Vec<(usize, f64)> = Vec::new();
+        let mut jaw = way.follow();
         for (index, time) in course.time.iter().enumerate() {
             let (force, displacement) = (course.force[index], course.displacement[index]);
-            let done = way.until(*time);
-            let relaxed = equilibrium_force(body, displacement);
+            let done = jaw.until(*time);
+            let relaxed = relaxed_at(displacement);
             let mut add = |error: f64| beyond.force[index] += error * error;
             if displacement > MORE * tested.deepest && relaxed > 0.0 {
-                add(BY_LAW * force * (1.0 - equilibrium_force(body, tested.deepest) / relaxed));
+                add(BY_LAW * force * (1.0 - relaxed_at(tested.deepest) / relaxed));
             }
             if done.fastest > MORE * tested.fastest {
                 add(BY_LAW * (force - relaxed) * (1.0 - tested.fastest / done.fastest));
@@ -193,7 +195,7 @@ impl Beyond {
 }
 
 fn extrapolations(tested: &CalibrationRange, way: &Way, course: &Trajectory) -> Vec<Extrapolation> {
-    let done = way.until(f64::INFINITY);
+    let done = way.follow().until(f64::INFINITY);
     let most = |values: &[f64]| values.iter().copied().fold(0.0, f64::max);
     type Requested = (f64, f64, fn(f64, f64) -> Extrapolation);
     let kinds: [Requested; 5] = [

@@ -109,15 +109,17 @@ pub fn calibrate(
     {
         return Err(CalibrateError::FactorUnseen { missing });
     }
-    let assessed = match &jacobian {
+    let gradients = gradients(&prepared, &found.theta, &open);
+    let (assessed, systematic) = match &jacobian {
         Some(jacobian) => {
             let columns: Vec<Vec<f64>> = open.iter().map(|i| jacobian[*i].clone()).collect();
             let of_displacement = from_displacement(&problem, data, &found, &columns, &mut stages)?;
+            let systematic = systematic_effects(&problem, data, &found, (&columns, &gradients), &mut stages)?;
             let mut assessed = Assessed::of_columns(columns, found.residuals.clone(), confidence)?;
             of_displacement.iter().for_each(|covariance| assessed.add(covariance));
-            Some(assessed)
+            (Some(assessed), systematic)
         }
-        None => None,
+        None => (None, Vec::new()),
     };
     let is_reported = assessed.as_ref().is_some_and(|assessed| assessed.uncertainty.is_some());
     let termination = match found.termination {
@@ -128,14 +130,6 @@ pub fn calibrate(
         }
         Termination::Converged if !is_reported => Termination::Singular,
         other => other,
-    };
-    let gradients = gradients(&prepared, &found.theta, &open);
-    let systematic = match &jacobian {
-        Some(jacobian) => {
-            let columns: Vec<Vec<f64>> = open.iter().map(|i| jacobian[*i].clone()).collect();
-            systematic_effects(&problem, data, &found, (&columns, &gradients), &mut stages)?
-        }
-        None => Vec::new(),
     };
     let values = prepared.values(&found.theta);
     let is_found = termination == Termination::Converged;

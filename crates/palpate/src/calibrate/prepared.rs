@@ -169,7 +169,7 @@ impl Prepared {
             return vec![modulus.ln()];
         }
         let specimen = &self.specimen;
-        let per_unit = |u: &f64| (modulus * specimen.force(specimen.equilibrium_strain(*u), *u) / u).ln();
+        let per_unit = |u: &f64| (modulus * specimen.equilibrium_force(*u) / u).ln();
         let logs: Vec<f64> = self.body.levels.iter().map(per_unit).collect();
         let mut rises: Vec<f64> = logs.windows(2).map(|pair| (pair[1] - pair[0]).max(0.0)).collect();
         rises.insert(0, logs[0]);

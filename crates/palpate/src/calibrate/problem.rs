@@ -248,6 +248,31 @@ impl<'a> Problem<'a> {
     }
 }
 
+/// What least squares answer to a change of the residuals: parameters move by (JᵀJ)⁻¹ Jᵀ δr, with J by columns.
+pub(super) struct Response<'a> {
+    columns: &'a [Vec<f64>],
+    factor: Cholesky,
+}
+
+impl<'a> Response<'a> {
+    /// `None` where JᵀJ is singular.
+    pub(super) fn new(columns: &'a [Vec<f64>]) -> Option<Self> {
+        let size = columns.len();
+        let normal: Vec<f64> = (0..size * size).map(|at| dot(&columns[at / size], &columns[at % size])).collect();
+        Some(Self {
+            columns,
+            factor: Cholesky::new(&normal, size)?,
+        })
+    }
+
+    /// The move of the parameters.
+    pub(super) fn to(&self, change: &[f64]) -> Vec<f64> {
+        let mut moved: Vec<f64> = self.columns.iter().map(|column| dot(column, change)).collect();
+        self.factor.solve(&mut moved);
+        moved
+    }
+}
+
 /// Relative fall of the squared residual below which a step counts as none.
 const GAIN: f64 = 1e-10;
 

@@ -2,7 +2,6 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::contact::Specimen;
 use crate::simulate::{Contact, Drive, Motion, ProgramStep, Sampling, SimulateError, simulate, step_ends};
 
 /// Range of the test; predictions beyond it are extrapolations.
@@ -157,10 +156,10 @@ impl Way {
         self.corners.iter().any(|corner| matches!(corner.held, Held::Force | Held::Pressed))
     }
 
-    /// What the jaw has done up to a time (s).
-    pub(super) fn until(&self, time: f64) -> Done {
+    /// Follows the jaw from its start.
+    pub(super) fn follow(&self) -> Follower<'_> {
         let first = self.corners[0];
-        let mut done = Done {
+        let done = Done {
             deepest: first.displacement,
             retreat: 0.0,
             loadings: 0,
@@ -171,59 +170,90 @@ impl Way {
             from: first.displacement,
             longest_hold: 0.0,
         };
-        // The last turn: the lowest place before a loading, the deepest before a retreat.
-        let (mut is_loading, mut turn) = (false, first.displacement);
-        for pair in self.corners.windows(2) {
-            let (start, end) = (pair[0], pair[1]);
-            if start.time > time {
-                break;
-            }
-            let whole = end.time - start.time;
-            let share = if time < end.time { (time - start.time) / whole } else { 1.0 };
-            let place = start.displacement + share * (end.displacement - start.displacement);
-            if end.held != done.held || matches!(end.held, Held::Nothing | Held::Pressed) {
-                (done.held, done.since, done.from) = (end.held, start.time, start.displacement);
-            }
-            match end.held {
-                Held::Displacement => {
-                    done.longest_hold = done.longest_hold.max(time.min(end.time) - done.since);
-                }
-                Held::Nothing if whole > 0.0 => {
-                    let speed = (end.displacement - start.displacement).abs() / whole;
-                    done.slowest = done.slowest.min(speed);
-                    done.fastest = done.fastest.max(speed);
-                }
-                Held::Nothing | Held::Pressed | Held::Force => {}
-            }
-            done.deepest = done.deepest.max(place);
-            done.retreat = done.retreat.max(done.deepest - place);
-            if is_loading {
-                turn = turn.max(place);
-                if place < turn - self.least {
-                    (is_loading, turn) = (false, place);
-                }
-            } else {
-                turn = turn.min(place);
-                if place > turn + self.least {
-                    (is_loading, turn) = (true, place);
-                    done.loadings += 1;
-                }
-            }
+        Follower {
+            way: self,
+            next: 1,
+            state: State {
+                done,
+                is_loading: false,
+                turn: first.displacement,
+            },
         }
-        if !done.slowest.is_finite() {
-            done.slowest = 0.0;
+    }
+}
+
+/// Follows the jaw through a drive, stretch by stretch.
+pub(super) struct Follower<'a> {
+    way: &'a Way,
+    /// The corner at the end of the stretch that has not ended.
+    next: usize,
+    /// At its start.
+    state: State,
+}
+
+/// What the jaw has done, and where it turned last: the lowest place before a loading, the deepest before a retreat.
+#[derive(Debug, Clone, Copy)]
+struct State {
+    done: Done,
+    is_loading: bool,
+    turn: f64,
+}
+
+impl Follower<'_> {
+    /// What the jaw has done up to a time (s), not before the one of the last call.
+    pub(super) fn until(&mut self, time: f64) -> Done {
+        let (corners, least) = (&self.way.corners, self.way.least);
+        while let Some(end) = corners.get(self.next).filter(|end| end.time <= time) {
+            self.state.go(corners[self.next - 1], *end, end.time, least);
+            self.next += 1;
         }
-        if done.retreat < self.least {
-            done.retreat = 0.0;
+        let mut now = self.state;
+        if let Some(end) = corners.get(self.next).filter(|_| corners[self.next - 1].time <= time) {
+            now.go(corners[self.next - 1], *end, time, least);
         }
-        done
+        let Done { slowest, retreat, .. } = now.done;
+        Done {
+            slowest: if slowest.is_finite() { slowest } else { 0.0 },
+            retreat: if retreat < least { 0.0 } else { retreat },
+            ..now.done
+        }
+    }
+}
+
+impl State {
+    /// Goes on through a stretch up to a time (s) in it; `least` is what counts as a turn, m.
+    fn go(&mut self, start: Corner, end: Corner, time: f64, least: f64) {
+        let Self { done, is_loading, turn } = self;
+        let whole = end.time - start.time;
+        let share = if time < end.time { (time - start.time) / whole } else { 1.0 };
+        let place = start.displacement + share * (end.displacement - start.displacement);
+        if end.held != done.held || matches!(end.held, Held::Nothing | Held::Pressed) {
+            (done.held, done.since, done.from) = (end.held, start.time, start.displacement);
+        }
+        match end.held {
+            Held::Displacement => done.longest_hold = done.longest_hold.max(time - done.since),
+            Held::Nothing if whole > 0.0 => {
+                let speed = (end.displacement - start.displacement).abs() / whole;
+                done.slowest = done.slowest.min(speed);
+                done.fastest = done.fastest.max(speed);
+            }
+            Held::Nothing | Held::Pressed | Held::Force => {}
+        }
+        done.deepest = done.deepest.max(place);
+        done.retreat = done.retreat.max(done.deepest - place);
+        *turn = if *is_loading { turn.max(place) } else { turn.min(place) };
+        let has_turned = if *is_loading { place < *turn - least } else { place > *turn + least };
+        if has_turned {
+            (*is_loading, *turn) = (!*is_loading, place);
+            done.loadings += u32::from(*is_loading);
+        }
     }
 }
 
 impl CalibrationRange {
     /// Of a motion of the jaw up to a time (s), with the largest force until then (N).
     pub(super) fn of(motion: &Motion, until: f64, largest_force: f64) -> Self {
-        let done = Way::of_motion(motion).until(until);
+        let done = Way::of_motion(motion).follow().until(until);
         Self {
             longest_hold: done.longest_hold,
             deepest: done.deepest,
@@ -236,8 +266,23 @@ impl CalibrationRange {
     }
 }
 
-/// Force (N) that a body tends to at a displacement of the jaw (m).
-pub(super) fn equilibrium_force(body: &Specimen, displacement: f64) -> f64 {
-    let u = body.contact_displacement(displacement);
-    body.force(body.equilibrium_strain(u), u)
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::simulate::{ProtocolStep, protocol};
+
+    #[test]
+    fn the_jaw_is_followed_alike_at_once_and_step_by_step() {
+        let step = |to: f64, hold: f64| ProtocolStep { to, rate: 5e-3, hold };
+        let motion =
+            protocol(&[step(0.01, 5.0), step(0.004, 3.0), step(0.012, 8.0), step(0.0, 1.0), step(0.01, 2.0)]).unwrap();
+        let way = Way::of_motion(&motion);
+        let mut jaw = way.follow();
+        for time in (0..=(20.0 * motion.end()) as u32).map(|i| 0.05 * f64::from(i)) {
+            assert_eq!(jaw.until(time), way.follow().until(time), "{time}");
+        }
+        let done = jaw.until(f64::INFINITY);
+        assert_eq!((done.loadings, done.deepest), (3, 0.012));
+        assert!((done.retreat - 0.012).abs() < 1e-12 && (done.longest_hold - 8.0).abs() < 1e-9, "{done:?}");
+    }
 }

@@ -1,10 +1,9 @@
 //! What the uncertainty of the instrument and of the body adds to the errors of the parameters.
 
 use super::prepared::Prepared;
-use super::problem::{Found, Problem, dot};
+use super::problem::{Found, Problem, Response, dot};
 use super::{CalibrationData, MaterialUnit, SystematicEffect};
 use crate::instrument::{Deviation, InstrumentInput, InstrumentQuantity};
-use crate::optimise::Cholesky;
 use crate::parallel::for_each;
 use crate::simulate::Motion;
 use crate::watch::{Cancelled, Stages};
@@ -21,9 +20,7 @@ pub(super) fn systematic_effects(
     (open, gradients): (&[Vec<f64>], &[Vec<f64>]),
     stages: &mut Stages<'_>,
 ) -> Result<Vec<SystematicEffect>, Cancelled> {
-    let size = open.len();
-    let normal: Vec<f64> = (0..size * size).map(|at| dot(&open[at / size], &open[at % size])).collect();
-    let Some(factor) = Cholesky::new(&normal, size) else {
+    let Some(response) = Response::new(open) else {
         return Ok(Vec::new());
     };
     stages.hear()?;
@@ -37,8 +34,7 @@ pub(super) fn systematic_effects(
         let share = if low.is_some() && high.is_some() { 0.5 } else { 1.0 };
         let (low, high) = (low.as_ref().or(still.as_ref())?, high.as_ref().or(still.as_ref())?);
         let change: Vec<f64> = low.residuals.iter().zip(&high.residuals).map(|(l, h)| share * (h - l)).collect();
-        let mut moved: Vec<f64> = open.iter().map(|column| dot(column, &change)).collect();
-        factor.solve(&mut moved);
+        let moved = response.to(&change);
         let direct = low.logs.iter().zip(&high.logs).map(|(low, high)| share * (high - low));
         let through = |index: usize| gradients.get(index).map_or(0.0, |gradient| dot(gradient, &moved));
         let logs: Vec<f64> = direct.enumerate().map(|(index, direct)| direct + through(index)).collect();

@@ -148,7 +148,7 @@ impl Specimen {
     /// // 4/3 · 100 kPa/0.75 · √(20 mm) · (1 mm)^(3/2) = 0.795 N
     /// let ball = Specimen::new(Shape::Ball { radius: 0.02 }, 1e5, Sides::One)?;
     /// let ball = ball.with_equilibrium(Equilibrium::Hertz { poisson_ratio: 0.5 })?;
-    /// assert!((ball.force(ball.equilibrium_strain(1e-3), 1e-3) - 0.795_046_5).abs() < 1e-6);
+    /// assert!((ball.equilibrium_force(1e-3) - 0.795_046_5).abs() < 1e-6);
     ///
     /// // A conical tip of 35° on a gel of 1 kPa that is thick against its indentation of 0.5 µm:
     /// // 2/π · 1 kPa/0.75 · tan 35° · (0.5 µm)² = 0.1486 nN
@@ -232,6 +232,12 @@ impl Specimen {
             Equilibrium::UniformStrain => self.modulus * strain * self.contact_area(contact_displacement),
             _ => self.stiffness(contact_displacement).0 * strain,
         }
+    }
+
+    /// Force in N that a contact tends to, F_e(u₁) = S(u₁) u₁/depth.
+    #[must_use]
+    pub fn equilibrium_force(&self, contact_displacement: f64) -> f64 {
+        self.force(self.equilibrium_strain(contact_displacement), contact_displacement)
     }
 
     /// S = E A(u₁), the force per strain of the contact layer (N), and its slope dS/du₁ (N/m).

@@ -185,8 +185,7 @@ impl Grip<'_> {
         };
         let contact = self.material.contact_off(factors)?;
         let body = contact.specimen();
-        let u = body.contact_displacement(displacement);
-        Some(body.force(body.equilibrium_strain(u), u))
+        Some(body.equilibrium_force(body.contact_displacement(displacement)))
     }
 
     /// Central differences, a thousandth to either side, reported per hundredth.

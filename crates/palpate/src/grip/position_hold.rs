@@ -151,8 +151,7 @@ impl<'a> Grip<'a> {
     #[must_use]
     pub fn equilibrium_force(&self, displacement: f64) -> f64 {
         let body = self.contact.specimen();
-        let u = body.contact_displacement(displacement);
-        body.force(body.equilibrium_strain(u), u)
+        body.equilibrium_force(body.contact_displacement(displacement))
     }
 
     /// What becomes of a plan once its end is held in displacement.

@@ -107,8 +107,7 @@ impl Member {
 
     fn equilibrium(&self, displacement: f64) -> f64 {
         let specimen = &self.model.specimen;
-        let place = specimen.contact_displacement(displacement + self.offset).max(0.0);
-        specimen.force(specimen.equilibrium_strain(place), place)
+        specimen.equilibrium_force(specimen.contact_displacement(displacement + self.offset).max(0.0))
     }
 }
 

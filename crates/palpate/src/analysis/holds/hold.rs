@@ -220,7 +220,7 @@ fn take_signal(hold: &mut HoldAnalysis, record: &Record, specimen: Option<&Speci
         (Some(specimen), Some(displacement), Some(level)) => {
             let contact = specimen.contact_displacement(level);
             hold.force_per_signal = specimen.force(1.0, contact);
-            let relaxed = specimen.force(specimen.equilibrium_strain(contact), contact) / specimen.modulus();
+            let relaxed = specimen.equilibrium_force(contact) / specimen.modulus();
             hold.force_per_modulus = Some(relaxed).filter(|force| *force > 0.0);
             // So close to first touch the area is the difference of two nearly equal numbers, but under a tip, whose depth is that of the sample.
             let is_tip = matches!(specimen.shape(), Shape::Indenter { .. });

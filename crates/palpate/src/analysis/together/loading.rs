@@ -42,10 +42,7 @@ pub(in crate::analysis) fn loading_modulus(
     let (displacement, force) = (&displacement[samples.clone()], &record.force()[samples]);
     // Displacements are counted from a touch that may lie by `off` (m) elsewhere.
     let units = |off: f64| {
-        let unit = |travel: &f64| {
-            let u = body.contact_displacement(travel + off).max(0.0);
-            body.force(body.equilibrium_strain(u), u)
-        };
+        let unit = |travel: &f64| body.equilibrium_force(body.contact_displacement(travel + off).max(0.0));
         displacement.iter().map(unit).collect::<Vec<f64>>()
     };
     let modulus = |units: &[f64]| {

@@ -122,7 +122,7 @@ impl ImpliedModulus {
         }
     }
 
-    /// What the same holds imply with a quantity of the instrument off its estimate, Pa, at the temperature that is stated; `None` where they
+    /// What the same holds imply with a quantity of the instrument off its estimate, Pa, at the temperature of the test; `None` where they
     /// imply none.
     pub(in crate::analysis) fn with(&self, geometry: &Geometry, deviation: &Deviation) -> Option<f64> {
         let body = geometry.with_shape(deviation.shape(&geometry.shape)).specimen(1.0).ok()?;
@@ -132,7 +132,7 @@ impl ImpliedModulus {
             ..*found
         };
         let forces: Vec<RelaxedForce> = self.forces.iter().map(changed).collect();
-        Some(weighted(&forces, &body)?.0 / (1.0 + deviation.modulus_at_temperature))
+        Some(weighted(&forces, &body)?.0)
     }
 }
 
@@ -155,8 +155,7 @@ fn weighted(forces: &[RelaxedForce], body: &Specimen) -> Option<(f64, f64)> {
 
 /// The force that a body of 1 Pa keeps at a displacement of the jaw (m), N.
 fn unit_force(body: &Specimen, displacement: f64) -> f64 {
-    let u = body.contact_displacement(displacement);
-    body.force(body.equilibrium_strain(u), u)
+    body.equilibrium_force(body.contact_displacement(displacement))
 }
 
 /// The fits to the force of a hold; `None` where the jaw may not touch the body.

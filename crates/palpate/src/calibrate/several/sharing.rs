@@ -8,6 +8,7 @@ use serde::{Deserialize, Serialize};
 
 use super::SeveralError;
 use crate::calibrate::{Candidate, Material};
+use crate::units::without_unit;
 
 /// Which parameters have one value for all records; the others are each record's own.
 ///
@@ -118,11 +119,6 @@ impl Layout {
     pub(super) fn parameters(&self) -> Vec<usize> {
         self.shared.iter().chain(&self.own).copied().collect()
     }
-}
-
-/// The name of a parameter without its unit.
-fn without_unit(name: &str) -> &str {
-    ["_per_s", "_pa", "_m", "_s", "_n"].iter().find_map(|unit| name.strip_suffix(unit)).unwrap_or(name)
 }
 
 #[cfg(test)]
