@@ -39,13 +39,13 @@ pub(crate) struct InstrumentTable {
     compliance: Option<Uncertain>,
     /// First touch, as far as the record does not show it.
     touch: Option<Uncertain>,
-    /// Radius of a ball or pad.
+    /// Radius of a ball, pad, spherical tip or flat punch.
     radius: Option<Uncertain>,
     /// Diameter of a cylinder.
     diameter: Option<Uncertain>,
     /// Width of a strip.
     width: Option<Uncertain>,
-    /// Thickness of a strip or pad.
+    /// Thickness of a strip, dumbbell or pad, or of the sample under a tip.
     thickness: Option<Uncertain>,
     /// Section of a block.
     area: Option<Uncertain>,
@@ -154,19 +154,17 @@ pub(super) fn checked(
     };
     let body = |dimension| InstrumentQuantity::Body { dimension };
     let shape = geometry.map(|geometry| &geometry.shape);
-    // A strip and a cylinder have a section that follows from what was measured of them.
-    let described = specimen.map(|specimen| specimen.shape);
+    // A strip, a dumbbell and a cylinder have a section that follows from what was measured of them.
+    let is_flat = matches!(specimen.map(|table| table.shape), Some(ShapeName::Strip | ShapeName::Dumbbell));
     let section = |text: Option<&QuantityText>, key: &str, power: f64| -> Result<f64, DescriptionError> {
         let area = shape.and_then(|shape| shape.dimension(ShapeDimension::Area)).unwrap_or(0.0);
         let size = source.positive_if(&format!("specimen.{key}"), text, Dimension::Length)?;
         Ok(size.map_or(1.0, |size| power * area / size))
     };
-    let is_strip = described == Some(ShapeName::Strip);
     let width = section(specimen.and_then(|table| table.width.as_ref()), "width", 1.0)?;
-    let thickness =
-        section(specimen.and_then(|table| table.thickness.as_ref()).filter(|_| is_strip), "thickness", 1.0)?;
+    let thickness = section(specimen.and_then(|table| table.thickness.as_ref()).filter(|_| is_flat), "thickness", 1.0)?;
     let diameter = section(specimen.and_then(|table| table.diameter.as_ref()), "diameter", 2.0)?;
-    let of_thickness = if is_strip { ShapeDimension::Area } else { ShapeDimension::Thickness };
+    let of_thickness = if is_flat { ShapeDimension::Area } else { ShapeDimension::Thickness };
     let entries: [(&Option<Uncertain>, Key); 16] = [
         (&table.force, ("force", InstrumentQuantity::Force, Dimension::Force, 1.0)),
         (&table.force_gain, ("force_gain", InstrumentQuantity::ForceGain, Dimension::Share, 1.0)),

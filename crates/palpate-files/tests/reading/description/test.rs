@@ -314,6 +314,26 @@ fn an_instrument_is_read_with_its_distributions() {
     assert!((inputs[0].uncertainty.standard_uncertainty / (2.0 * area / 0.02 * 1e-4) - 1.0).abs() < 1e-12);
 }
 
+/// The thickness of a dumbbell was refused for a body "whose sizes are width, thickness and length".
+#[test]
+fn an_instrument_knows_the_sizes_of_dumbbells_and_tips() {
+    let dumbbell = r#"
+        specimen = { shape = "dumbbell", thickness = "2 mm", widths = [["0 mm", "12 mm"], ["10 mm", "4 mm"], ["30 mm", "4 mm"], ["40 mm", "12 mm"]] }
+        instrument = { thickness = { standard = "0.05 mm" } }
+    "#;
+    let inputs = test(dumbbell).unwrap().analysis.instrument.inputs;
+    // u(A) = w u(t).
+    assert!((inputs[0].uncertainty.standard_uncertainty / (4e-3 * 5e-5) - 1.0).abs() < 1e-12);
+    let tip = r#"
+        specimen = { shape = "conical tip", half_angle = "35 deg", thickness = "5 um", poisson_ratio = 0.5 }
+        instrument = { half_angle = { standard = "1 deg" }, thickness = "0.2 um" }
+    "#;
+    let inputs = test(tip).unwrap().analysis.instrument.inputs;
+    let names: Vec<&str> = inputs.iter().map(|input| input.quantity.name()).collect();
+    assert_eq!(names, ["thickness", "half_angle"]);
+    assert!((inputs[1].uncertainty.standard_uncertainty - 1f64.to_radians()).abs() < 1e-12);
+}
+
 #[test]
 fn an_instrument_that_says_nothing_is_refused() {
     let ball = "specimen = { shape = \"ball\", radius = \"35 mm\" }\n";
