@@ -78,7 +78,7 @@ pub struct Calibration {
 /// # Errors
 /// [`CalibrateError`] for a law that no contact is simulated with, an equilibrium law that does not go with the body, fewer samples than
 /// parameters, and a force that does not rise with the squeeze; [`CalibrateError::Cancelled`] once `watch` ends it, which hears of every
-/// simulation or two.
+/// step of the search.
 pub fn calibrate(
     data: &CalibrationData,
     candidate: Candidate,
@@ -102,7 +102,7 @@ pub fn calibrate(
     let open: Vec<usize> = (0..free)
         .filter(|i| found.theta[*i] > prepared.searched[*i].low && found.theta[*i] < prepared.searched[*i].high)
         .collect();
-    let jacobian = problem.jacobian(&found.theta, &found.residuals, &mut stages)?;
+    let jacobian = problem.jacobian(&found.theta, &found.residuals);
     if let (Some(missing), Some(factor)) =
         (candidate.rate.needs(), jacobian.as_ref().and_then(|columns| columns.last()))
         && factor.iter().all(|slope| *slope == 0.0)

@@ -29,6 +29,17 @@ pub(super) enum Precision {
     Full,
 }
 
+/// Damped steps on their way to an optimum.
+#[derive(Debug, Clone)]
+pub(super) struct Descent {
+    pub(super) found: Found,
+    damping: f64,
+    /// Relative fall of the squared residual in the last step.
+    pub(super) gain: f64,
+    /// Whether no further step is worth its while.
+    pub(super) is_over: bool,
+}
+
 /// A point of the search.
 #[derive(Debug, Clone)]
 pub(super) struct Found {
@@ -72,17 +83,12 @@ impl<'a> Problem<'a> {
         Some(forces)
     }
 
-    /// Derivatives of the simulated forces by every parameter, column by column, at parameters that leave these residuals.
-    pub(super) fn jacobian(
-        &self,
-        theta: &[f64],
-        residuals: &[f64],
-        stages: &mut Stages<'_>,
-    ) -> Result<Option<Vec<Vec<f64>>>, Cancelled> {
-        stages.hear()?;
+    /// Derivatives of the simulated forces by every parameter, column by column, at parameters that leave these residuals; `None` where one
+    /// cannot be simulated.
+    pub(super) fn jacobian(&self, theta: &[f64], residuals: &[f64]) -> Option<Vec<Vec<f64>>> {
         let simulated: Vec<f64> = self.forces.iter().zip(residuals).map(|(force, residual)| force - residual).collect();
         let columns = for_each(theta.len(), |index| self.slope(theta, &simulated, index));
-        Ok(columns.into_iter().collect())
+        columns.into_iter().collect()
     }
 
     /// Simulations of a Jacobian.
@@ -93,10 +99,10 @@ impl<'a> Problem<'a> {
 
     /// Step of the differences, of a logarithm: a part of what moves the forces, and far more than their error. Closed forms are good to 10⁻¹²; a rate
     /// that depends on the strain is integrated, and its errors over a short step would pass for information.
-    fn step(&self) -> f64 {
+    fn difference(&self) -> f64 {
         match self.prepared.candidate.rate {
             RateLaw::ByStrain => 3e-3,
-            RateLaw::Constant | RateLaw::ByDirection => 1e-4,
+            RateLaw::Constant | RateLaw::ByDirection => 1e-5,
         }
     }
 
@@ -110,7 +116,7 @@ impl<'a> Problem<'a> {
             return Some(vec![0.0; self.times.len()]);
         }
         let bounds = &self.prepared.searched[index];
-        let by = self.step();
+        let by = self.difference();
         let moved = |by: f64| {
             let mut beside = theta.to_vec();
             beside[index] = (theta[index] + by).clamp(bounds.low, bounds.high);
@@ -132,119 +138,148 @@ impl<'a> Problem<'a> {
         self.held.is_some_and(|held| held.searched == searched)
     }
 
-    /// Damped steps from `start` to the nearest optimum inside the bounds; `None` where even the start cannot be simulated.
+    /// Damped steps from `start` to the nearest optimum inside the bounds; `None` where the forces on the way cannot be simulated.
     pub(super) fn descend(
         &self,
         start: &[f64],
         most: usize,
         stages: &mut Stages<'_>,
     ) -> Result<Option<Found>, Cancelled> {
+        let mut descent = self.descent(start);
+        for step in 0..most {
+            stages.reach(step as f64 / most as f64)?;
+            descent = match descent {
+                Some(descent) if !descent.is_over => self.step(descent),
+                ended => return Ok(ended.map(|ended| ended.found)),
+            };
+        }
+        Ok(descent.map(|descent| descent.found))
+    }
+
+    /// The beginning of damped steps from `start`, inside the bounds; `None` where it cannot be simulated.
+    pub(super) fn descent(&self, start: &[f64]) -> Option<Descent> {
         let searched = &self.prepared.searched;
-        let mut theta: Vec<f64> = start.iter().zip(searched).map(|(value, s)| value.clamp(s.low, s.high)).collect();
-        let Some(mut residuals) = self.residuals(&theta) else {
-            return Ok(None);
-        };
-        let mut square = sum_of_squares(&residuals);
-        let (mut damping, mut simulations) = (1e-3, 1);
-        let mut termination = Termination::IterationLimit;
+        let theta: Vec<f64> = start.iter().zip(searched).map(|(value, s)| value.clamp(s.low, s.high)).collect();
+        let residuals = self.residuals(&theta)?;
+        Some(Descent {
+            found: Found {
+                square: sum_of_squares(&residuals),
+                theta,
+                residuals,
+                termination: Termination::IterationLimit,
+                simulations: 1,
+            },
+            damping: 1e-3,
+            gain: f64::INFINITY,
+            is_over: false,
+        })
+    }
+
+    /// One step down, or the end; `None` where a derivative cannot be simulated.
+    pub(super) fn step(&self, mut descent: Descent) -> Option<Descent> {
+        let searched = &self.prepared.searched;
         let (enough, near) = match self.precision {
             Precision::Coarse => (1e-8, 1e-4),
             Precision::Full => (GAIN, 1e-4),
         };
-        'search: for step in 0..most {
-            stages.reach(step as f64 / most as f64)?;
-            let Some(jacobian) = self.jacobian(&theta, &residuals, stages)? else {
-                return Ok(None);
-            };
-            simulations += self.simulations(theta.len());
-            let gradient: Vec<f64> = jacobian.iter().map(|column| dot(column, &residuals)).collect();
-            let pinned = |i: usize| {
-                self.follows(i)
-                    || (theta[i] <= searched[i].low && gradient[i] < 0.0)
-                    || (theta[i] >= searched[i].high && gradient[i] > 0.0)
-            };
-            let free: Vec<usize> = (0..theta.len()).filter(|i| !pinned(*i)).collect();
-            let size = free.len();
-            let mut normal = vec![0.0; size * size];
-            for (a, i) in free.iter().enumerate() {
-                for (b, j) in free.iter().enumerate().take(a + 1) {
-                    normal[a * size + b] = dot(&jacobian[*i], &jacobian[*j]);
-                    normal[b * size + a] = normal[a * size + b];
-                }
-            }
-            loop {
-                let mut damped = normal.clone();
-                for a in 0..size {
-                    let diagonal = &mut damped[a * (size + 1)];
-                    // A floor for a parameter that the data do not feel at all.
-                    *diagonal = diagonal.max(1e-14 * square) * (1.0 + damping);
-                }
-                let mut step: Vec<f64> = free.iter().map(|i| gradient[*i]).collect();
-                match Cholesky::new(&damped, size) {
-                    Some(factor) => factor.solve(&mut step),
-                    None => {
-                        damping = (damping * 10.0).max(1e-6);
-                        if damping > 1e12 {
-                            termination = Termination::Singular;
-                            break 'search;
-                        }
-                        continue;
-                    }
-                }
-                let mut next = theta.clone();
-                for (i, by) in free.iter().zip(&step) {
-                    // The model is trusted over a factor of e², no further.
-                    next[*i] = (theta[*i] + by.clamp(-2.0, 2.0)).clamp(searched[*i].low, searched[*i].high);
-                }
-                let moved = distance(&next, &theta);
-                if moved < 1e-12 || damping > 1e12 {
-                    termination = Termination::Converged;
-                    break 'search;
-                }
-                stages.hear()?;
-                let trial = self.residuals(&next);
-                simulations += 1;
-                let trial_square = trial.as_deref().map_or(f64::INFINITY, sum_of_squares);
-                if trial_square < square
-                    && let Some(trial) = trial
-                {
-                    let gain = square - trial_square;
-                    let taken: Vec<f64> = free.iter().map(|i| next[*i] - theta[*i]).collect();
-                    let predicted: f64 = taken
-                        .iter()
-                        .zip(normal.chunks(size))
-                        .zip(&free)
-                        .map(|((by, row), i)| by * (2.0 * gradient[*i] - dot(row, &taken)))
-                        .sum();
-                    (theta, residuals) = (next, trial);
-                    square = trial_square;
-                    // Where the residual is large the bottom is steeper than the model says: undamped steps would go from one side to the other.
-                    damping = match gain / predicted {
-                        share if share > 0.75 => (damping * 0.1).max(1e-12),
-                        share if share > 0.25 => damping,
-                        _ => (damping * 8.0).max(1e-6),
-                    };
-                    if gain <= enough * square && moved < near {
-                        termination = Termination::Converged;
-                        break 'search;
-                    }
-                    break;
-                }
-                // At a flat bottom rounding decides.
-                if moved < 1e-6 && damping < 1.0 && trial_square <= square * (1.0 + 1e-10) {
-                    termination = Termination::Converged;
-                    break 'search;
-                }
-                damping = (damping * 8.0).max(1e-6);
-            }
-        }
-        Ok(Some(Found {
+        let Descent {
+            found,
+            damping,
+            gain: last,
+            is_over,
+        } = &mut descent;
+        let Found {
             theta,
             residuals,
             square,
             termination,
             simulations,
-        }))
+        } = found;
+        let mut end = |reason: Termination| {
+            *termination = reason;
+            *is_over = true;
+        };
+        let jacobian = self.jacobian(theta, residuals)?;
+        *simulations += self.simulations(theta.len());
+        let gradient: Vec<f64> = jacobian.iter().map(|column| dot(column, residuals)).collect();
+        let pinned = |i: usize| {
+            self.follows(i)
+                || (theta[i] <= searched[i].low && gradient[i] < 0.0)
+                || (theta[i] >= searched[i].high && gradient[i] > 0.0)
+        };
+        let free: Vec<usize> = (0..theta.len()).filter(|i| !pinned(*i)).collect();
+        let size = free.len();
+        let mut normal = vec![0.0; size * size];
+        for (a, i) in free.iter().enumerate() {
+            for (b, j) in free.iter().enumerate().take(a + 1) {
+                normal[a * size + b] = dot(&jacobian[*i], &jacobian[*j]);
+                normal[b * size + a] = normal[a * size + b];
+            }
+        }
+        loop {
+            let mut damped = normal.clone();
+            for a in 0..size {
+                let diagonal = &mut damped[a * (size + 1)];
+                // A floor for a parameter that the data do not feel at all.
+                *diagonal = diagonal.max(1e-14 * *square) * (1.0 + *damping);
+            }
+            let mut step: Vec<f64> = free.iter().map(|i| gradient[*i]).collect();
+            match Cholesky::new(&damped, size) {
+                Some(factor) => factor.solve(&mut step),
+                None => {
+                    *damping = (*damping * 10.0).max(1e-6);
+                    if *damping > 1e12 {
+                        end(Termination::Singular);
+                        return Some(descent);
+                    }
+                    continue;
+                }
+            }
+            let mut next = theta.clone();
+            for (i, by) in free.iter().zip(&step) {
+                // The model is trusted over a factor of e², no further.
+                next[*i] = (theta[*i] + by.clamp(-2.0, 2.0)).clamp(searched[*i].low, searched[*i].high);
+            }
+            let moved = distance(&next, theta);
+            if moved < 1e-12 || *damping > 1e12 {
+                end(Termination::Converged);
+                return Some(descent);
+            }
+            let trial = self.residuals(&next);
+            *simulations += 1;
+            let trial_square = trial.as_deref().map_or(f64::INFINITY, sum_of_squares);
+            if trial_square < *square
+                && let Some(trial) = trial
+            {
+                let gain = *square - trial_square;
+                *last = gain / *square;
+                let taken: Vec<f64> = free.iter().map(|i| next[*i] - theta[*i]).collect();
+                let predicted: f64 = taken
+                    .iter()
+                    .zip(normal.chunks(size))
+                    .zip(&free)
+                    .map(|((by, row), i)| by * (2.0 * gradient[*i] - dot(row, &taken)))
+                    .sum();
+                (*theta, *residuals) = (next, trial);
+                *square = trial_square;
+                // Where the residual is large the bottom is steeper than the model says: undamped steps would go from one side to the other.
+                *damping = match gain / predicted {
+                    share if share > 0.75 => (*damping * 0.1).max(1e-12),
+                    share if share > 0.25 => *damping,
+                    _ => (*damping * 8.0).max(1e-6),
+                };
+                if gain <= enough * *square && moved < near {
+                    end(Termination::Converged);
+                }
+                return Some(descent);
+            }
+            // At a flat bottom rounding decides.
+            if moved < 1e-6 && *damping < 1.0 && trial_square <= *square * (1.0 + 1e-10) {
+                end(Termination::Converged);
+                return Some(descent);
+            }
+            *damping = (*damping * 8.0).max(1e-6);
+        }
     }
 }
 

@@ -5,7 +5,7 @@
 //! 10⁻¹².
 
 use super::prepared::{Prepared, Searched};
-use super::problem::{Found, Precision, Problem, dot, sum_of_squares};
+use super::problem::{Descent, Found, Precision, Problem, dot, sum_of_squares};
 use super::{CalibrateError, CalibrationData};
 use crate::fit::{combinations, distinct};
 use crate::laws::{ExponentChoice, Law};
@@ -58,20 +58,13 @@ pub(super) fn search(
         return Err(refusal(prepared, &coarse));
     }
     // Valleys are distinguished on the simple motion; every knot of a measured one takes its own share of a simulation.
-    let mut descended = |problem: &Problem<'_>, starts: &[Vec<f64>], share: f64, stages: &mut Stages<'_>| {
-        let mut found: Vec<Found> = Vec::new();
-        for start in starts {
-            stages.enter(share / starts.len() as f64);
-            found.extend(problem.descend(start, MOST_STEPS, stages)?);
-        }
-        simulations += found.iter().map(|found| found.simulations).sum::<u64>();
-        found.sort_by(|a, b| a.square.total_cmp(&b.square));
-        Ok::<_, Cancelled>(found)
-    };
     let starts: Vec<Vec<f64>> = starts.into_iter().take(REFINED).collect();
-    let valleys = descended(&coarse, &starts, SHARES[1], stages)?;
-    let valleys: Vec<Vec<f64>> = valleys.into_iter().take(VALLEYS).map(|found| found.theta).collect();
-    let found = descended(&problem(data.motion(), &few_times, &few_forces), &valleys, SHARES[2], stages)?;
+    stages.enter(SHARES[1]);
+    let found = valleys(&coarse, &starts, &mut simulations, stages)?;
+    let deepest: Vec<Vec<f64>> = found.into_iter().take(VALLEYS).map(|found| found.theta).collect();
+    stages.enter(SHARES[2]);
+    let measured = problem(data.motion(), &few_times, &few_forces);
+    let found = valleys(&measured, &deepest, &mut simulations, stages)?;
     let nearest = found.first().ok_or(CalibrateError::NoStiffness)?;
     stages.enter(SHARES[3]);
     let best = whole.descend(&nearest.theta, MOST_LAST_STEPS, stages)?;
@@ -93,6 +86,49 @@ pub(super) fn search(
     }
     Ok(best)
 }
+
+/// The bottoms of the valleys that `starts` lie in, the deepest first. All go down step by step, and of those whose forces have become alike
+/// one goes on.
+fn valleys(
+    problem: &Problem<'_>,
+    starts: &[Vec<f64>],
+    simulations: &mut u64,
+    stages: &mut Stages<'_>,
+) -> Result<Vec<Found>, Cancelled> {
+    let alike = |a: &Descent, b: &Descent| {
+        let apart = a.found.residuals.iter().zip(&b.found.residuals).map(|(a, b)| (a - b).powi(2));
+        apart.sum::<f64>() <= ALIKE * a.found.square
+    };
+    let taken = |descents: &[Descent]| descents.iter().map(|descent| descent.found.simulations).sum::<u64>();
+    let mut descents: Vec<Descent> =
+        for_each(starts.len(), |index| problem.descent(&starts[index])).into_iter().flatten().collect();
+    for step in 0..MOST_STEPS {
+        stages.reach(step as f64 / MOST_STEPS as f64)?;
+        if descents.iter().all(|descent| descent.is_over) {
+            break;
+        }
+        let left = (MOST_STEPS - step) as f64;
+        let next = |index: usize| {
+            let descent = &descents[index];
+            if descent.is_over { Some(descent.clone()) } else { problem.step(descent.clone()) }
+        };
+        let mut stepped: Vec<Descent> = for_each(descents.len(), next).into_iter().flatten().collect();
+        stepped.sort_by(|a, b| a.found.square.total_cmp(&b.found.square));
+        let all = taken(&stepped);
+        descents = distinct(stepped, usize::MAX, alike);
+        *simulations += all - taken(&descents);
+        // At its present pace it will not come as deep as another already is.
+        let deepest = descents.first().map_or(0.0, |first| first.found.square);
+        for descent in &mut descents {
+            descent.is_over |= descent.found.square * (-descent.gain * left).exp() > deepest;
+        }
+    }
+    *simulations += taken(&descents);
+    Ok(descents.into_iter().map(|descent| descent.found).collect())
+}
+
+/// Squared difference of the forces of two descents, as a share of the squared residual, below which they are in one valley.
+const ALIKE: f64 = 1e-2;
 
 /// Which samples stand for all: as many in every stretch between two knots as in any other where there are enough, and more the nearer to
 /// its start, where things change.

@@ -107,17 +107,9 @@ impl Joint<'_> {
     }
 
     /// Derivatives of the forces of a record by the logarithms of its parameters.
-    fn jacobian(
-        &self,
-        record: usize,
-        state: &State,
-        logs: &[f64],
-        stages: &mut Stages<'_>,
-    ) -> Result<Option<Vec<Vec<f64>>>, Cancelled> {
+    fn jacobian(&self, record: usize, state: &State, logs: &[f64]) -> Option<Vec<Vec<f64>>> {
         let problem = &self.members[record].problem;
-        let Some(searched) = problem.jacobian(&state.theta, &state.residuals, stages)? else {
-            return Ok(None);
-        };
+        let searched = problem.jacobian(&state.theta, &state.residuals)?;
         let column = |parameter: usize| {
             let by = slopes(problem.prepared, &self.values(logs, record), parameter)?;
             let mut column = vec![0.0; state.residuals.len()];
@@ -126,7 +118,7 @@ impl Joint<'_> {
             }
             Some(column)
         };
-        Ok(self.layout.parameters().into_iter().map(column).collect())
+        self.layout.parameters().into_iter().map(column).collect()
     }
 
     /// All records near a point; `None` where a derivative cannot be simulated.
@@ -135,7 +127,8 @@ impl Joint<'_> {
         let (mut normal, mut gradient) = (vec![0.0; size * size], vec![0.0; size]);
         let mut jacobians = Vec::with_capacity(states.len());
         for (record, state) in states.iter().enumerate() {
-            let Some(jacobian) = self.jacobian(record, state, logs, stages)? else {
+            stages.hear()?;
+            let Some(jacobian) = self.jacobian(record, state, logs) else {
                 return Ok(None);
             };
             let weight = self.members[record].deviation.powi(-2);

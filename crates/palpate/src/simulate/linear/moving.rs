@@ -140,6 +140,10 @@ impl Moving {
         if self.least(a, b) >= -(a.rounding() + self.unsure) {
             return None;
         }
+        // Lost from the first on: nothing is to be halved.
+        if a.sum() < -(a.rounding() + self.unsure) {
+            return Some(a.time.next_up().min(b.time));
+        }
         let middle = 0.5 * (a.time + b.time);
         if middle <= a.time || middle >= b.time {
             return (b.sum() < 0.0).then_some(b.time);
@@ -196,7 +200,16 @@ impl InMotion for Moving {
     }
 
     fn extend_strains(&self, start: f64, times: &[f64], strains: &mut Vec<f64>) {
-        strains.extend(times.iter().map(|time| self.strain_at(time - start)));
+        let (first, mut done) = (strains.len(), 0);
+        for (index, stage) in self.stages.iter().enumerate() {
+            let is_last = index + 1 == self.stages.len();
+            let inside = times[done..].partition_point(|time| is_last || time - start <= stage.end());
+            stage.extend_sums(start, &times[done..done + inside], &self.contact.law, strains);
+            done += inside;
+        }
+        for (slot, time) in strains[first..].iter_mut().zip(times) {
+            *slot = self.contact.excess_strain(*slot, self.jaw(time - start));
+        }
     }
 
     /// Ever further apart from the fastest rate on.
