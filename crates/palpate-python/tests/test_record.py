@@ -200,3 +200,20 @@ def test_columns_are_named_by_a_keyword_as_on_the_command_line(tmp_path: Path) -
     assert palpate.read_all(path, columns="time=Zeit:s,displacement=Weg:mm,force=Kraft:N") == [by_text]
     with pytest.raises(palpate.OptionError, match="force=Kraft:N"):
         palpate.read(path, columns="Kraft")
+
+
+def test_quantities_of_rheometers_become_force_and_displacement(tmp_path: Path) -> None:
+    path = tmp_path / "relaxation.csv"
+    path.write_text("Time,Relaxation Modulus\n0,200\n1,150\n2,125\n")
+    with pytest.raises(palpate.RecordError, match="expected a unit"):
+        palpate.read(path)
+    record = palpate.read(path, columns={"time": "Time:s", "modulus": "Relaxation Modulus:Pa"})
+    assert list(record.force_n) == [200.0, 150.0, 125.0] and record.displacement_m is None
+    path.write_text("Displacement (mm),Force (N)\n0,0\n1,2\n1,1.5\n")
+    record = palpate.read(path, columns="time=:50 Hz")
+    assert list(record.time_s) == pytest.approx([0.0, 0.02, 0.04])
+    sample = {"specimen": {"shape": "cone and plate", "diameter": "40 mm", "cone_angle": "2 deg"}}
+    path.write_text("Time (s),Torque (mN.m),Angle (rad)\n0,0,0\n1,2,0.1\n2,1,0.1\n")
+    record = palpate.read(path, test=sample)
+    assert list(record.force_n) == pytest.approx([0.0, 0.15, 0.075])
+    assert record.displacement_m is not None and list(record.displacement_m) == pytest.approx([0.0, 2e-3, 2e-3])

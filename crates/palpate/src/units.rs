@@ -53,6 +53,8 @@ pub enum Dimension {
     PerKelvin,
     /// Angle in rad.
     Angle,
+    /// Compliance of a material in 1/Pa: strain per stress.
+    PerPressure,
 }
 
 impl Dimension {
@@ -77,6 +79,7 @@ impl Dimension {
             Self::Temperature => ("difference of temperature", "0.5 K", &[("K", 1.0), ("mK", 1e-3)]),
             Self::PerKelvin => ("relative change per kelvin", "-0.4 %/K", PER_KELVIN),
             Self::Angle => ("angle", "35 deg", ANGLE),
+            Self::PerPressure => ("compliance of a material", "0.5 1/kPa", PER_PRESSURE),
         }
     }
 
@@ -216,11 +219,26 @@ const TORQUE: &[(&str, f64)] = &[
     ("mN m", 1e-3),
     ("mNm", 1e-3),
     ("mN·m", 1e-3),
+    ("µN m", 1e-6),
+    ("µNm", 1e-6),
+    ("µN·m", 1e-6),
+    ("uN m", 1e-6),
+    ("nN m", 1e-9),
+    ("nN·m", 1e-9),
 ];
 const SHARE: &[(&str, f64)] = &[("1", 1.0), ("%", 1e-2), ("‰", 1e-3), ("ppm", 1e-6)];
 const PER_KELVIN: &[(&str, f64)] = &[("1/K", 1.0), ("/K", 1.0), ("%/K", 1e-2), ("ppm/K", 1e-6)];
 const DEGREE: f64 = std::f64::consts::PI / 180.0;
 const ANGLE: &[(&str, f64)] = &[("rad", 1.0), ("deg", DEGREE), ("°", DEGREE)];
+const PER_PRESSURE: &[(&str, f64)] = &[
+    ("1/Pa", 1.0),
+    ("/Pa", 1.0),
+    ("Pa^-1", 1.0),
+    ("Pa⁻¹", 1.0),
+    ("1/kPa", 1e-3),
+    ("1/MPa", 1e-6),
+    ("1/GPa", 1e-9),
+];
 const FREQUENCY: &[(&str, f64)] = &[("Hz", 1.0), ("kHz", 1e3), ("/s", 1.0), ("1/s", 1.0)];
 
 /// Why a quantity could not be read.

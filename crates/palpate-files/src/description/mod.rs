@@ -35,8 +35,8 @@ pub use schema::{schema_material, schema_protocol, schema_test};
 pub use sweep::{Plan, Spacing, Sweep, SweptParameter, parse_runs, parse_sweep, read_sweep};
 pub(crate) use test::contradicts;
 pub use test::{
-    About, ChoiceError, ClockChoice, ColumnChoice, ColumnChoices, Machine, NamedColumns, TestDescription, machines,
-    machines_of, parse_hold_start, parse_test, parse_touch, read_test,
+    About, ChoiceError, ClockChoice, ColumnChoice, ColumnChoices, Machine, NamedColumns, TestDescription, Torsion,
+    machines, machines_of, parse_hold_start, parse_test, parse_touch, read_test,
 };
 pub(crate) use text::quoted;
 pub use text::{DescriptionError, DescriptionKind, KeyPosition, KeyProblem, read_text};

@@ -290,6 +290,29 @@ impl FileError {
         Self { path, problem }
     }
 
+    /// The same, of lines of which so many more stand above them in the file.
+    pub(crate) fn moved_down(mut self, lines: usize) -> Self {
+        match &mut self.problem {
+            FileProblem::LineTooLong { line, .. }
+            | FileProblem::Idle { line, .. }
+            | FileProblem::OneColumn { line, .. }
+            | FileProblem::AmbiguousDecimal { line, .. }
+            | FileProblem::CellCount { line, .. } => *line += lines,
+            FileProblem::TextInNumbers { place, .. }
+            | FileProblem::NotFinite { place, .. }
+            | FileProblem::EmptyCell(place) => place.line += lines,
+            FileProblem::Interrupted {
+                line, resumes, source, ..
+            } => {
+                (*line, *resumes) = (*line + lines, *resumes + lines);
+                let below = std::mem::replace(&mut **source, Self::from(Cancelled));
+                **source = below.moved_down(lines);
+            }
+            _ => {}
+        }
+        self
+    }
+
     /// What kind of refusal of the operating system it is, if it is one.
     #[must_use]
     pub fn io_kind(&self) -> Option<io::ErrorKind> {

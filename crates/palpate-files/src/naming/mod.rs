@@ -6,15 +6,21 @@
 //! | `vocabulary.rs` | the words that headers use for it |
 //! | `unit_words.rs` | units as machines and people write them |
 //! | `names.rs` | a name, weighed against the words |
+//! | `rheometry.rs` | strain, torque and angle, moduli and compliances over time |
 
 mod names;
 mod quantity;
+mod rheometry;
 mod unit_words;
 mod vocabulary;
 
-pub(crate) use names::{measured, measures_another, names_quantity, rank_of_name, topic_and_field, words};
+pub(crate) use names::{
+    measured, measures_another, names_another, names_quantity, rank_of_name, topic_and_field, words,
+};
 pub use quantity::Quantity;
+pub(crate) use rheometry::rank_in_rheometry;
 pub(crate) use unit_words::{unit_factor, volts_are};
 pub(crate) use vocabulary::{
-    BENDING, OTHER, OTHER_CHARACTERS, SIGNS_OF_LENGTH, STRAINS, UNCALIBRATED, VOCABULARY, is_listed,
+    AXIAL, BENDING, COUNTS, OTHER, OTHER_CHARACTERS, SHEAR, SIGNS_OF_LENGTH, STRAINS, UNCALIBRATED, VOCABULARY,
+    is_listed,
 };

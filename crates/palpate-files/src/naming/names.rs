@@ -5,7 +5,7 @@ use palpate::units::Dimension;
 use super::{
     quantity::Quantity,
     unit_words::unit_factor,
-    vocabulary::{BENDING, COMMANDED, OTHER, OTHER_CHARACTERS, VOCABULARY, Vocabulary, is_listed},
+    vocabulary::{BENDING, COMMANDED, COUNTS, OF_A_PART, OTHER, OTHER_CHARACTERS, VOCABULARY, Vocabulary, is_listed},
 };
 
 /// The topic and the field in the name of a column of a robot's log, such as `/gripper/ft.wrench.force.z`.
@@ -28,10 +28,13 @@ pub(crate) fn measures_another(unit: &str, quantity: Quantity) -> bool {
         Dimension::Speed,
         Dimension::Frequency,
         Dimension::Area,
+        Dimension::Torque,
     ];
+    let is_temperature =
+        matches!(unit.trim().to_lowercase().as_str(), "°c" | "℃" | "degc" | "°f" | "degf" | "°k" | "k");
     let ratio = matches!(unit, "-" | "%" | "1" | "mm/mm" | "m/m");
     let other = |dimension: &Dimension| *dimension != quantity.dimension() && unit_factor(unit, *dimension).is_some();
-    ratio || others.iter().any(other)
+    ratio || is_temperature || others.iter().any(other)
 }
 
 /// How well a name stands for the quantity of a vocabulary; 0 is best.
@@ -55,7 +58,9 @@ pub(crate) fn rank_of_name(name: &str, vocabulary: &Vocabulary) -> Option<u8> {
         return None;
     }
     let ends = |word: &String| vocabulary.endings.split_whitespace().any(|end| word.ends_with(end));
-    if is(vocabulary.plain) || is_listed(name.trim(), vocabulary.characters) {
+    // The time of the whole test goes before that of a step.
+    let late = if vocabulary.quantity == Quantity::Time && has(OF_A_PART) { 5 } else { 0 };
+    let rank = if is(vocabulary.plain) || is_listed(name.trim(), vocabulary.characters) {
         Some(0)
     } else if has(vocabulary.plain) || words.iter().any(ends) || contains(vocabulary.characters) {
         Some(1)
@@ -67,7 +72,18 @@ pub(crate) fn rank_of_name(name: &str, vocabulary: &Vocabulary) -> Option<u8> {
         Some(4)
     } else {
         None
-    }
+    };
+    rank.map(|rank| rank + late)
+}
+
+/// Whether a name says that a column without a unit of `quantity` holds something else: another quantity, a command, a
+/// temperature, the number of a row.
+pub(crate) fn names_another(name: &str, quantity: Quantity) -> bool {
+    let words = words(measured(name));
+    let has = |known: &str| words.iter().any(|word| is_listed(word, known));
+    let others = VOCABULARY.iter().filter(|other| other.quantity != quantity);
+    let plainly = |other: &Vocabulary| rank_of_name(name, other).is_some_and(|rank| rank < 4);
+    has(OTHER) || has(COUNTS) || others.into_iter().any(plainly)
 }
 
 /// Whether a name says that its values are multiples: `Force x1000`, `Weg*10`, `Load ×10^3`.

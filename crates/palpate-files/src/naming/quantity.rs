@@ -15,9 +15,42 @@ pub enum Quantity {
     Force,
     /// Stress, in Pa.
     Stress,
+    /// Strain, a ratio.
+    Strain,
+    /// Relaxation modulus E(t) or G(t), in Pa.
+    Modulus,
+    /// Creep compliance J(t) or D(t), in 1/Pa.
+    Compliance,
+    /// Torque, in N m.
+    Torque,
+    /// Angle, in rad.
+    Angle,
 }
 
 impl Quantity {
+    /// All of them.
+    pub(crate) const ALL: [Self; 9] = [
+        Self::Time,
+        Self::Displacement,
+        Self::Force,
+        Self::Stress,
+        Self::Strain,
+        Self::Modulus,
+        Self::Compliance,
+        Self::Torque,
+        Self::Angle,
+    ];
+
+    /// Whether it becomes the force of a record.
+    pub(crate) fn is_load(self) -> bool {
+        matches!(self, Self::Force | Self::Stress | Self::Modulus | Self::Torque)
+    }
+
+    /// Whether it becomes the displacement of a record.
+    pub(crate) fn is_travel(self) -> bool {
+        matches!(self, Self::Displacement | Self::Strain | Self::Compliance | Self::Angle)
+    }
+
     /// Which units it takes.
     #[must_use]
     pub fn dimension(self) -> Dimension {
@@ -25,7 +58,11 @@ impl Quantity {
             Self::Time => Dimension::Time,
             Self::Displacement => Dimension::Length,
             Self::Force => Dimension::Force,
-            Self::Stress => Dimension::Pressure,
+            Self::Stress | Self::Modulus => Dimension::Pressure,
+            Self::Strain => Dimension::Share,
+            Self::Compliance => Dimension::PerPressure,
+            Self::Torque => Dimension::Torque,
+            Self::Angle => Dimension::Angle,
         }
     }
 
@@ -46,11 +83,16 @@ impl Quantity {
             Self::Displacement => "mm",
             Self::Force => "N",
             Self::Stress => "MPa",
+            Self::Strain => "%",
+            Self::Modulus => "Pa",
+            Self::Compliance => "1/Pa",
+            Self::Torque => "N m",
+            Self::Angle => "rad",
         }
     }
 }
 
 shown_as_written!(
-    /// Its key in a description: `time`, `displacement`, `force` or `stress`.
+    /// Its key in a description, such as `force`.
     Quantity
 );

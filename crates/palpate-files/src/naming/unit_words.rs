@@ -64,6 +64,24 @@ pub(crate) fn unit_factor(unit: &str, dimension: Dimension) -> Option<f64> {
         if dimension == Dimension::Time && matches!(word.as_str(), "ns" | "nsec" | "nanosecond" | "nanoseconds") {
             return Some(1e-9);
         }
+        if dimension == Dimension::Share
+            && matches!(word.as_str(), "-" | "mm/mm" | "m/m" | "percent" | "pct" | "strain")
+        {
+            return Some(if word.starts_with('p') { 1e-2 } else { 1.0 });
+        }
+        if matches!(dimension, Dimension::Angle) && matches!(word.as_str(), "degree" | "degrees" | "radian" | "radians")
+        {
+            return units::factor(&word[..3], dimension);
+        }
+        if dimension == Dimension::Torque {
+            // "N.m", "mN-m", "N*mm": a force and a length with anything between them.
+            let plain = |text: &str| text.chars().filter(|letter| letter.is_alphanumeric()).collect::<String>();
+            let known = dimension
+                .units()
+                .iter()
+                .find(|(symbol, _)| plain(symbol) == plain(&unit.replace('\u{3bc}', "\u{b5}")));
+            return known.map(|(_, factor)| *factor);
+        }
         let (symbol, _) = synonyms(dimension).find(|(_, words)| is_listed(&word, words))?;
         units::factor(symbol, dimension)
     })

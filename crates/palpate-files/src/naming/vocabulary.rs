@@ -34,9 +34,9 @@ pub(crate) const VOCABULARY: [Vocabulary; 4] = [
         quantity: Quantity::Displacement,
         plain: "displacement verschiebung weg déplacement deplacement desplazamiento",
         loose: "extension travel stroke crosshead traverse position pos indentation allongement deflection course \
-            recorrido carrera disp distance distanz distancia depth tiefe profondeur profundidad elongation \
+            recorrido carrera disp distance distanz distancia depth tiefe profondeur profundidad elongation pd \
             extensión alargamiento deformation verformung déformation deformación deformacion compression \
-            stauchung compresión compresion penetration eindringtiefe eindringung eindrucktiefe pénétration \
+            stauchung eindrückung eindrueckung eindruckung compresión compresion penetration eindringtiefe eindringung eindrucktiefe pénétration \
             penetración penetracion enfoncement indentación indentacion posición posicion hub 变形 變形 压缩量 压入深度 伸長 \
             伸び 変形量 圧縮量 押込み量 押込量 押込み深さ",
         endings: "weg",
@@ -46,7 +46,7 @@ pub(crate) const VOCABULARY: [Vocabulary; 4] = [
     Vocabulary {
         quantity: Quantity::Force,
         plain: "force load kraft fuerza",
-        loose: "loadcell effort charge carga fx fy fz",
+        loose: "loadcell effort charge carga fx fy fz fn",
         endings: "kraft",
         characters: "力 载荷 荷重 负荷 負荷",
         letter: Some("F"),
@@ -65,10 +65,25 @@ pub(crate) const VOCABULARY: [Vocabulary; 4] = [
 /// quantities derived from it.
 pub(crate) const OTHER: &str = "goal target set setpoint command commanded cmd demand desired reference ref nominal soll consigne objetivo \
     limit threshold schwelle seuil umbral per max min maximum minimum peak std sd stdev error count offset rate \
-    speed velocity acceleration strain size dehnung stiffness modulus constant";
+    speed velocity acceleration strain size dehnung stiffness modulus constant compliance viscosity oscillation oscillatory complex \
+    storage loss amplitude temperature temperatur température temperatura temp humidity";
 
 /// Beginnings of German words for what was commanded, not measured: `Sollweg`, `Sollkraft`, `Sollwert`.
 pub(crate) const COMMANDED: &str = "soll vorgabe";
+
+/// Words of a time that begins anew with each part of a test.
+pub(crate) const OF_A_PART: &str = "step action interval segment intervalle abschnitt schritt étape etape";
+
+/// Words of a force along the axis of a machine, which is not the load of a body in shear.
+pub(crate) const AXIAL: &str = "normal normale axial axiale normalkraft axialkraft";
+
+/// Words of quantities of a body in shear.
+pub(crate) const SHEAR: &str = "shear cisaillement scherung schub schubspannung scherdeformation torque couple drehmoment cizalla \
+    cizallamiento";
+
+/// Words of columns that count or label rows.
+pub(crate) const COUNTS: &str =
+    "sample samples index point points row rows nr no number nummer numéro id cycle cycles status state segment";
 
 /// The same in Chinese and Japanese: target, set, command, strain, rate, greatest, least.
 pub(crate) const OTHER_CHARACTERS: &str = "目标 目標 设定 設定 指令 应变 ひずみ 速度 最大 最小";

@@ -1,106 +1,49 @@
 //! Choosing the columns of a file: from a description, else by the header.
 
-use palpate::contact::Shape;
-
 use super::{
-    column_use::{ColumnUse, Role},
-    error::{ColumnError, UnitProblem},
-    named::NamedColumn,
+    chooser::Chooser,
+    column_use::ColumnUse,
+    conversion::{self, Conversion},
+    error::ColumnError,
+    signals::Time,
 };
-use crate::{
-    cell::number,
-    description::{ClockChoice, ColumnChoice, TestDescription},
-    naming::Quantity,
-    table::{ColumnInfo, ColumnRef, Part, epoch, recognise},
-};
+use crate::{description::TestDescription, naming::Quantity, table::Part};
 
 /// The columns to read and how to make a record of them.
 #[derive(Debug)]
 pub(super) struct Plan {
     /// Columns in the order to read them.
     pub(super) columns: Vec<ColumnUse>,
-    /// What turns force or stress (SI) into N: the section in m² where it is stress, else 1.
-    pub(super) section: f64,
-    /// Stress without a section: the record is that of 1 m².
-    pub(super) per_unit_area: bool,
-}
-
-/// A column that was found, before its unit is looked at.
-pub(super) struct Found<'a> {
-    pub(super) role: Role,
-    pub(super) column: &'a ColumnInfo,
-    pub(super) unit: Option<&'a str>,
-    pub(super) choice: Option<&'a ColumnChoice>,
-}
-
-impl<'a> Found<'a> {
-    /// A column, and what a description says of it.
-    fn of(role: Role, column: &'a ColumnInfo, choice: Option<&'a ColumnChoice>) -> Self {
-        let unit = choice.and_then(|choice| choice.unit.as_deref());
-        Self {
-            role,
-            column,
-            unit,
-            choice,
-        }
-    }
-
-    /// The key of a description that says its unit.
-    pub(super) fn key(&self) -> String {
-        match self.role {
-            Role::Values(quantity) | Role::Added(quantity) => format!("columns.{quantity}.unit"),
-            Role::Deflection => "columns.deflection.unit".to_owned(),
-            Role::ClockOf(quantity) => format!("columns.{quantity}.clock.unit"),
-        }
-    }
-
-    pub(super) fn used(&self, unit: String, factor: f64) -> ColumnUse {
-        let doubled = self.choice.is_some_and(|choice| choice.doubled);
-        ColumnUse {
-            role: self.role,
-            number: self.column.number,
-            name: self.column.name.clone(),
-            unit,
-            sign: self.choice.map_or(1.0, |choice| choice.sign),
-            // Of two columns that are added the sum is shifted, not each.
-            offset: match self.role {
-                Role::Added(_) => 0.0,
-                _ => self.choice.map_or(0.0, |choice| choice.offset),
-            },
-            factor: if doubled { 2.0 * factor } else { factor },
-            epoch: self.role.measured() == Quantity::Time && epoch::counts(self.column, factor),
-        }
-    }
-}
-
-/// In names of columns of which the deflection of the cantilever is off already.
-const INDENTATIONS: [&str; 4] = ["indentation", "tip position", "tipposition", "separation"];
-
-#[derive(Clone, Copy)]
-pub(super) struct Chooser<'a> {
-    part: &'a Part,
+    /// What makes force and displacement of them.
+    pub(super) conversion: Conversion,
+    /// The file has no time: so many rows a second, Hz.
+    pub(super) rate: Option<f64>,
 }
 
 /// Chooses the columns of one test.
 pub(super) fn choose(part: &Part, test: &TestDescription) -> Result<Plan, ColumnError> {
-    let chooser = Chooser { part };
+    let chooser = Chooser {
+        part,
+        torsion: conversion::torsion(test, &part.metadata),
+    };
     let stated = &test.columns;
-    let (load, load_stated) = chooser.force_or_stress(test)?;
-    let displacement = chooser.find(Quantity::Displacement, stated.displacement.as_ref())?;
-    let may_be_there = displacement.is_none() && load_stated.is_none_or(|load| load.column.is_none());
-    let clocks = [
-        (Quantity::Displacement, stated.displacement.as_ref(), displacement.as_ref()),
-        (load.role.measured(), load_stated, Some(&load)),
-    ];
+    let load = chooser.load(test)?;
+    let displacement = chooser.travel(test, load.as_ref())?;
+    let load_choice = stated.stated(Quantity::is_load).map(|(_, choice)| choice);
+    let travel_choice = stated.stated(Quantity::is_travel).map(|(_, choice)| choice);
+    let may_be_there = displacement.is_none() && load_choice.is_none_or(|load| load.column.is_none());
+    let clocks = [(travel_choice, displacement.as_ref()), (load_choice, load.as_ref())];
     let one_time = stated.time.as_ref().is_some_and(|time| time.column.is_some());
     let mut found = Vec::new();
     let mut needs_time = false;
-    for (quantity, choice, values) in clocks {
-        let own = values.filter(|_| !one_time).and_then(|values| chooser.own_clock(quantity, values));
+    for (choice, values) in clocks {
+        let Some(values) = values else { continue };
+        let quantity = values.role.measured();
+        let own = Some(values).filter(|_| !one_time).and_then(|values| chooser.own_clock(quantity, values));
         match (choice.and_then(|choice| choice.clock.as_ref()), own) {
             (Some(clock), _) => found.push(chooser.clock(quantity, clock)?),
             (None, Some(own)) => found.push(own),
-            (None, None) => needs_time |= values.is_some(),
+            (None, None) => needs_time = true,
         }
     }
     let added = displacement.as_ref().map(|displacement| chooser.added(displacement)).transpose()?.flatten();
@@ -108,188 +51,26 @@ pub(super) fn choose(part: &Part, test: &TestDescription) -> Result<Plan, Column
         (Some(height), Some(choice)) => Some(chooser.deflection(height, choice)?),
         _ => None,
     };
+    let mut rate = None;
     if needs_time {
-        let time = chooser.find(Quantity::Time, stated.time.as_ref())?;
-        found.push(time.ok_or_else(|| chooser.missing(Quantity::Time))?);
+        match chooser.time(stated.time.as_ref())? {
+            Time::Column(time) => found.push(time),
+            Time::Rows(a_second) => rate = Some(a_second),
+        }
     }
+    let conversion = Conversion::of(test, chooser.torsion, (load.as_ref(), displacement.as_ref()))?;
     found.extend(displacement);
     found.extend(added);
     found.extend(deflection);
-    found.push(load);
+    found.extend(load);
     chooser.refuse_twice(&found)?;
-    let (section, per_unit_area) = chooser.section(test, &found)?;
     let columns = chooser.with_units(&found)?;
     if may_be_there {
         chooser.refuse_unclear(&columns)?;
     }
     Ok(Plan {
         columns,
-        section,
-        per_unit_area,
+        conversion,
+        rate,
     })
-}
-
-impl<'a> Chooser<'a> {
-    /// The column of force, or that of stress where the description says so or there is no force.
-    fn force_or_stress(&self, test: &'a TestDescription) -> Result<(Found<'a>, Option<&'a ColumnChoice>), ColumnError> {
-        let stated = &test.columns;
-        let (quantity, choice) = match (&stated.stress, &stated.force) {
-            (Some(stress), _) => (Quantity::Stress, Some(stress)),
-            (None, force) => (Quantity::Force, force.as_ref()),
-        };
-        let found = match self.find(quantity, choice)? {
-            None if choice.is_none() => self.find(Quantity::Stress, None)?,
-            found => found,
-        };
-        Ok((found.ok_or_else(|| self.missing(quantity))?, choice))
-    }
-
-    /// The column of a quantity; `None` if nothing says which.
-    fn find(&self, quantity: Quantity, choice: Option<&'a ColumnChoice>) -> Result<Option<Found<'a>>, ColumnError> {
-        let named = choice.and_then(|choice| choice.column.as_ref());
-        let column = match named {
-            Some(named) => Some(self.named(&format!("columns.{quantity}.column"), named)?),
-            None => match recognise::candidates(&self.part.columns, quantity)[..] {
-                [] => None,
-                [only] => Some(only),
-                ref several => {
-                    let candidates = several.iter().map(|column| NamedColumn::from(*column)).collect();
-                    return Err(ColumnError::Ambiguous(quantity, candidates));
-                }
-            },
-        };
-        if choice.is_some() && column.is_none() {
-            return Err(self.missing(quantity));
-        }
-        Ok(column.map(|column| Found::of(Role::Values(quantity), column, choice)))
-    }
-
-    /// The clock that the file itself gives the column of a quantity.
-    fn own_clock(&self, quantity: Quantity, values: &Found<'a>) -> Option<Found<'a>> {
-        let clock = self.part.clock_of(values.column.number)?;
-        let column = self.part.columns.get(clock.column.wrapping_sub(1))?;
-        Some(Found::of(Role::ClockOf(quantity), column, None))
-    }
-
-    /// The column that is added to one, which must have the same clock.
-    fn added(&self, values: &Found<'a>) -> Result<Option<Found<'a>>, ColumnError> {
-        let Some(also) = values.choice.and_then(|choice| choice.also.as_ref()) else {
-            return Ok(None);
-        };
-        let quantity = values.role.measured();
-        let column = self.beside(values, &format!("columns.{quantity}.also"), also)?;
-        Ok(Some(Found::of(Role::Added(quantity), column, values.choice)))
-    }
-
-    /// The column of the deflection of a cantilever whose base stands at `height`; both must have the same clock.
-    fn deflection(&self, height: &Found<'a>, choice: &'a ColumnChoice) -> Result<Found<'a>, ColumnError> {
-        let name = height.column.name.as_deref().unwrap_or("").to_lowercase();
-        if INDENTATIONS.iter().any(|known| name.contains(known)) {
-            return Err(ColumnError::NoHeight(height.column.into()));
-        }
-        // A description without the column is refused when it is checked.
-        let named = choice.column.as_ref().unwrap_or(&ColumnRef::Number(0));
-        let column = self.beside(height, "columns.deflection.column", named)?;
-        Ok(Found::of(Role::Deflection, column, Some(choice)))
-    }
-
-    /// Another column that is named under a key, and must have the clock of `values`.
-    fn beside(&self, values: &Found<'a>, key: &str, named: &ColumnRef) -> Result<&'a ColumnInfo, ColumnError> {
-        let column = self.named(key, named)?;
-        if self.part.clock_of(column.number) != self.part.clock_of(values.column.number) {
-            return Err(ColumnError::ClocksDiffer(values.column.into(), column.into()));
-        }
-        if column.number == values.column.number {
-            let quantity = values.role.measured();
-            return Err(ColumnError::Twice(column.into(), quantity, quantity));
-        }
-        Ok(column)
-    }
-
-    fn clock(&self, quantity: Quantity, clock: &'a ClockChoice) -> Result<Found<'a>, ColumnError> {
-        let column = self.named(&format!("columns.{quantity}.clock.column"), &clock.column)?;
-        let unit = clock.unit.as_deref();
-        Ok(Found {
-            unit,
-            ..Found::of(Role::ClockOf(quantity), column, None)
-        })
-    }
-
-    fn named(&self, key: &str, named: &ColumnRef) -> Result<&'a ColumnInfo, ColumnError> {
-        self.part.column_of(named).ok_or_else(|| ColumnError::NoSuchColumn {
-            key: key.to_owned(),
-            found: named.clone(),
-            columns: self.part.columns.clone(),
-        })
-    }
-
-    /// No column holds a quantity; perhaps one is named after it, but its unit is one of another.
-    fn missing(&self, quantity: Quantity) -> ColumnError {
-        if let Some((column, unit)) = recognise::misfits(&self.part.columns, quantity).next() {
-            let problem = UnitProblem::Unknown(quantity, unit.to_owned());
-            return ColumnError::unit(column, format!("columns.{quantity}.unit"), problem);
-        }
-        if let Some(column) = recognise::text_named(&self.part.columns, quantity) {
-            return Self::as_text(column, quantity);
-        }
-        ColumnError::Missing(quantity, self.part.columns.clone())
-    }
-
-    /// A column that is named after a quantity, but holds texts.
-    fn as_text(column: &ColumnInfo, quantity: Quantity) -> ColumnError {
-        let found = column.sample.clone();
-        match quantity == Quantity::Time && !number::looks_numeric(&found) {
-            true => ColumnError::TimeAsText(column.into(), found),
-            false => ColumnError::NotNumbers(column.into(), found),
-        }
-    }
-
-    /// A record without displacement is one thing, a displacement that is not recognised another. Who names the column of
-    /// the force, but none of the displacement, has no displacement.
-    fn refuse_unclear(&self, used: &[ColumnUse]) -> Result<(), ColumnError> {
-        let free = |column: &&ColumnInfo| used.iter().all(|used| used.number != column.number);
-        let possible = recognise::possible_displacements(&self.part.columns).filter(free);
-        let candidates: Vec<NamedColumn> = possible.map(NamedColumn::from).collect();
-        if !candidates.is_empty() {
-            let columns = self.part.columns.clone();
-            return Err(ColumnError::Unclear { candidates, columns });
-        }
-        // What begins with a digit was meant as a number.
-        let text = recognise::text_named(&self.part.columns, Quantity::Displacement);
-        match text.filter(|column| number::looks_numeric(&column.sample)) {
-            Some(column) => Err(Self::as_text(column, Quantity::Displacement)),
-            None => Ok(()),
-        }
-    }
-
-    /// Two clocks may be one column, two measured quantities may not.
-    fn refuse_twice(&self, found: &[Found<'_>]) -> Result<(), ColumnError> {
-        let values = |found: &Found<'_>| match found.role {
-            Role::Values(quantity) | Role::Added(quantity) => Some((quantity, found.column.number)),
-            // The bending of a cantilever may be the force as well, by another scale.
-            Role::ClockOf(_) | Role::Deflection => None,
-        };
-        let values: Vec<(Quantity, usize)> = found.iter().filter_map(values).collect();
-        for (index, (first, number)) in values.iter().enumerate() {
-            let same = values[index + 1..].iter().find(|(_, other)| other == number);
-            if let Some((second, _)) = same {
-                let column = NamedColumn::from(&self.part.columns[number - 1]);
-                return Err(ColumnError::Twice(column, *first, *second));
-            }
-        }
-        Ok(())
-    }
-
-    /// What turns the load into N, and whether it is that of 1 m².
-    fn section(&self, test: &TestDescription, found: &[Found<'_>]) -> Result<(f64, bool), ColumnError> {
-        let stress = found.iter().find(|found| found.role == Role::Values(Quantity::Stress));
-        let Some(stress) = stress else {
-            return Ok((1.0, false));
-        };
-        match test.analysis.geometry.as_ref().map(|body| &body.shape) {
-            None => Ok((1.0, true)),
-            Some(Shape::Prism { area, .. }) => Ok((*area, false)),
-            Some(_) => Err(ColumnError::NoSection(stress.column.into())),
-        }
-    }
 }

@@ -3,15 +3,16 @@
 use palpate::units::Dimension;
 
 use super::{
-    choose::{Chooser, Found},
-    column_use::ColumnUse,
+    chooser::{Chooser, Found},
+    column_use::{ColumnUse, SAMPLES},
     error::{ColumnError, UnitProblem},
+    named::NamedColumn,
 };
 use crate::{
     cell::unit,
     description::contradicts,
-    naming::{Quantity, unit_factor},
-    table::{ColumnKind, epoch},
+    naming::{Quantity, topic_and_field, unit_factor},
+    table::{ColumnInfo, ColumnKind, epoch, recognise},
 };
 
 impl Found<'_> {
@@ -29,6 +30,9 @@ impl Chooser<'_> {
         if found.role.measured() != Quantity::Time {
             return Ok(None);
         }
+        if let Some(rate) = found.rate {
+            return Ok(Some(found.used(format!("{SAMPLES}{rate} Hz"), 1.0 / rate)));
+        }
         if found.column.kind == ColumnKind::DateTime {
             // A time of day is not counted from 1970.
             let is_dated = epoch::is_date(&found.column.sample);
@@ -45,6 +49,19 @@ impl Chooser<'_> {
             None if is_stated => Err(ColumnError::NoEpoch(found.column.into(), found.column.sample.clone())),
             _ => Ok(None),
         }
+    }
+
+    /// The one column without a unit and of unknown name, where no column is the displacement.
+    fn unnamed_travel(&self, found: &[Found<'_>]) -> Option<NamedColumn> {
+        let travels = found.iter().any(|found| found.role.measured() == Quantity::Displacement);
+        let is_free = |column: &&ColumnInfo| {
+            column.unit.is_none()
+                && column.name.as_deref().is_some_and(|name| topic_and_field(name).is_none())
+                && recognise::may_be(column, Quantity::Displacement)
+                && found.iter().all(|found| found.column.number != column.number)
+        };
+        let mut free = self.part.columns.iter().filter(|_| !travels).filter(is_free);
+        free.next().filter(|_| free.next().is_none()).map(NamedColumn::from)
     }
 
     /// A unit that nobody wrote down for this file, but the conventions of a machine, gives way to none in the header.
@@ -118,7 +135,10 @@ impl Chooser<'_> {
         {
             return Err(found.wrong_unit(UnitProblem::Unknown(found.role.measured(), unit.to_owned())));
         }
-        Err(ColumnError::NoUnit(without))
+        Err(ColumnError::NoUnit {
+            without,
+            travel: self.unnamed_travel(found),
+        })
     }
 }
 

@@ -30,6 +30,9 @@ impl Role {
     }
 }
 
+/// How the unit of a column begins that counts samples.
+pub(super) const SAMPLES: &str = "samples at ";
+
 /// A column that a record was made of.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct ColumnUse {

@@ -8,7 +8,7 @@ use palpate::{
 };
 
 use super::{
-    column_use::{ColumnUse, Role},
+    column_use::{ColumnUse, Role, SAMPLES},
     describe_body::write_body,
     read::RecordFile,
 };
@@ -50,7 +50,7 @@ pub fn describe(
     write_machines(&mut out, about);
     write_file(&mut out, contents, about);
     match file {
-        Some(file) => write_columns(&mut out, about, &file.columns),
+        Some(file) => write_columns(&mut out, about, file),
         None => write_questions(&mut out, about),
     }
     write_body(&mut out, about);
@@ -92,7 +92,7 @@ pub fn describe_all(contents: &Contents, parts: &[usize], file: Option<&RecordFi
     let _ = writeln!(out, "[about]\ntitle = {}\n", quoted(&title));
     write_machines(&mut out, about);
     match file {
-        Some(file) => write_columns(&mut out, about, &file.columns),
+        Some(file) => write_columns(&mut out, about, file),
         None => write_questions(&mut out, about),
     }
     write_body(&mut out, about);
@@ -150,7 +150,11 @@ fn reference(part: &Part, column: &ColumnInfo) -> String {
     by_name.map_or_else(|| column.number.to_string(), quoted)
 }
 
-fn write_columns(out: &mut String, part: &Part, columns: &[ColumnUse]) {
+fn write_columns(out: &mut String, part: &Part, file: &RecordFile) {
+    let columns = &file.columns;
+    if let Some(rate) = file.rate {
+        let _ = writeln!(out, "[columns.time]\nrate = \"{rate} Hz\"    # from the file: there is no column of time\n");
+    }
     let clock = |quantity| columns.iter().find(|column| column.role == Role::ClockOf(quantity));
     for column in columns {
         let quantity = column.role.measured();
@@ -194,6 +198,9 @@ fn write_unit(out: &mut String, column: &ColumnUse, info: &ColumnInfo) {
         _ if info.kind == ColumnKind::DateTime => String::new(),
         (Some(plain), _) if factor == plain => unit(&column.unit),
         (Some(_), _) => unit(&column.unit) + "doubled = true\n",
+        _ if column.role.measured() == Quantity::Time && column.unit.starts_with(SAMPLES) => {
+            format!("rate = \"{} Hz\"    # {source}\n", column.unit.trim_start_matches(SAMPLES).trim_end_matches(" Hz"))
+        }
         (None, Some(volts)) => format!("{}scale = \"{} {symbol}/V\"\n", unit(&column.unit), factor / volts),
         (None, None) => format!("travel_per_unit = \"{factor} {symbol}\"\n"),
     };

@@ -41,10 +41,14 @@ pub enum ColumnError {
         /// All columns of the file.
         columns: Vec<ColumnInfo>,
     },
-    /// The units of some columns are written nowhere: keys of the description that would say each, a usual unit, and the
-    /// column.
-    #[error("expected a unit for {}, found {}", listed(.0.iter().map(|(_, _, column)| column), ", "), none(.0))]
-    NoUnit(Vec<(String, &'static str, NamedColumn)>),
+    /// The units of some columns are written nowhere.
+    #[error("expected a unit for {}, found {}", listed(without.iter().map(|(_, _, column)| column), ", "), none(without))]
+    NoUnit {
+        /// Keys of the description that would say each, a usual unit, and the column.
+        without: Vec<(String, &'static str, NamedColumn)>,
+        /// A column without a unit whose name is not known, which may be the displacement where no other is.
+        travel: Option<NamedColumn>,
+    },
     /// Something is wrong with the unit of a column.
     #[error("{column}: {problem}")]
     Unit {
@@ -79,9 +83,16 @@ pub enum ColumnError {
         "{0}: expected the height of the cantilever's base, found a column whose name indicates that the deflection is already subtracted"
     )]
     NoHeight(NamedColumn),
-    /// Stress on a ball, which has no section that would turn it into force.
-    #[error("{0}: expected force for a ball, whose contact area changes, found stress")]
+    /// Stress or strain of a body without one section and one length, which would turn them into force and displacement.
+    #[error(
+        "{0}: expected force and displacement for a body whose contact area changes, found stress, strain, a modulus or a compliance"
+    )]
     NoSection(NamedColumn),
+    /// Torque or angle, and no sizes of the sample that would turn them into force and displacement.
+    #[error(
+        "{0}: expected the sizes of the sample, which turn torque and angle into force and displacement, found none"
+    )]
+    NoTorsion(NamedColumn),
 }
 
 /// What can be wrong with the unit of a column.
@@ -133,19 +144,7 @@ impl ColumnError {
                 format!("choose one: {stated}, or in a test description:\n[columns.{quantity}]\ncolumn = {number}")
             }
             Self::Unclear { candidates, columns } => snippet::of_unclear(candidates, columns),
-            Self::NoUnit(columns) => {
-                let lines = columns.iter().map(|(key, unit, column)| snippet::of_unit(key, unit, column));
-                let lines = lines.collect::<Vec<_>>().join("\n");
-                let stated = columns.iter().map(|(key, unit, column)| {
-                    Some(snippet::entry(snippet::quantity_of(key)?, column, Some(unit), true))
-                });
-                match stated.collect::<Option<Vec<_>>>() {
-                    Some(stated) => {
-                        format!("state it: {}, or in a test description:\n{lines}", snippet::option(stated))
-                    }
-                    None => format!("state it in a test description:\n{lines}"),
-                }
-            }
+            Self::NoUnit { without, travel } => snippet::of_missing_units(without, travel.as_ref()),
             Self::Unit { column, key, problem } => problem.hint(column, key),
             Self::NoSuchColumn { columns, .. } => {
                 let usual = "columns count from 1 at the left; the unit of a name is optional";
@@ -169,6 +168,7 @@ impl ColumnError {
             Self::NoSection(..) => {
                 "choose a column of force, or describe the body as a strip, cylinder or block".to_owned()
             }
+            Self::NoTorsion(..) => lever::SAMPLE.to_owned(),
         }
     }
 }
@@ -191,7 +191,8 @@ impl UnitProblem {
                     true => "another unit is meant".to_owned(),
                     false => format!("\"{unit}\" stands for {meant}"),
                 };
-                format!("if {doubt}, state it{stated} in a test description:\n{lines}")
+                let preset = if meant == "gf" { " (of a TA.XT: machine.preset = \"ta-xtplus-grams\")" } else { "" };
+                format!("if {doubt}, state it{stated} in a test description{preset}:\n{lines}")
             }
             Self::Unknown(_, unit) if key == "columns.force.unit" && column.name.as_deref() == Some(UNCALIBRATED) => {
                 snippet::of_bending(column, unit)
@@ -289,7 +290,7 @@ pub enum ReadError {
         /// What is wrong.
         source: RecordError,
     },
-    /// The force never changes and there is no displacement, but a strain that would be one with the length of the body.
+    /// The force never changes and there is no displacement, but a strain without a unit.
     #[error("{}: {source}", path.display())]
     Strain {
         /// The file.
@@ -327,8 +328,8 @@ impl ReadError {
             Self::File(error) => error.hint(),
             Self::Column { source, .. } => Some(source.hint()),
             Self::Strain { column, .. } => Some(format!(
-                "the body creeps: compare laws of creep (--creep) with the strain as a displacement; for a body of 10 mm say in a test description:\n\
-                 [columns.displacement]\ncolumn = {column}\ntravel_per_unit = \"10 mm\""
+                "the body creeps: give the strain its unit: --columns \"strain={column}:%\", or in a test description:\n\
+                 [columns.strain]\ncolumn = {column}\nunit = \"%\"  # or \"1\""
             )),
             Self::Record { source, .. } => Some(source.hint().to_owned()),
             Self::SeveralParts { parts, .. } => {

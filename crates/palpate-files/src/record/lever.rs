@@ -1,12 +1,20 @@
 //! Columns of a machine that turns: torque and angle, which a lever arm makes force and travel.
 
-use palpate::units::{self, Dimension};
+use palpate::units::Dimension;
 
 use super::named::NamedColumn;
-use crate::{naming::Quantity, table::ColumnInfo};
+use crate::{
+    naming::{Quantity, unit_factor},
+    table::ColumnInfo,
+};
 
 /// The arm of the examples, m.
 const ARM: f64 = 0.05;
+
+/// How the sample of a rheometer is described.
+pub(super) const SAMPLE: &str = "describe the sample, between parallel plates as\n[specimen]\nshape = \"cylinder\"\n\
+    diameter = \"25 mm\"\nlength = \"1 mm\"  # the gap\nor with shape = \"cone and plate\" (diameter, cone_angle) or \"strip\" (width, \
+    thickness, length)";
 
 /// What a column of a machine that turns holds.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -16,19 +24,13 @@ enum Turning {
     Radians,
 }
 
-fn turning(unit: &str) -> Option<Turning> {
-    let unit = unit.trim().to_lowercase();
-    match unit.as_str() {
+fn turning(written: &str) -> Option<Turning> {
+    match written.trim().to_lowercase().as_str() {
         "deg" | "°" | "degree" | "degrees" | "grad" => return Some(Turning::Degrees),
         "rad" | "radian" | "radians" => return Some(Turning::Radians),
         _ => {}
     }
-    // "Nm", "N·m", "N*mm", "N-m": a force and a length with anything between them.
-    let plain: String = unit.chars().filter(|letter| letter.is_alphanumeric()).collect();
-    let known = Dimension::Torque.units().iter().map(|(symbol, _)| symbol.replace([' ', '·'], "").to_lowercase());
-    let is_torque =
-        known.into_iter().any(|symbol| symbol == plain) || units::factor(&unit, Dimension::Torque).is_some();
-    is_torque.then_some(Turning::Torque)
+    unit_factor(written, Dimension::Torque).is_some().then_some(Turning::Torque)
 }
 
 /// Whether a column holds a torque or an angle.
@@ -56,7 +58,8 @@ pub(super) fn hint_of_unit(unit: &str, column: &NamedColumn, quantity: Quantity)
         (Turning::Radians, Quantity::Displacement) => format!("{arm} mm"),
         _ => {
             return Some(format!(
-                "a force and a length are needed: with a lever arm, write columns of torque / arm in N and of angle (rad) × arm in mm \
+                "a force and a length are needed: of a rheometer describe the sample (shape = \"cylinder\" between parallel plates, \
+                 \"cone and plate\", or \"strip\") in [specimen]; with a lever arm, write columns of torque / arm in N and of angle (rad) × arm in mm \
                  to the file; at an arm of {arm} mm, 1 N m is {} N and 1° is {:.4} mm",
                 1.0 / ARM,
                 (1e3 * ARM).to_radians()

@@ -4,21 +4,27 @@
 //! |---|---|
 //! | `parts.rs` | which parts of a file are tests ([`tests`]) |
 //! | `read.rs` | reads a record ([`read_record`]) |
-//! | `choose.rs`, `choose_units.rs` | chooses the columns and their units, from a description or by the header |
+//! | `signals.rs` | which column becomes the force, the displacement and the time |
+//! | `choose.rs`, `chooser.rs`, `choose_units.rs` | chooses the columns and their units, from a description or by the header |
+//! | `conversion.rs`, `rate.rs` | strain, stress, torque and curves of a material made force and displacement; rows made time |
 //! | `column_use.rs`, `named.rs` | a column that was chosen, and one as messages name it |
 //! | `describe.rs`, `describe_body.rs` | a first description of a test ([`describe`]) |
 //! | `error.rs`, `snippet.rs`, `lever.rs` | what is not clear, and the lines of a description that would clear it up |
 
 mod choose;
 mod choose_units;
+mod chooser;
 mod column_use;
+mod conversion;
 mod describe;
 mod describe_body;
 mod error;
 mod lever;
 mod named;
 mod parts;
+mod rate;
 mod read;
+mod signals;
 mod snippet;
 
 pub use column_use::{ColumnUse, Role};

@@ -3,6 +3,7 @@
 use super::{
     choose,
     error::{ColumnError, ReadError},
+    lever,
 };
 use crate::{description::TestDescription, open::Contents, table::SkippedPart};
 
@@ -57,6 +58,9 @@ pub fn tests(contents: &Contents, description: &TestDescription) -> Result<Tests
 
 fn reason(error: &ColumnError) -> String {
     match error {
+        ColumnError::Missing(quantity, columns) if columns.iter().any(lever::turns) => {
+            format!("no column of {quantity}; a torque needs the sizes of the sample in [specimen]")
+        }
         ColumnError::Missing(quantity, _) => format!("no column of {quantity}"),
         ColumnError::NoSuchColumn { key, found, .. } => format!("{key}: no column {found}"),
         other => other.to_string(),

@@ -41,6 +41,8 @@ pub struct RecordFile {
     pub part: Part,
     /// When the time of the record is zero, in s since 1970, where the file counts from there.
     pub start: Option<f64>,
+    /// The file has no time: so many rows a second, Hz.
+    pub rate: Option<f64>,
     /// Rows of the test. Where displacement and force have clocks of their own, the record can have fewer.
     pub rows: usize,
     /// How many successive rows each sample of the record is the mean of; 1 unless the file is very long.
@@ -123,12 +125,24 @@ pub fn read_part(
     }
     let dated = |column: &ColumnUse| !epoch::counts(&about.columns[column.number - 1], column.factor);
     let start = count_from_start(&plan.columns, &mut values, &dated);
+    let conversion = plan.conversion;
     let series = plan.columns.iter().zip(values).map(|(column, mut values)| {
-        let section = if column.role.measured() == Quantity::Stress { plan.section } else { 1.0 };
-        to_si(&mut values, column, section);
+        let factor = match column.role.measured() {
+            load if load.is_load() => conversion.load,
+            travel if travel.is_travel() => conversion.travel,
+            _ => 1.0,
+        };
+        to_si(&mut values, column, factor);
         (column.role, values)
     });
-    let (raw, bent) = assemble(series.collect());
+    let mut series: Vec<(Role, Vec<f64>)> = series.collect();
+    let samples = series.first().map_or(0, |(_, values)| values.len());
+    let time = plan
+        .rate
+        .map(|rate| (Role::Values(Quantity::Time), (0..samples).map(|row| time_of(&read, row, rate)).collect()));
+    let force = conversion.constant_force.map(|force| (Role::Values(Quantity::Force), vec![force; samples]));
+    series.extend(time.into_iter().chain(force));
+    let (raw, bent) = assemble(series);
     let signals = raw.report_heard(&mut || progress(read.bytes, read.bytes)).map_err(FileError::from)?;
     let has_displacement = raw.displacement.is_some();
     let averaged = (read.averaged > 1).then(|| Correction::RowsAveraged {
@@ -141,9 +155,9 @@ pub fn read_part(
         left_out: lacking.rows,
         lines: lacking.lines,
     });
-    let of_stress = plan.per_unit_area.then_some(Correction::StressAsForce);
+    let counted = plan.rate.map(|rate| Correction::RowsCounted { rate });
     let bent = bent.map(|largest| Correction::DeflectionRemoved { largest });
-    let done = left_out.into_iter().chain(of_stress).chain(averaged).chain(bent);
+    let done = left_out.into_iter().chain(counted).chain(conversion.done).chain(averaged).chain(bent);
     progress(read.bytes, read.bytes).map_err(FileError::from)?;
     let record = raw.into_record().map(|record| record.corrected_before(done));
     let record = record.map_err(|source| refused(contents, about, &read, (has_displacement, source)))?;
@@ -159,9 +173,20 @@ pub fn read_part(
         rows: read.rows(),
         averaged: read.averaged,
         ignored: read.ignored,
-        per_unit_area: plan.per_unit_area,
+        per_unit_area: conversion.per_unit_area,
+        rate: plan.rate,
         bytes: read.bytes,
     })
+}
+
+/// When the row with an index was recorded, s from the first on, at so many rows a second.
+fn time_of(read: &Columns, row: usize, rate: f64) -> f64 {
+    let rows = match (read.line_of(0), read.line_of(row)) {
+        // Rows that were left out were recorded all the same.
+        (Some(first), Some(line)) if read.ignored.lacking.rows > 0 => (line - first) as f64,
+        _ => (row * read.averaged) as f64,
+    };
+    rows / rate
 }
 
 /// Why numbers make no record, with the line, or with the strain that would be a displacement.
@@ -211,14 +236,14 @@ fn count_from_start(columns: &[ColumnUse], values: &mut [Vec<f64>], dated: &dyn 
     Some(first * factor)
 }
 
-fn to_si(values: &mut [f64], column: &ColumnUse, section: f64) {
+fn to_si(values: &mut [f64], column: &ColumnUse, factor: f64) {
     for value in values {
         *value = units::scale(*value, column.factor);
         // Not always: 0 + -0 is 0.
         if column.offset != 0.0 {
             *value += column.offset;
         }
-        *value *= section;
+        *value *= factor;
         // Not by a product with the sign, which makes -0 of 0.
         if column.sign < 0.0 && *value != 0.0 {
             *value = -*value;
@@ -232,9 +257,8 @@ fn assemble(mut series: Vec<(Role, Vec<f64>)>) -> (RawColumns, Option<f64>) {
         let index = series.iter().position(|(role, _)| wanted(*role))?;
         Some(series.swap_remove(index).1)
     };
-    let is_load = |quantity| matches!(quantity, Quantity::Force | Quantity::Stress);
     let time = take(&|role| role == Role::Values(Quantity::Time));
-    let mut displacement = take(&|role| role == Role::Values(Quantity::Displacement));
+    let mut displacement = take(&|role| matches!(role, Role::Values(quantity) if quantity.is_travel()));
     let added = take(&|role| role == Role::Added(Quantity::Displacement));
     for (value, more) in displacement.iter_mut().flatten().zip(added.iter().flatten()) {
         *value += more;
@@ -245,9 +269,9 @@ fn assemble(mut series: Vec<(Role, Vec<f64>)>) -> (RawColumns, Option<f64>) {
     }
     let larger = |most: f64, next: &f64| if next.abs() > most.abs() { *next } else { most };
     let bent = deflection.map(|deflection| deflection.iter().fold(0.0, larger));
-    let load = take(&|role| matches!(role, Role::Values(quantity) if is_load(quantity)));
-    let displacement_clock = take(&|role| role == Role::ClockOf(Quantity::Displacement));
-    let load_clock = take(&|role| matches!(role, Role::ClockOf(quantity) if is_load(quantity)));
+    let load = take(&|role| matches!(role, Role::Values(quantity) if quantity.is_load()));
+    let displacement_clock = take(&|role| matches!(role, Role::ClockOf(quantity) if quantity.is_travel()));
+    let load_clock = take(&|role| matches!(role, Role::ClockOf(quantity) if quantity.is_load()));
     let (time, force_time) = match (displacement_clock, load_clock, time) {
         (_, load_clock, time) if displacement.is_none() => (load_clock.or(time), None),
         (Some(own), Some(other), _) | (Some(own), None, Some(other)) | (None, Some(other), Some(own)) => {

@@ -34,12 +34,15 @@ pub(super) fn described(columns: &[ColumnInfo]) -> String {
 /// What a column could be called, for a message.
 pub(super) fn choices(columns: &[ColumnInfo]) -> String {
     let count = columns.len();
-    let names = columns.iter().filter_map(|column| column.name.as_deref());
-    let names: Vec<&str> = names.collect();
+    let named = |column: &ColumnInfo| {
+        let unit = column.unit.as_deref().map_or_else(String::new, |unit| format!(" in {}", shown(unit)));
+        Some(format!("\"{}\"{unit}", shown(column.name.as_deref()?)))
+    };
+    let names: Vec<String> = columns.iter().filter_map(named).collect();
     if names.is_empty() {
         return format!("a number from 1 to {count} (the columns have no names)");
     }
-    let names = few(names.into_iter().map(|name| format!("\"{}\"", shown(name))), MOST, ", ");
+    let names = few(names.into_iter(), MOST, ", ");
     format!("a number from 1 to {count} or a name that one column has ({names})")
 }
 
@@ -119,7 +122,7 @@ fn proposed<'c>(
         let place = rest
             .iter()
             .position(|column| column.unit.as_deref().is_some_and(fitting))
-            .or_else(|| rest.iter().position(|column| may_be(column, quantity)));
+            .or_else(|| rest.iter().position(|column| recognise::may_be(column, quantity)));
         let Some(column) = known.or_else(|| place.map(|place| rest.remove(place))) else {
             continue;
         };
@@ -168,17 +171,33 @@ pub(super) fn entry(quantity: Quantity, column: &NamedColumn, unit: Option<&str>
     format!("{quantity}={name}{unit}")
 }
 
+/// What would say the units of columns that are written nowhere, and the displacement where a column of unknown name may be it.
+pub(super) fn of_missing_units(
+    without: &[(String, &'static str, NamedColumn)],
+    travel: Option<&NamedColumn>,
+) -> String {
+    let quantity = Quantity::Displacement;
+    let usual = quantity.usual_unit();
+    let lines = without.iter().map(|(key, unit, column)| of_unit(key, unit, column));
+    let travels = travel.map(|column| {
+        format!(
+            "[columns.{quantity}]\nunit = \"{usual}\"\ncolumn = {}  # check; omit if there is none",
+            column.number
+        )
+    });
+    let lines = lines.chain(travels).collect::<Vec<_>>().join("\n");
+    let stated = without.iter().map(|(key, unit, column)| Some(entry(quantity_of(key)?, column, Some(unit), true)));
+    let travels = travel.map(|column| Some(entry(quantity, column, Some(usual), true)));
+    match stated.chain(travels).collect::<Option<Vec<_>>>() {
+        Some(stated) => format!("state it: {}, or in a test description:\n{lines}", option(stated)),
+        None => format!("state it in a test description:\n{lines}"),
+    }
+}
+
 /// The quantity whose own table is meant by a key such as `columns.force.unit`.
 pub(super) fn quantity_of(key: &str) -> Option<Quantity> {
     let table = key.strip_prefix("columns.")?.strip_suffix(".unit")?;
-    let all = [Quantity::Time, Quantity::Displacement, Quantity::Force, Quantity::Stress];
-    all.into_iter().find(|quantity| quantity.to_string() == table)
-}
-
-/// Whether a column could hold a quantity for all that its unit and name say.
-fn may_be(column: &ColumnInfo, quantity: Quantity) -> bool {
-    let another = |unit: &str| crate::naming::measures_another(unit, quantity);
-    !column.unit.as_deref().is_some_and(another) && !recognise::is_bending(column)
+    Quantity::ALL.into_iter().find(|quantity| quantity.to_string() == table)
 }
 
 /// The lines that say which column is the displacement, and those that say that there is none.

@@ -77,8 +77,9 @@ struct Run {
     first: usize,
     last: usize,
     width: usize,
-    /// Per line, the number of numbers times their share of the cells. The share keeps a delimiter that
-    /// occurs inside numbers ("0,1;0,2" split at commas) from winning by the number of pieces.
+    /// Per line, the number of numbers times their share of the cells that hold anything. The share keeps a delimiter that
+    /// occurs inside numbers ("0,1;0,2" split at commas) from winning by the number of pieces; empty cells, which blanks pass
+    /// over, keep none from it.
     score: f64,
 }
 
@@ -90,7 +91,8 @@ fn longest_run(cells: &[Vec<Cell>]) -> Option<Run> {
             continue;
         }
         let numbers = row.iter().filter(|cell| cell.is_numeric()).count();
-        let points = (numbers * numbers) as f64 / row.len() as f64;
+        let filled = row.iter().filter(|cell| **cell != Cell::Empty).count();
+        let points = (numbers * numbers) as f64 / filled.max(1) as f64;
         let shares_columns = |run: &Run| {
             let before = &cells[run.last];
             let mut pairs = before.iter().zip(row);

@@ -99,6 +99,14 @@ impl Columns {
         known.then(|| run.line + (row - run.row))
     }
 
+    /// The same, read from lines of which so many more stand above them in the file.
+    pub(crate) fn moved_down(mut self, lines: usize) -> Self {
+        self.runs.iter_mut().for_each(|run| run.line += lines);
+        self.ignored.footer.iter_mut().for_each(|footer| footer.first_line += lines);
+        self.ignored.lacking.lines.iter_mut().for_each(|line| *line += lines);
+        self
+    }
+
     /// Adds a row that stands on a line of the file.
     #[inline]
     pub(crate) fn push(&mut self, row: &[f64], line: usize) {

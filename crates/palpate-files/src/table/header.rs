@@ -10,8 +10,17 @@ use crate::{
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Header {
     pub(crate) names_line: Option<usize>,
+    /// A line between names and units in which some of the names go on.
+    pub(crate) more_line: Option<usize>,
     pub(crate) units_line: Option<usize>,
     pub(crate) labels: Vec<(Option<String>, Option<String>)>,
+}
+
+impl Header {
+    /// Whether names or units stand on the line with an index.
+    pub(crate) fn holds(&self, index: usize) -> bool {
+        [self.names_line, self.more_line, self.units_line].contains(&Some(index))
+    }
 }
 
 /// Looks for names and units in the lines from `skip` to the first one of `block`.
@@ -28,11 +37,14 @@ type Rows<'a> = dyn Fn(usize, &Block) -> Vec<String> + 'a;
 /// As [`find`], in rows that are split already.
 pub(crate) fn find_in_rows(rows: &Rows<'_>, skip: usize, block: &mut Block, wanted: Option<bool>) -> Header {
     if wanted == Some(false) {
-        return label(None, None, block, rows);
+        return label([None; 3], block, rows);
     }
     let above = candidates(rows, skip, block);
     let row = |index: usize| rows(index, block);
     let (names_line, units_line) = match above[..] {
+        [near, more, far, ..] if is_units(&row(near)) && go_on(&row(more), &row(far), block) => {
+            return label([Some(far), Some(more), Some(near)], block, rows);
+        }
         [near, far, ..]
             if is_names(&row(far), block) && (is_units(&row(near)) || are_mostly_units(&row(near), &row(far))) =>
         {
@@ -44,7 +56,15 @@ pub(crate) fn find_in_rows(rows: &Rows<'_>, skip: usize, block: &mut Block, want
         _ if wanted == Some(true) => (Some(take_first(block)), None),
         _ => (None, None),
     };
-    label(names_line, units_line, block, rows)
+    label([names_line, None, units_line], block, rows)
+}
+
+/// Whether a row holds the ends of a few of the names above it.
+fn go_on(more: &[String], names: &[String], block: &Block) -> bool {
+    let count = |row: &[String]| filled(row).count();
+    let below_names = more.iter().zip(names).all(|(more, name)| more.is_empty() || !name.is_empty());
+    let words = filled(more).all(|cell| number::classify(cell.as_bytes()) == Cell::Text);
+    is_names(names, block) && words && 2 * count(more) <= count(names) && below_names
 }
 
 /// Makes the first line of the block a line of names.
@@ -55,13 +75,29 @@ fn take_first(block: &mut Block) -> usize {
     names
 }
 
-/// The nearest lines above the block that hold anything.
+/// The nearest lines above the block that hold anything but the mark of the header's end or the number of a point.
 fn candidates(rows: &Rows<'_>, skip: usize, block: &Block) -> Vec<usize> {
-    (skip..block.first)
-        .rev()
-        .filter(|&index| rows(index, block).iter().any(|cell| !cell.is_empty()))
-        .take(2)
-        .collect()
+    let holds = |index: &usize| {
+        let row = rows(*index, block);
+        let mut cells = filled(&row);
+        let is_point = match (cells.next(), cells.next()) {
+            (None, _) => return false,
+            // "1  (invalid)": the number of a point without a measurement.
+            (Some(only), None) => only.starts_with(|letter: char| letter.is_ascii_digit()) && block.kinds.len() > 2,
+            _ => false,
+        };
+        !is_point && !ends_header(filled(&row))
+    };
+    (skip..block.first).rev().filter(holds).take(3).collect()
+}
+
+/// Whether the cells of a line are a mark of the end of a header: `eoh`, `[EOH]`, `***End_of_Header***`, `END OF HEADER`.
+pub(crate) fn ends_header<'c>(mut cells: impl Iterator<Item = &'c str>) -> bool {
+    let Some(only) = cells.next().filter(|_| cells.next().is_none()) else {
+        return false;
+    };
+    let letters: String = only.chars().filter(|letter| letter.is_alphanumeric()).flat_map(char::to_lowercase).collect();
+    matches!(letters.as_str(), "eoh" | "endofheader" | "endheader" | "headerend")
 }
 
 /// The cells of a line of names or units.
@@ -143,10 +179,14 @@ fn is_names(row: &[String], block: &Block) -> bool {
     row.len() + 1 >= width && !surplus && count >= 2.min(width) && filled(row).all(|cell| kind(cell) == Cell::Text)
 }
 
-fn label(names_line: Option<usize>, units_line: Option<usize>, block: &Block, rows: &Rows<'_>) -> Header {
+fn label(lines: [Option<usize>; 3], block: &Block, rows: &Rows<'_>) -> Header {
     let width = block.kinds.len();
     let row = |index: Option<usize>| index.map_or_else(Vec::new, |index| rows(index, block));
-    let (names, units) = (row(names_line), row(units_line));
+    let [names_line, more_line, units_line] = lines;
+    let [mut names, more, units] = lines.map(row);
+    for (name, more) in names.iter_mut().zip(more).filter(|(_, more)| !more.is_empty()) {
+        *name = format!("{name} {more}");
+    }
     // Tables with row labels, as R writes them, leave out the name of the labels.
     let shift = usize::from(names.len() + 1 == width && labels_rows(block, rows));
     let entry = |column: usize| {
@@ -159,6 +199,7 @@ fn label(names_line: Option<usize>, units_line: Option<usize>, block: &Block, ro
     };
     Header {
         names_line,
+        more_line,
         units_line,
         labels: (0..width).map(entry).collect(),
     }

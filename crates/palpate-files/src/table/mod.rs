@@ -12,6 +12,7 @@
 //! | `layout.rs` | how a text is written |
 //! | `reader.rs` | what every format can do, and what a caller may fix in advance |
 //! | `block.rs`, `decimal.rs` | the rows of numbers among other lines, and their decimal mark |
+//! | `stacked.rs` | tables one below the other |
 //! | `header.rs`, `metadata.rs` | names and units above them, and named values |
 //! | `recognise.rs`, `epoch.rs` | which column holds a quantity; times counted from 1970 |
 
@@ -28,6 +29,7 @@ pub(crate) mod metadata;
 mod part;
 mod reader;
 pub(crate) mod recognise;
+mod stacked;
 
 pub(crate) use block::Block;
 pub use column_ref::ColumnRef;
@@ -42,3 +44,4 @@ pub use part::{Clock, ColumnInfo, ColumnKind, Label, Metadata, Part, SkippedPart
 pub(crate) use reader::{Found, ReadPart, share};
 pub use reader::{Heard, ReadOptions};
 pub(crate) use recognise::names_time;
+pub(crate) use stacked::{RowKind, Starts};

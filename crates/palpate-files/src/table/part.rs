@@ -75,6 +75,7 @@ impl Part {
         match column {
             ColumnRef::Number(number) => self.columns.get(number.wrapping_sub(1)),
             ColumnRef::Name(name) => self.column_named(name),
+            ColumnRef::First(columns) => columns.iter().find_map(|column| self.column_of(column)),
         }
     }
 

@@ -4,17 +4,52 @@ use palpate::units::Dimension;
 
 use super::part::{ColumnInfo, ColumnKind};
 use crate::naming::{
-    BENDING, OTHER, OTHER_CHARACTERS, Quantity, SIGNS_OF_LENGTH, STRAINS, VOCABULARY, is_listed, measured,
-    measures_another, rank_of_name, unit_factor, words,
+    AXIAL, BENDING, OTHER, OTHER_CHARACTERS, Quantity, SHEAR, SIGNS_OF_LENGTH, STRAINS, VOCABULARY, is_listed,
+    measured, measures_another, names_another, rank_in_rheometry, rank_of_name, unit_factor, words,
 };
 
 /// The columns that name `quantity` best: one if it is clear, several if it is not, none if none does.
 pub(crate) fn candidates(columns: &[ColumnInfo], quantity: Quantity) -> Vec<&ColumnInfo> {
-    let ranked: Vec<(u8, &ColumnInfo)> =
-        columns.iter().filter_map(|column| Some((rank(column, quantity)?, column))).collect();
+    let names = |column: &ColumnInfo, quantity| rank(column, quantity).is_some_and(|rank| rank < 10);
+    // A machine that pulls and turns has a travel; a rheometer has none, but a force along its axis and an angle.
+    let travels = || columns.iter().any(|column| names(column, Quantity::Displacement));
+    let sheared = |column: &ColumnInfo| is_of_shear(column) || names(column, Quantity::Stress);
+    let in_shear =
+        matches!(quantity, Quantity::Force | Quantity::Displacement) && columns.iter().any(sheared) && !travels();
+    let is_angle =
+        |column: &ColumnInfo| column.unit.as_deref().is_some_and(|unit| unit_factor(unit, Dimension::Angle).is_some());
+    let ranked = columns.iter().filter(|column| {
+        !in_shear || !(if quantity == Quantity::Force { has_word(column, AXIAL) } else { is_angle(column) })
+    });
+    let ranked: Vec<(u8, &ColumnInfo)> = ranked.filter_map(|column| Some((rank(column, quantity)?, column))).collect();
     let best = ranked.iter().map(|(rank, _)| *rank).min();
-    let tied = ranked.into_iter().filter(|(rank, _)| Some(*rank) == best);
-    tied.map(|(_, column)| column).collect()
+    let tied: Vec<&ColumnInfo> =
+        ranked.into_iter().filter(|(rank, _)| Some(*rank) == best).map(|(_, column)| column).collect();
+    // "Shear stress (sinusoidal)" is the shear stress with a remark: the one without goes before it.
+    let plain = tied.iter().find(|plain| tied.iter().all(|other| remarks_on(other, plain)));
+    plain.map_or(tied.clone(), |plain| vec![*plain])
+}
+
+/// Whether a column is another, or is named like it with a remark in brackets.
+fn remarks_on(column: &ColumnInfo, plain: &ColumnInfo) -> bool {
+    let (Some(name), Some(plain_name)) = (&column.name, &plain.name) else {
+        return column.number == plain.number;
+    };
+    let behind = name.strip_prefix(plain_name.as_str());
+    column.number == plain.number || behind.is_some_and(|behind| behind.trim_start().starts_with('('))
+}
+
+fn has_word(column: &ColumnInfo, known: &str) -> bool {
+    column
+        .name
+        .as_deref()
+        .is_some_and(|name| words(measured(name)).iter().any(|word| is_listed(word, known)))
+}
+
+/// Whether a column is one of a body in shear, which has a force along the axis of the machine as well.
+fn is_of_shear(column: &ColumnInfo) -> bool {
+    let torque = |unit: &str| unit_factor(unit, Dimension::Torque).is_some();
+    has_word(column, SHEAR) || column.unit.as_deref().is_some_and(torque)
 }
 
 /// Whether one of the columns is named as a time.
@@ -41,8 +76,10 @@ fn rank(column: &ColumnInfo, quantity: Quantity) -> Option<u8> {
     if column.kind != ColumnKind::Number && !is_date {
         return None;
     }
-    let vocabulary = VOCABULARY.iter().find(|words| words.quantity == quantity)?;
     let name = column.name.as_deref()?;
+    let Some(vocabulary) = VOCABULARY.iter().find(|words| words.quantity == quantity) else {
+        return rank_in_rheometry(name, column.unit.as_deref(), quantity);
+    };
     if is_date {
         // The clock on the wall serves where no column of numbers does.
         let called_so = || words(name).iter().any(|word| DATES.contains(&word.as_str()));
@@ -50,12 +87,32 @@ fn rank(column: &ColumnInfo, quantity: Quantity) -> Option<u8> {
     }
     let by_name = rank_of_name(name, vocabulary)?;
     match column.unit.as_deref() {
+        // "Time_force" is the time of a force.
+        None if quantity != Quantity::Time && named_plainly(name, Quantity::Time) => None,
         None => Some(by_name),
         Some(unit) if unit_factor(unit, quantity.dimension()).is_some() => Some(by_name),
         Some(unit) if measures_another(unit, quantity) => None,
         // Perhaps a unit that is not understood: better one with a good unit, but better this than none.
         Some(_) => Some(by_name + 10),
     }
+}
+
+/// Whether a name has a word that means a quantity and nothing else.
+fn named_plainly(name: &str, quantity: Quantity) -> bool {
+    let vocabulary = VOCABULARY.iter().find(|words| words.quantity == quantity);
+    vocabulary.is_some_and(|vocabulary| rank_of_name(name, vocabulary).is_some_and(|rank| rank < 2))
+}
+
+/// Whether a column could hold a quantity for all that its unit and name say: what a message may propose.
+pub(crate) fn may_be(column: &ColumnInfo, quantity: Quantity) -> bool {
+    let of = |unit: &str, dimension: Dimension| unit_factor(unit, dimension).is_some();
+    let another = |unit: &str| measures_another(unit, quantity) || of(unit, Dimension::Angle);
+    let names_it = |unit: &str| of(unit, quantity.dimension());
+    let (name, unit) = (column.name.as_deref(), column.unit.as_deref());
+    column.kind == ColumnKind::Number
+        && !unit.is_some_and(another)
+        && !is_bending(column)
+        && (unit.is_some_and(names_it) || !name.is_some_and(|name| names_another(name, quantity)))
 }
 
 /// Columns that are named after `quantity` but have the unit of another, and that unit.
@@ -94,6 +151,11 @@ pub(crate) fn strain(columns: &[ColumnInfo]) -> Option<&ColumnInfo> {
     let named = |name: &str| words(measured(name)).iter().any(|word| is_listed(word, STRAINS));
     let is_strain = |column: &&ColumnInfo| column.name.as_deref().is_some_and(named);
     columns.iter().filter(|column| column.kind == ColumnKind::Number).find(is_strain)
+}
+
+/// Whether a column is the gap between the plates of a rheometer.
+pub(crate) fn is_gap(column: &ColumnInfo) -> bool {
+    has_word(column, "gap spalt spaltweite entrefer")
 }
 
 /// Whether a column is the bending of a cantilever.

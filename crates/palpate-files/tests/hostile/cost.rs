@@ -167,6 +167,9 @@ fn columns_lines_and_remarks_of_a_text_cost_in_proportion() {
     in_proportion("columns of decimals", 3000, points, look);
     let rows = |count: usize| (0..count).map(|row| format!("{row},0.5\n")).collect::<String>().into_bytes();
     in_proportion("rows", 5000, rows, |file| assert_eq!(read_parts(file), 1));
+    let step = |number: usize| format!("[step]\nStep - {number}\nTime\tStress\ns\tPa\n0\t1\n1\t2\n\n");
+    let steps = |count: usize| (0..count).map(step).collect::<String>().into_bytes();
+    in_proportion("steps", 100, steps, |file| assert!(read_parts(file) >= 100));
     let empty_keys = |count: usize| {
         let end = "# segment: extend\n# columns: height vDeflection\n# units: m N\n1 2\n2 3\n";
         format!("{}{end}", "# columns:\n".repeat(count)).into_bytes()

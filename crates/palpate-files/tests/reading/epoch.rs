@@ -78,7 +78,7 @@ fn a_plain_time_of_that_size_is_requested_for_its_unit() {
         matches!(
             &error,
             ReadError::Column {
-                source: ColumnError::NoUnit(_),
+                source: ColumnError::NoUnit { .. },
                 ..
             }
         ),
@@ -90,7 +90,7 @@ fn a_plain_time_of_that_size_is_requested_for_its_unit() {
         matches!(
             &error,
             ReadError::Column {
-                source: ColumnError::NoUnit(_),
+                source: ColumnError::NoUnit { .. },
                 ..
             }
         ),

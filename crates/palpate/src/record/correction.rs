@@ -59,6 +59,24 @@ pub struct Tare {
     pub displacement: f64,
 }
 
+/// A quantity that a file gives in place of force or displacement.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum SourceQuantity {
+    /// Strain: times the length of the body it is the displacement.
+    Strain,
+    /// Strain of a creep whose constant stress the file does not give: likewise, under a force that only stands for it.
+    CreepStrain,
+    /// Relaxation modulus E(t) or G(t): times the section it is the force at a strain of 1.
+    Modulus,
+    /// Creep compliance J(t) or D(t): times the length it is the displacement at a stress of 1 Pa.
+    Compliance,
+    /// Torque of a rheometer.
+    Torque,
+    /// Angle of a rheometer.
+    Angle,
+}
+
 /// Something that was done to a record; SI units. A record carries all of them in the order in which they were done.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(tag = "correction", rename_all = "snake_case")]
@@ -101,6 +119,18 @@ pub enum Correction {
     },
     /// The file gives stress, and nothing the section: the force is that on 1 m².
     StressAsForce,
+    /// The file gives another quantity than force or displacement, which was multiplied by a length, an area or both.
+    ReadAs {
+        /// The quantity.
+        quantity: SourceQuantity,
+        /// What it was multiplied by, SI.
+        factor: f64,
+    },
+    /// The file has no time: the rows were counted at the rate that it states.
+    RowsCounted {
+        /// Rows a second, Hz.
+        rate: f64,
+    },
     /// Displacement and force with clocks of their own were brought onto the times of the force.
     ClocksJoined {
         /// Samples of the force outside the times of the displacement, left out.
@@ -196,6 +226,29 @@ impl fmt::Display for Correction {
                 write!(f, "{rows} rows of the file averaged while reading, {averaged} per sample")
             }
             Self::StressAsForce => f.write_str("stress read as the force on 1 m²: N stands for Pa"),
+            Self::ReadAs { quantity, factor } => {
+                let factor = significant(*factor, 4);
+                match quantity {
+                    SourceQuantity::Strain => write!(f, "strain times {factor} m read as the displacement"),
+                    SourceQuantity::CreepStrain => write!(
+                        f,
+                        "strain times {factor} m read as the displacement at a constant stress, which the file does not give"
+                    ),
+                    SourceQuantity::Modulus => {
+                        write!(f, "modulus times {factor} m² read as the force at a strain of 1")
+                    }
+                    SourceQuantity::Compliance => {
+                        write!(f, "compliance times {factor} m Pa read as the displacement at a stress of 1 Pa")
+                    }
+                    SourceQuantity::Torque => {
+                        write!(f, "torque times {factor} 1/m read as the force of the same shear stress at the rim")
+                    }
+                    SourceQuantity::Angle => {
+                        write!(f, "angle times {factor} m read as the displacement of the same shear strain at the rim")
+                    }
+                }
+            }
+            Self::RowsCounted { rate } => write!(f, "time counted from the rows at {rate} Hz"),
             Self::ClocksJoined { left_out } => {
                 let left_out = counted(*left_out, "row");
                 write!(f, "displacement interpolated at the times of the force, {left_out} of the force left out")

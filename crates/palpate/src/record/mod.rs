@@ -24,7 +24,7 @@ mod signals;
 
 pub use checks::RecordError;
 pub use correct::{Compliance, ComplianceError, ComplianceTable};
-pub use correction::{Baseline, Clock, Column, Correction, Tare};
+pub use correction::{Baseline, Clock, Column, Correction, SourceQuantity, Tare};
 pub use measured::Record;
 pub use options::{CorrectionOptions, SkewChoice};
 pub use raw::RawColumns;

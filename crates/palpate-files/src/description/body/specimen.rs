@@ -1,6 +1,6 @@
 //! The table `[specimen]` to shape, size and stiffness of the body.
 
-use std::f64::consts::{FRAC_PI_2, PI};
+use std::f64::consts::{FRAC_PI_2, FRAC_PI_4, PI};
 
 use palpate::{
     contact::{Base, Curve, Equilibrium, Shape, Sides, Specimen, ThinLayer, Tip},
@@ -47,6 +47,22 @@ impl SpecimenTable {
                 area: PI / 4.0 * length("diameter", &self.diameter)?.powi(2),
                 length: length("length", &self.length)?,
             },
+            // In shear: the section of the plate, and the gap at the rim.
+            ShapeName::ConeAndPlate => {
+                let (diameter, key) = (length("diameter", &self.diameter)?, "specimen.cone_angle");
+                let angle = size("cone_angle", &self.cone_angle, Dimension::Angle)?;
+                if angle >= FRAC_PI_4 {
+                    let expected = "an angle below 45 deg, from the plate to the cone";
+                    return Err(self.cone_angle.as_ref().map_or_else(
+                        || source.missing(key, expected),
+                        |written| source.value(key, expected, written),
+                    ));
+                }
+                Shape::Prism {
+                    area: PI / 4.0 * diameter.powi(2),
+                    length: angle * diameter / 2.0,
+                }
+            }
             ShapeName::Block => Shape::Prism {
                 area: size("area", &self.area, Dimension::Area)?,
                 length: length("length", &self.length)?,
@@ -207,6 +223,7 @@ impl SpecimenTable {
             ("diameter", written(&self.diameter)),
             ("width", written(&self.width)),
             ("thickness", written(&self.thickness)),
+            ("cone_angle", written(&self.cone_angle)),
             ("half_angle", written(&self.half_angle)),
             ("base", self.base.map(|base| format!("\"{base}\""))),
             ("area", written(&self.area)),
@@ -229,6 +246,7 @@ impl SpecimenTable {
                 None if wanted.contains(&name) => {
                     let example = match name {
                         "area" => "\"40 mm^2\"",
+                        "cone_angle" => "\"2 deg\"",
                         "half_angle" => "\"35 deg\"",
                         "thickness" if shape.is_tip() => "\"10 um\"",
                         "widths" => {

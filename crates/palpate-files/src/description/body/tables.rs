@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 use crate::description::text::quantity::QuantityText;
 
 /// Shape, size and stiffness of the body. Give the sizes of its shape: a ball takes radius; a pad takes
-/// radius and thickness; a strip takes width, thickness and length; a dumbbell takes thickness and widths; a cylinder takes diameter and length; a block takes area and length;
+/// radius and thickness; a strip takes width, thickness and length; a dumbbell takes thickness and widths; a cylinder takes diameter and length; a cone and plate takes diameter and cone_angle; a block takes area and length;
 /// a profile takes depth and areas; a spherical tip or a flat punch takes radius and may take thickness and base; a conical or pyramidal tip
 /// takes half_angle and thickness and may take base. Tips also take poisson_ratio.
 #[derive(Debug, Clone, Deserialize, JsonSchema)]
@@ -18,8 +18,10 @@ pub(crate) struct SpecimenTable {
     pub(crate) shape: ShapeName,
     /// Radius of a ball, a spherical tip or a flat punch; outer radius of a pad.
     pub(crate) radius: Option<QuantityText>,
-    /// Diameter of a cylinder that is loaded along its axis.
+    /// Diameter of a cylinder that is loaded along its axis, or turned about it between parallel plates, and of a cone and plate.
     pub(crate) diameter: Option<QuantityText>,
+    /// Angle between a cone and its plate, such as "2 deg".
+    pub(crate) cone_angle: Option<QuantityText>,
     /// Width of the section of a strip.
     pub(crate) width: Option<QuantityText>,
     /// Thickness of the section of a strip or a dumbbell; of the soft layer of a pad, at most its radius; of the sample under a tip, a half space without it.
@@ -83,8 +85,11 @@ pub(crate) enum ShapeName {
     Strip,
     /// A dumbbell (ISO 37, ASTM D412) pulled along its length.
     Dumbbell,
-    /// A cylinder, pulled or pressed along its axis.
+    /// A cylinder, pulled or pressed along its axis, or turned between the parallel plates of a rheometer.
     Cylinder,
+    /// The sample between the cone and the plate of a rheometer.
+    #[serde(rename = "cone and plate")]
+    ConeAndPlate,
     /// Any body of constant section.
     Block,
     /// Any other body, by a table of its contact area.
@@ -116,6 +121,7 @@ impl ShapeName {
             Self::Strip => &["width", "thickness", "length"],
             Self::Dumbbell => &["thickness", "widths"],
             Self::Cylinder => &["diameter", "length"],
+            Self::ConeAndPlate => &["diameter", "cone_angle"],
             Self::Block => &["area", "length"],
             Self::Profile => &["depth", "areas"],
             Self::SphericalTip | Self::FlatPunch => &["radius"],

@@ -14,7 +14,20 @@ use crate::{
 /// Assignment of columns. Omitted columns are recognised by the header of the file.
 #[derive(Debug, Clone, Default, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
-#[schemars(rename = "Columns", extend("not" = { "required": ["force", "stress"] }))]
+#[schemars(rename = "Columns", extend("not" = { "anyOf": [
+    { "required": ["force", "stress"] },
+    { "required": ["force", "modulus"] },
+    { "required": ["force", "torque"] },
+    { "required": ["stress", "modulus"] },
+    { "required": ["stress", "torque"] },
+    { "required": ["modulus", "torque"] },
+    { "required": ["displacement", "strain"] },
+    { "required": ["displacement", "compliance"] },
+    { "required": ["displacement", "angle"] },
+    { "required": ["strain", "compliance"] },
+    { "required": ["strain", "angle"] },
+    { "required": ["compliance", "angle"] },
+] }))]
 pub(crate) struct ColumnsTable {
     /// Time. Not needed where displacement and force have clocks of their own.
     time: Option<TimeTable>,
@@ -24,6 +37,16 @@ pub(crate) struct ColumnsTable {
     force: Option<ColumnTable>,
     /// Stress instead of force; the section of the specimen turns it into force.
     stress: Option<ColumnTable>,
+    /// Strain instead of displacement; the length of the specimen turns it into displacement.
+    strain: Option<ColumnTable>,
+    /// Relaxation modulus E(t) or G(t) instead of force: the stress at a strain of 1.
+    modulus: Option<ColumnTable>,
+    /// Creep compliance J(t) or D(t) instead of displacement, without a force: the strain at a stress of 1 Pa.
+    compliance: Option<ColumnTable>,
+    /// Torque instead of force, of a rheometer: the sizes of the specimen turn it into force.
+    torque: Option<ColumnTable>,
+    /// Angle instead of displacement, of a rheometer: the sizes of the specimen turn it into displacement.
+    angle: Option<ColumnTable>,
     /// Deflection of the cantilever of an AFM, subtracted from the displacement, which is then that of the cantilever's base.
     deflection: Option<DeflectionTable>,
 }
@@ -31,12 +54,14 @@ pub(crate) struct ColumnsTable {
 /// The column of the time.
 #[derive(Debug, Clone, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
-#[schemars(rename = "TimeColumn")]
+#[schemars(rename = "TimeColumn", extend("not" = { "required": ["unit", "rate"] }))]
 struct TimeTable {
     /// Number of the column, from 1, or its name.
     column: Option<ColumnRef>,
     /// Unit, such as "s"; not needed where the header gives it.
     unit: Option<String>,
+    /// Instead of a unit: samples a second, such as "10 kHz", where the column counts samples or, without a column, the rows do.
+    rate: Option<QuantityText>,
 }
 
 /// The column of a measured quantity.
@@ -104,16 +129,25 @@ struct DeflectionTable {
 impl ColumnsTable {
     /// The choices; `machine` has stated what the text itself does not.
     pub(super) fn checked(self, source: &Source<'_>, machine: Option<&str>) -> Result<ColumnChoices, DescriptionError> {
-        if self.force.is_some() && self.stress.is_some() {
-            return Err(source.both("columns.force", "columns.stress"));
+        let given = [
+            ("columns.force", self.force.is_some(), true),
+            ("columns.stress", self.stress.is_some(), true),
+            ("columns.modulus", self.modulus.is_some(), true),
+            ("columns.torque", self.torque.is_some(), true),
+            ("columns.displacement", self.displacement.is_some(), false),
+            ("columns.strain", self.strain.is_some(), false),
+            ("columns.compliance", self.compliance.is_some(), false),
+            ("columns.angle", self.angle.is_some(), false),
+        ];
+        for of_load in [true, false] {
+            let mut stated = given.iter().filter(|(_, given, is_load)| *given && *is_load == of_load);
+            if let (Some((one, ..)), Some((other, ..))) = (stated.next(), stated.next()) {
+                return Err(source.both(*one, *other));
+            }
         }
         // What a header calls a displacement may be one of which the deflection is off already.
         let names_height = self.displacement.as_ref().is_some_and(|table| table.column.is_some());
-        let time = self.time.map(|TimeTable { column, unit }| ColumnTable {
-            column,
-            unit,
-            ..ColumnTable::default()
-        });
+        let time = self.time.map(|time| time.checked(source, machine)).transpose()?;
         let deflection = self.deflection.map(|table| ColumnTable {
             column: Some(table.column),
             unit: table.unit,
@@ -125,10 +159,15 @@ impl ColumnsTable {
             table.map(|table| table.checked(source, machine, key, quantity)).transpose()
         };
         Ok(ColumnChoices {
-            time: measured(time, "time", Quantity::Time)?,
+            time,
             displacement: self.displacement.map(|table| table.checked(source, machine)).transpose()?,
             force: measured(self.force, "force", Quantity::Force)?,
             stress: measured(self.stress, "stress", Quantity::Stress)?,
+            strain: measured(self.strain, "strain", Quantity::Strain)?,
+            modulus: measured(self.modulus, "modulus", Quantity::Modulus)?,
+            compliance: measured(self.compliance, "compliance", Quantity::Compliance)?,
+            torque: measured(self.torque, "torque", Quantity::Torque)?,
+            angle: measured(self.angle, "angle", Quantity::Angle)?,
             deflection: match deflection {
                 Some(_) if !names_height => return Err(source.missing("columns.displacement", HEIGHT)),
                 deflection => measured(deflection, "deflection", Quantity::Displacement)?,
@@ -139,6 +178,24 @@ impl ColumnsTable {
 
 /// What a deflection is taken off.
 const HEIGHT: &str = "the column of the height, such as { column = \"measuredHeight\", sign = -1 }";
+
+impl TimeTable {
+    fn checked(self, source: &Source<'_>, machine: Option<&str>) -> Result<ColumnChoice, DescriptionError> {
+        let key = "columns.time.rate";
+        if self.unit.is_some() && self.rate.is_some() {
+            return Err(source.both(key, "columns.time.unit"));
+        }
+        let plain = ColumnTable {
+            column: self.column,
+            unit: self.unit,
+            ..ColumnTable::default()
+        };
+        Ok(ColumnChoice {
+            rate: source.positive_if(key, self.rate.as_ref(), Dimension::Frequency)?,
+            ..plain.checked(source, machine, "time", Quantity::Time)?
+        })
+    }
+}
 
 impl DisplacementTable {
     fn checked(self, source: &Source<'_>, machine: Option<&str>) -> Result<ColumnChoice, DescriptionError> {
@@ -192,6 +249,7 @@ impl ColumnTable {
             column: self.column,
             unit_by: machine.filter(|_| self.unit.is_some() && !own_unit).map(str::to_owned),
             unit: self.unit,
+            rate: None,
             scale,
             offset: offset.transpose()?.unwrap_or(0.0),
             sign,

@@ -12,6 +12,8 @@ pub struct ColumnChoice {
     pub column: Option<ColumnRef>,
     /// Its unit, one that its quantity takes.
     pub unit: Option<String>,
+    /// Of a time: the column counts samples, or without a column the rows do, so many a second, Hz.
+    pub rate: Option<f64>,
     /// The machine whose conventions say that unit, where the description itself does not.
     pub unit_by: Option<String>,
     /// Scale of a volt, in SI, where the column holds volts.
@@ -35,6 +37,7 @@ impl Default for ColumnChoice {
         Self {
             column: None,
             unit: None,
+            rate: None,
             unit_by: None,
             scale: None,
             offset: 0.0,
@@ -65,15 +68,31 @@ pub struct ColumnChoices {
     pub time: Option<ColumnChoice>,
     /// Displacement.
     pub displacement: Option<ColumnChoice>,
-    /// Force; never together with stress.
+    /// Force; of force, stress, modulus and torque one at most is stated, and of displacement, strain, compliance and angle.
     pub force: Option<ColumnChoice>,
     /// Stress, to be turned into force by the section of the specimen.
     pub stress: Option<ColumnChoice>,
+    /// Strain, to be turned into displacement by the length of the specimen.
+    pub strain: Option<ColumnChoice>,
+    /// Relaxation modulus: the stress at a strain of 1.
+    pub modulus: Option<ColumnChoice>,
+    /// Creep compliance: the strain at a stress of 1 Pa.
+    pub compliance: Option<ColumnChoice>,
+    /// Torque of a rheometer, to be turned into force by the sizes of the specimen.
+    pub torque: Option<ColumnChoice>,
+    /// Angle of a rheometer, to be turned into displacement.
+    pub angle: Option<ColumnChoice>,
     /// Deflection of the cantilever, to be taken off the displacement.
     pub deflection: Option<ColumnChoice>,
 }
 
 impl ColumnChoices {
+    /// What is stated of one of several quantities.
+    pub(crate) fn stated(&self, is_one: impl Fn(Quantity) -> bool) -> Option<(Quantity, &ColumnChoice)> {
+        // The deflection of a cantilever comes behind the displacement, which it is taken off.
+        self.all().into_iter().find(|(quantity, _)| is_one(*quantity))
+    }
+
     /// What is stated about each column of which anything is, and what it measures.
     pub(crate) fn all(&self) -> Vec<(Quantity, &ColumnChoice)> {
         let stated = [
@@ -81,6 +100,11 @@ impl ColumnChoices {
             (Quantity::Displacement, &self.displacement),
             (Quantity::Force, &self.force),
             (Quantity::Stress, &self.stress),
+            (Quantity::Strain, &self.strain),
+            (Quantity::Modulus, &self.modulus),
+            (Quantity::Compliance, &self.compliance),
+            (Quantity::Torque, &self.torque),
+            (Quantity::Angle, &self.angle),
             (Quantity::Displacement, &self.deflection),
         ];
         stated.into_iter().filter_map(|(quantity, choice)| Some((quantity, choice.as_ref()?))).collect()

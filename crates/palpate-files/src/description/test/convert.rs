@@ -11,15 +11,19 @@ use palpate::{
 
 use super::{
     corrections,
-    description::TestDescription,
+    description::{TestDescription, Torsion},
     instrument, preset, settings,
     tables::{ContactTable, TestTables},
 };
 use crate::description::{
-    body::{contact, specimen},
+    body::{
+        contact, specimen,
+        tables::{ShapeName, SpecimenTable},
+    },
     text::{
         error::DescriptionError,
         kind::DescriptionKind,
+        quantity::QuantityText,
         source::{self, Source},
     },
 };
@@ -94,8 +98,44 @@ pub fn parse_test(text: &str, path: &Path) -> Result<TestDescription, Descriptio
         about: tables.about,
         reading: tables.file,
         columns,
+        torsion: tables.specimen.as_ref().map(|specimen| torsion(&source, specimen)).transpose()?.flatten(),
         analysis,
     })
+}
+
+/// What makes force and displacement of torque and angle for a sample of this shape.
+fn torsion(source: &Source<'_>, specimen: &SpecimenTable) -> Result<Option<Torsion>, DescriptionError> {
+    let length = |name: &str, size: &Option<QuantityText>| {
+        source.positive_if(&format!("specimen.{name}"), size.as_ref(), Dimension::Length)
+    };
+    let diameter = length("diameter", &specimen.diameter)?;
+    Ok(
+        match (
+            specimen.shape,
+            diameter,
+            length("width", &specimen.width)?,
+            length("thickness", &specimen.thickness)?,
+        ) {
+            (ShapeName::Cylinder, Some(diameter), ..) => Some(Torsion {
+                force_per_torque: 4.0 / diameter,
+                travel_per_angle: diameter / 2.0,
+            }),
+            (ShapeName::ConeAndPlate, Some(diameter), ..) => Some(Torsion {
+                force_per_torque: 3.0 / diameter,
+                travel_per_angle: diameter / 2.0,
+            }),
+            // Torsion of a strip: the stress and strain at the middle of its wide side.
+            (ShapeName::Strip, _, Some(width), Some(thickness)) => {
+                let (thick, wide) = (thickness.min(width), thickness.max(width));
+                let slender = thick / wide;
+                Some(Torsion {
+                    force_per_torque: (3.0 + 1.8 * slender) / thick,
+                    travel_per_angle: thick * (1.0 - 0.378 * slender * slender),
+                })
+            }
+            _ => None,
+        },
+    )
 }
 
 fn geometry(source: &Source<'_>, tables: &TestTables) -> Result<Option<Geometry>, DescriptionError> {

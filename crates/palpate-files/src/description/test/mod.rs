@@ -27,7 +27,7 @@ pub(super) mod tables;
 pub use choices::{ChoiceError, parse_hold_start, parse_touch};
 pub use columns::{ClockChoice, ColumnChoice, ColumnChoices};
 pub use convert::{parse_test, read_test};
-pub use description::{About, TestDescription};
+pub use description::{About, TestDescription, Torsion};
 pub(crate) use machines::contradicts;
 pub use machines::machines_of;
 pub use named_columns::NamedColumns;

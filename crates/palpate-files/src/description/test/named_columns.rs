@@ -1,6 +1,6 @@
 //! The columns of a record as they are named on a command line.
 
-use palpate::units::UnitError;
+use palpate::units::{self, Dimension, UnitError};
 
 use super::{
     choices::ChoiceError,
@@ -11,8 +11,9 @@ use crate::{
     table::{ColumnRef, EPOCH},
 };
 
-const COLUMNS: &str = "a list of time, displacement, force or stress, each as QUANTITY=COLUMN:UNIT, such as \
-    \"force=Kraft:N,displacement=Weg:mm,time=Zeit:s\" (a column by its name or its number from 1; a unit in the header may be left out)";
+const COLUMNS: &str = "a list of time, displacement, force, stress, strain, modulus, compliance, torque or angle, each as \
+    QUANTITY=COLUMN:UNIT, such as \"force=Kraft:N,displacement=Weg:mm,time=Zeit:s\" (a column by its name or its number from 1; a unit in \
+    the header may be left out; \"time=:10 kHz\" counts rows)";
 
 /// Columns of a record as they were typed.
 #[derive(Debug, Clone, PartialEq)]
@@ -54,30 +55,36 @@ fn parsed(text: &str) -> Result<ColumnChoices, ChoiceError> {
         let (quantity, stated) = entry.split_once('=').ok_or_else(|| error(None))?;
         let quantity = quantity_of(quantity).ok_or_else(|| error(None))?;
         let (name, unit) = stated.rsplit_once(':').map_or((stated, ""), |(name, unit)| (name.trim(), unit.trim()));
+        let rate = Some(unit).filter(|_| quantity == Quantity::Time);
+        let rate = rate.and_then(|unit| units::parse(unit, Dimension::Frequency).ok()).filter(|rate| *rate > 0.0);
         let since_1970 = quantity == Quantity::Time && unit.eq_ignore_ascii_case(EPOCH);
-        if !unit.is_empty() && !since_1970 && unit_factor(unit, quantity.dimension()).is_none() {
+        if !unit.is_empty() && !since_1970 && rate.is_none() && unit_factor(unit, quantity.dimension()).is_none() {
             let (dimension, unit) = (quantity.dimension(), unit.to_owned());
             return Err(error(Some(UnitError::UnknownUnit { dimension, unit })));
         }
         let column = match name.trim() {
+            "" if rate.is_some() => None,
             "" => return Err(error(None)),
-            name => match name.parse() {
+            name => Some(match name.parse() {
                 Ok(number) if number > 0 => ColumnRef::Number(number),
                 _ => ColumnRef::Name(name.to_owned()),
-            },
+            }),
         };
         let place = columns.place(quantity);
         if place.is_some() {
             return Err(error(None));
         }
         *place = Some(ColumnChoice {
-            column: Some(column),
-            unit: Some(unit.to_owned()).filter(|unit| !unit.is_empty()),
+            column,
+            unit: Some(unit.to_owned()).filter(|unit| !unit.is_empty() && rate.is_none()),
+            rate,
             ..ColumnChoice::default()
         });
     }
-    if columns.force.is_some() && columns.stress.is_some() {
-        return Err(error(None));
+    for is_one in [Quantity::is_load, Quantity::is_travel] {
+        if columns.all().into_iter().filter(|(quantity, _)| is_one(*quantity)).count() > 1 {
+            return Err(error(None));
+        }
     }
     Ok(columns)
 }
@@ -96,8 +103,7 @@ fn entries(text: &str) -> Vec<String> {
 }
 
 fn quantity_of(name: &str) -> Option<Quantity> {
-    let quantities = [Quantity::Time, Quantity::Displacement, Quantity::Force, Quantity::Stress];
-    quantities.into_iter().find(|quantity| quantity.to_string() == name.trim())
+    Quantity::ALL.into_iter().find(|quantity| quantity.to_string() == name.trim())
 }
 
 impl ColumnChoices {
@@ -107,19 +113,28 @@ impl ColumnChoices {
             Quantity::Displacement => &mut self.displacement,
             Quantity::Force => &mut self.force,
             Quantity::Stress => &mut self.stress,
+            Quantity::Strain => &mut self.strain,
+            Quantity::Modulus => &mut self.modulus,
+            Quantity::Compliance => &mut self.compliance,
+            Quantity::Torque => &mut self.torque,
+            Quantity::Angle => &mut self.angle,
         }
     }
 
     /// Takes the columns of `upper`, and their units where it says any, in place of its own.
     pub fn lay_over(&mut self, upper: &Self) {
         for (quantity, stated) in upper.all() {
-            match quantity {
-                Quantity::Force => self.stress = None,
-                Quantity::Stress => self.force = None,
-                Quantity::Time | Quantity::Displacement => {}
+            for other in Quantity::ALL.into_iter().filter(|other| *other != quantity) {
+                if quantity.is_load() && other.is_load() || quantity.is_travel() && other.is_travel() {
+                    *self.place(other) = None;
+                }
             }
             let own = self.place(quantity).get_or_insert_default();
             own.column.clone_from(&stated.column);
+            own.rate = stated.rate;
+            if stated.rate.is_some() {
+                own.unit = None;
+            }
             if stated.unit.is_some() {
                 own.unit.clone_from(&stated.unit);
                 (own.unit_by, own.scale, own.travel_per_unit) = (None, None, None);

@@ -53,8 +53,6 @@ pub(super) const MACHINES: &[Machine] = machines![
     "ta-xtplus-grams",
     "wsg-50",
     "zwick-testxpert",
-    "zwick-testxpert-french",
-    "zwick-testxpert-german",
 ];
 
 /// The grippers and machines whose conventions are known, by name.
@@ -69,8 +67,11 @@ pub fn machines() -> &'static [Machine] {
 }
 
 /// Keys that exclude each other: where the test says one, the other of the preset falls away.
-const EXCLUSIVE: [(&str, &str); 3] = [
+const EXCLUSIVE: [(&str, &str); 6] = [
     ("columns.force", "columns.stress"),
+    ("columns.force", "columns.modulus"),
+    ("columns.force", "columns.torque"),
+    ("columns.time.unit", "columns.time.rate"),
     ("columns.displacement.unit", "columns.displacement.travel_per_unit"),
     ("columns.displacement.also", "columns.displacement.doubled"),
 ];

@@ -105,5 +105,6 @@ pub(crate) fn usual(dimension: Dimension) -> (&'static str, &'static str, &'stat
         Dimension::Temperature => ("K", "1..10", "1, 5, 10"),
         Dimension::PerKelvin => ("%/K", "0.1..1", "0.1, 0.5, 1"),
         Dimension::Angle => ("deg", "20..70", "20, 35, 70"),
+        Dimension::PerPressure => ("1/kPa", "0.1..10", "0.1, 1, 10"),
     }
 }

@@ -17,6 +17,9 @@ use crate::{
 /// How many rows go by between two reports of progress.
 const ROWS_A_REPORT: usize = 4096;
 
+/// How many rows without any number are named.
+const NAMED: usize = 3;
+
 /// What visits the cells of a table, perhaps with others around it.
 type Visit<'a> = dyn Fn(&mut Visitor<'_>) -> Result<(), FileError> + 'a;
 
@@ -91,6 +94,17 @@ impl Reading<'_> {
         let Some(number) = self.number.take() else {
             return Ok(());
         };
+        if self.chosen.iter().all(|column| self.row[*column].is_none()) && self.suspect.is_none() {
+            // A point without a measurement, of which no number is lost.
+            let lacking = &mut self.read.ignored.lacking;
+            lacking.rows += 1;
+            if lacking.lines.len() < NAMED {
+                lacking.lines.push(number as usize + 1);
+            }
+            self.last = self.last.map(|_| number);
+            self.row.fill(None);
+            return Ok(());
+        }
         let mut fault = None;
         for (place, &column) in self.chosen.iter().enumerate() {
             match self.value(column, number) {

@@ -1,15 +1,11 @@
 //! Tables one below the other in a sheet.
 
 use super::{
+    cell::Value,
     sample::{Row, Sample},
     table::{self, FoundTables, Table},
 };
-use crate::{cell::Cell, table::ReadOptions};
-
-/// Most rows from the names of columns to the first row of numbers.
-const HEADER: usize = 3;
-/// Fewest rows of numbers of a table.
-const FEWEST: usize = 2;
+use crate::table::{ReadOptions, RowKind, Starts};
 
 /// The tables of a sample that stand one below the other, each with what stands beside it; empty unless two of them or
 /// more have names of columns with a time among them.
@@ -38,37 +34,13 @@ pub(super) fn find(sample: &Sample, options: &ReadOptions) -> Vec<FoundTables> {
     found
 }
 
-/// Where a second table begins, and any further one: behind the last row of numbers before names of columns.
+/// Where a second table begins, and any further one.
 fn starts(rows: &[Row]) -> Vec<usize> {
-    let mut starts = Vec::new();
-    // Rows of numbers since the last start, and the row behind the last of them.
-    let (mut data, mut behind) = (0, 0);
-    for (index, row) in rows.iter().enumerate() {
-        if is_data(row) {
-            data += 1;
-            behind = index + 1;
-        } else if data >= FEWEST && is_names(row) && is_followed(&rows[index + 1..]) {
-            starts.push(behind);
-            data = 0;
-        }
-    }
-    starts
+    let mut starts = Starts::default();
+    rows.iter().filter_map(|row| starts.next(kind(row))).collect()
 }
 
-fn count(row: &Row, which: impl Fn(Cell) -> bool) -> usize {
-    row.cells.iter().filter(|(_, value)| which(value.class())).count()
-}
-
-fn is_data(row: &Row) -> bool {
-    count(row, Cell::is_numeric) >= 2
-}
-
-fn is_names(row: &Row) -> bool {
-    count(row, Cell::is_numeric) == 0 && count(row, |cell| cell == Cell::Text) >= 2
-}
-
-/// Whether a table of numbers begins within a header's length.
-fn is_followed(rows: &[Row]) -> bool {
-    let first = rows.iter().take(HEADER).position(is_data);
-    first.is_some_and(|first| rows[first..].iter().take(FEWEST).filter(|row| is_data(row)).count() == FEWEST)
+fn kind(row: &Row) -> RowKind {
+    let labels = |(_, value): &(u32, Value)| value.text().ends_with(':');
+    RowKind::of(row.cells.iter().map(|(_, value)| value.class()), row.cells.first().is_some_and(labels))
 }

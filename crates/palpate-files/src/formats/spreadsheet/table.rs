@@ -142,7 +142,7 @@ fn table(sample: &Sample, places: &[u32], named: &mut Named, options: &ReadOptio
     let labelled = firsts.iter().zip(&header.labels).zip(&block.kinds).enumerate();
     let columns = labelled.map(|(index, ((first, label), &kind))| column(index + 1, kind, label, *first)).collect();
     let above = rows.iter().take(block.first).enumerate();
-    let above = above.filter(|(index, _)| header.names_line != Some(*index) && header.units_line != Some(*index));
+    let above = above.filter(|(index, _)| !header.holds(*index));
     let (mut metadata, mut left_out) = (Vec::new(), 0);
     for (_, row) in above {
         left_out += named.add(row, &mut metadata);

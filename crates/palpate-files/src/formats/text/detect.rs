@@ -4,7 +4,7 @@ use super::sample::Sample;
 use crate::{
     cell::{Cell, Delimiter, cells, date},
     error::{FileError, FileProblem, shorten},
-    input::Input,
+    input::{Encoding, Input},
     table::{Block, ColumnInfo, ColumnKind, Header, Layout, Metadata, ReadOptions, block, decimal, header, metadata},
 };
 
@@ -19,29 +19,50 @@ use crate::{
 pub fn detect(input: &Input, options: &ReadOptions) -> Result<Layout, FileError> {
     let sample = Sample::take(input, options.encoding)?;
     let lines = sample.lines();
+    let layout = rows(&lines, options).and_then(|block| of_rows(&lines, block, sample.encoding, options));
+    layout.map_err(|problem| input.wrong(problem))
+}
+
+/// The rows of numbers among the lines at the beginning of a file, or of a part of one.
+pub(super) fn rows(lines: &[&str], options: &ReadOptions) -> Result<Block, FileProblem> {
     let skip = options.skip_lines.unwrap_or(0).min(lines.len());
-    let mut block = find_block(&lines, skip, options).map_err(|problem| input.wrong(problem))?;
-    let decimal = decimal::decide(&lines, &block, options.decimal).map_err(|doubt| {
-        input.wrong(FileProblem::AmbiguousDecimal {
-            line: doubt.line + 1,
-            found: shorten(&doubt.found),
-            doubt: doubt.doubt,
-        })
+    let found = find_block(lines, behind_header(lines, skip), options);
+    found.or_else(|problem| find_block(lines, skip, options).map_err(|_| problem))
+}
+
+/// The layout of lines with these rows of numbers.
+pub(super) fn of_rows(
+    lines: &[&str],
+    mut block: Block,
+    encoding: Encoding,
+    options: &ReadOptions,
+) -> Result<Layout, FileProblem> {
+    let skip = options.skip_lines.unwrap_or(0).min(lines.len());
+    let decimal = decimal::decide(lines, &block, options.decimal).map_err(|doubt| FileProblem::AmbiguousDecimal {
+        line: doubt.line + 1,
+        found: shorten(&doubt.found),
+        doubt: doubt.doubt,
     })?;
     let undecided = options.decimal.is_none() && decimal::is_unseen(&block);
-    let header = header::find(&lines, skip, &mut block, options.header);
-    let columns = columns(&lines, &block, &header);
+    let header = header::find(lines, skip, &mut block, options.header);
+    let columns = columns(lines, &block, &header);
     Ok(Layout {
-        encoding: sample.encoding,
+        encoding,
         delimiter: block.delimiter,
         decimal,
         header_line: header.names_line.map(|index| index + 1),
         units_line: header.units_line.map(|index| index + 1),
         first_data_line: block.first + 1,
-        metadata: named_values(&lines, skip, &block, &header),
+        metadata: named_values(lines, skip, &block, &header),
         columns,
         undecided,
     })
+}
+
+/// Index of the line from which rows of numbers are looked for: behind the mark of the header's end, where there is one.
+fn behind_header(lines: &[&str], skip: usize) -> usize {
+    let ends = |line: &&str| header::ends_header(std::iter::once(metadata::without_comment_mark(line).trim()));
+    lines[skip..].iter().rposition(ends).map_or(skip, |mark| skip + mark + 1)
 }
 
 fn find_block(lines: &[&str], skip: usize, options: &ReadOptions) -> Result<Block, FileProblem> {
@@ -128,7 +149,7 @@ fn sample(rows: &[SplitRow<'_>], column: usize, kind: ColumnKind) -> String {
 
 fn named_values(lines: &[&str], skip: usize, block: &Block, header: &Header) -> Vec<Metadata> {
     (skip..block.first)
-        .filter(|&index| header.names_line != Some(index) && header.units_line != Some(index))
+        .filter(|&index| !header.holds(index))
         .flat_map(|index| metadata::in_line(lines[index], block.delimiter))
         .collect()
 }

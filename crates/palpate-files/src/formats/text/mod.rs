@@ -1,5 +1,8 @@
 //! Delimited text, as test machines and scripts write it.
 //!
+//! Channels in volts are scaled where a table above them says how (`channels.rs`).
+//! A text holds one test, which is streamed, or several, one below the other (`sections.rs`).
+//!
 //! Reading goes in two steps. [`detect`] looks at the beginning of a file and says what it found:
 //! encoding, delimiter, decimal mark, names, units, the line the data starts on. Someone (a person or a
 //! description of the test) then picks columns, and [`read_columns`] streams these as `f64`.
@@ -27,12 +30,14 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+mod channels;
 mod columns;
 mod detect;
 mod part;
 mod row;
 mod rows_ahead;
 mod sample;
+mod sections;
 
 pub use columns::read_columns;
 pub use detect::detect;

@@ -189,6 +189,19 @@ impl<'a> RowPlan<'a> {
         held > 0 && count >= self.fewest
     }
 
+    /// Whether a faulty line is a full row whose chosen cells are all empty.
+    pub(crate) fn holds_nothing(&self, line: &[u8]) -> bool {
+        let mut count = 0;
+        for cell in Fields::of(line, self.layout.delimiter) {
+            let is_chosen = matches!(self.tasks.get(count), Some(Task::Read(_) | Task::ReadDate(_)));
+            if is_chosen && !cell.is_empty() {
+                return false;
+            }
+            count += 1;
+        }
+        count >= self.fewest && self.layout.delimiter.byte().is_some()
+    }
+
     /// The error for a fault of `line`, which is line `number` of the file.
     #[cold]
     pub(crate) fn error(&self, fault: Fault, line: &[u8], number: usize) -> FileError {

@@ -287,7 +287,7 @@ fn absurd_values_name_their_keys() {
             "\"ball\"",
             "\"bal\"",
             "specimen.shape",
-            "\"ball\", \"pad\", \"strip\", \"dumbbell\", \"cylinder\", \"block\", \"profile\", \"spherical tip\", \"conical tip\", \"pyramidal tip\", \"flat punch\" or \"none\", found \"bal\"",
+            "\"ball\", \"pad\", \"strip\", \"dumbbell\", \"cylinder\", \"cone and plate\", \"block\", \"profile\", \"spherical tip\", \"conical tip\", \"pyramidal tip\", \"flat punch\" or \"none\", found \"bal\"",
         ),
         ("\"latency\"", "\"maxwell\"", "law.name", "or \"fractional-zener\", found \"maxwell\""),
         (

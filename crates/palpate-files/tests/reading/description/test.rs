@@ -124,12 +124,12 @@ fn wrong_values_name_their_keys() {
         (
             "columns.force.column = 0",
             "columns.force.column",
-            "the number of a column, from 1, or its name in quotes, found 0",
+            "the number of a column, from 1, or its name in quotes, or a list of these, found 0",
         ),
         (
             "columns.force.column = 1.5",
             "columns.force.column",
-            "the number of a column, from 1, or its name in quotes, found 1.5",
+            "the number of a column, from 1, or its name in quotes, or a list of these, found 1.5",
         ),
         (
             "columns.force.unit = \"mm\"",

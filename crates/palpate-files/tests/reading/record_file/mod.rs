@@ -3,6 +3,7 @@
 mod choosing;
 mod errors;
 mod machines;
+mod quantities;
 mod records;
 
 use std::path::Path;

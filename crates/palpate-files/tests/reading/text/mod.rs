@@ -3,6 +3,7 @@
 mod errors;
 mod habits;
 mod records;
+mod rheometers;
 
 use std::path::PathBuf;
 
