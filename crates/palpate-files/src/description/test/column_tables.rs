@@ -96,6 +96,9 @@ struct DeflectionTable {
     unit: Option<String>,
     /// Sensitivity, such as "52 nm/V", where the column holds volts; the unit is then "V" or "mV".
     scale: Option<String>,
+    /// Spring constant of the cantilever, such as "0.04 N/m": the force is then the deflection times it. Without it and without a column of
+    /// force, the spring constant that stands in the file is taken.
+    spring_constant: Option<QuantityText>,
     /// -1 where the file counts the deflection as negative when the sample pushes; 1 otherwise.
     #[schemars(extend("enum" = [1, -1]))]
     sign: Option<f64>,
@@ -114,6 +117,13 @@ impl ColumnsTable {
             unit,
             ..ColumnTable::default()
         });
+        let spring_constant = self.deflection.as_ref().and_then(|table| table.spring_constant.as_ref());
+        let spring_key = "columns.deflection.spring_constant";
+        let force = [("columns.force", self.force.is_some()), ("columns.stress", self.stress.is_some())];
+        if let (Some(_), Some((key, _))) = (spring_constant, force.iter().find(|(_, stated)| *stated)) {
+            return Err(source.both(spring_key, *key));
+        }
+        let spring_constant = source.positive_if(spring_key, spring_constant, Dimension::Stiffness)?;
         let deflection = self.deflection.map(|table| ColumnTable {
             column: Some(table.column),
             unit: table.unit,
@@ -129,6 +139,7 @@ impl ColumnsTable {
             displacement: self.displacement.map(|table| table.checked(source, machine)).transpose()?,
             force: measured(self.force, "force", Quantity::Force)?,
             stress: measured(self.stress, "stress", Quantity::Stress)?,
+            spring_constant,
             deflection: match deflection {
                 Some(_) if !names_height => return Err(source.missing("columns.displacement", HEIGHT)),
                 deflection => measured(deflection, "deflection", Quantity::Displacement)?,
