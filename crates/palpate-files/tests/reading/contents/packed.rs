@@ -95,7 +95,7 @@ fn parts_of_a_file_of_a_zip_have_its_name() {
     let found: Vec<&str> = contents.parts.iter().filter_map(|part| part.name.as_deref()).collect();
     assert_eq!(found.first(), Some(&"one.csv"));
     assert!(contents.skipped.iter().any(|part| part.name == "book.xlsx"), "{:?}", contents.skipped);
-    // What is wrong with a file is said of it, not of the archive.
+    // An error names the file, not the archive alone.
     let bad = format!("{TABLE}x,y,z\n1,2,3\n").replace(',', ";");
     let members = [("one.csv", TABLE.as_bytes()), ("bad.csv", bad.as_bytes())];
     let contents = super::contents("all.zip", zip(&members, CompressionMethod::Deflated)).expect("tests");

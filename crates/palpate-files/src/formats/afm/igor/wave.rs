@@ -1,7 +1,7 @@
 //! The bytes of a wave: header, numbers, and what stands behind them. After Technical Note 3 of WaveMetrics.
 
 use crate::{
-    error::FileError,
+    error::{FileError, FileProblem},
     input::{Input, Number},
 };
 
@@ -117,7 +117,7 @@ fn of_version_5(fields: &Fields<'_>, layout: &Layout) -> Result<Wave, FileError>
     let [rows, columns, layers, chunks] = [dimension(0)?, dimension(1)?, dimension(2)?, dimension(3)?];
     if layers > 0 || chunks > 0 {
         let found = format!("{rows} × {columns} × {layers}{}", if chunks > 0 { " × …" } else { "" });
-        return Err(fields.input.damaged("wave", "an array of one or two dimensions", found));
+        return Err(unfit(fields.input, "an array of one or two dimensions", found));
     }
     let (number, end) = numbers(fields, layout, at(16), (rows, columns.max(1)), at(12))?;
     // Behind the numbers: formula, note, units that are long, labels.
@@ -209,11 +209,11 @@ fn numbers(
                 _ if kind & 1 == 1 => "complex numbers".to_owned(),
                 _ => format!("kind {kind}"),
             };
-            return Err(input.damaged("wave", "real numbers", found));
+            return Err(unfit(input, "real numbers", found));
         }
     };
     if columns > MOST_COLUMNS {
-        return Err(input.damaged("wave", format!("at most {MOST_COLUMNS} columns"), columns.to_string()));
+        return Err(unfit(input, format!("at most {MOST_COLUMNS} columns"), columns.to_string()));
     }
     let points = fields.count("number of points", points_at)?;
     if points != rows * columns {
@@ -226,6 +226,12 @@ fn numbers(
         return Err(input.damaged("wave", expected, format!("{held} bytes")));
     }
     Ok((number, layout.data + length))
+}
+
+/// A wave that is whole, but no table.
+fn unfit(input: &Input, expected: impl Into<String>, found: String) -> FileError {
+    let hint = "save the columns of the test as a wave of real numbers with one or two dimensions";
+    input.wrong(FileProblem::unfit("wave", expected, found, hint))
 }
 
 /// Text up to its first byte of zero, in UTF-8 or else as Windows writes it.

@@ -114,7 +114,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_row_behind_the_names_is_told_from_names() {
+    fn a_row_behind_the_names_is_no_name() {
         let cells = |text: &str| text.split(' ').map(str::to_owned).collect::<Vec<_>>();
         for (text, names, row) in [
             ("force segment time-6.7e-10 False 1.12", "force segment time", Some("-6.7e-10 False 1.12")),

@@ -4,7 +4,7 @@
 //! [`Format`], its tests ([`Part`]s) with their columns, and what was passed over and why. [`Contents::read`] then
 //! reads chosen columns of one test as `f64`, as they are written; units and signs are matters of
 //! [`record`](super::record). A format is recognised by content and never by the name of the file. The files of a zip archive
-//! are opened one by one, and their tests are those of the archive (`open/archive.rs`).
+//! are opened one by one, and their tests are those of the archive (`archive.rs`).
 
 mod archive;
 
