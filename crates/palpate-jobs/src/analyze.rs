@@ -157,7 +157,7 @@ impl Analyze {
         input.depends_on_sha256 = Some(Dependencies::new("analyze", &options).record(&input).sha256()?);
         watch.report(Progress::open(&format!("fitting {}", input.called()), 0))?;
         let analysis =
-            analyze_watched(&record, &options, watch).map_err(|error| JobError::analysis(&error, &input.path))?;
+            analyze_watched(&record, &options, watch).map_err(|error| JobError::analysis(&error, &input.called()))?;
         Ok(Outcome::of(Analyzed { analysis, input }))
     }
 }

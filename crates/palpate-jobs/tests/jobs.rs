@@ -194,7 +194,7 @@ fn a_cancelled_batch_keeps_what_is_done_and_goes_on() {
         fs::write(folder.path().join(format!("{number}.csv")), format!("{text}{}", "\n".repeat(number))).unwrap();
     }
     let described = Described::read(Some(&example("records/ball.toml")), None).unwrap();
-    let records = NamedRecords::find(&[folder.path().to_owned()], described).unwrap();
+    let records = NamedRecords::find([folder.path().to_owned()], described).unwrap();
     let out = folder.path().join("table.csv");
     let anew = Batch {
         restart: true,

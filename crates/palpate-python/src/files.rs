@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use palpate::laws::Law;
 use palpate_files::description::{NamedColumns, parse_test, read_material};
-use palpate_jobs::input::{Described, NamedRecords, OpenedFile};
+use palpate_jobs::input::{Described, NamedFile, NamedRecords, OpenedFile};
 use palpate_jobs::output::write_bundle;
 use palpate_jobs::{Batch, BatchAnswer, Convert, HoldObserved, Inspect, Observed, Reproduce, Sweep, WatchLog};
 use palpate_report::document::{WatchDocument, WatchSummaryDocument};
@@ -25,6 +25,27 @@ pub(crate) type Given<'py, 'a> = Option<&'a Bound<'py, PyAny>>;
 /// A path, or a text, as a function of the package tells of what was given.
 pub(crate) fn stated(tell: &str, given: &Bound<'_, PyAny>) -> PyResult<(Option<PathBuf>, Option<String>)> {
     given.py().import("palpate")?.call_method1(tell, (given,))?.extract()
+}
+
+/// A file of records as the package tells it apart: by its path, or by a name and its bytes.
+type FileOfPython = (PathBuf, Option<Vec<u8>>);
+
+fn named((name, bytes): FileOfPython) -> NamedFile {
+    match bytes {
+        Some(bytes) => NamedFile::Bytes(name, bytes.into()),
+        None => NamedFile::Path(name),
+    }
+}
+
+/// The file of a record: a path, bytes, or an object that is read, with the name that is given beside it.
+pub(crate) fn record_file(given: &Bound<'_, PyAny>, name: Option<&str>) -> PyResult<NamedFile> {
+    given.py().import("palpate")?.call_method1("_record_file", (given, name))?.extract().map(named)
+}
+
+/// Several files of records.
+fn record_files(given: &Bound<'_, PyAny>) -> PyResult<Vec<NamedFile>> {
+    let found: Vec<FileOfPython> = given.py().import("palpate")?.call_method1("_record_files", (given,))?.extract()?;
+    Ok(found.into_iter().map(named).collect())
 }
 
 /// The description of records in a file, with the part that is meant, and the path that it has.
@@ -82,7 +103,7 @@ pub(crate) fn all_laws(names: &[String]) -> PyResult<Vec<Law>> {
 ///
 /// Parameters
 /// ----------
-/// path, test, part, columns
+/// path, name, test, part, columns
 ///     As for `read`.
 ///
 /// Returns
@@ -94,17 +115,18 @@ pub(crate) fn all_laws(names: &[String]) -> PyResult<Vec<Law>> {
 /// RecordError, OptionError, OSError
 ///     As for `read`.
 #[pyfunction]
-#[pyo3(signature = (path, *, test=None, part=None, columns=None))]
+#[pyo3(signature = (path, *, name=None, test=None, part=None, columns=None))]
 pub(crate) fn inspect(
     py: Python<'_>,
-    path: PathBuf,
+    path: &Bound<'_, PyAny>,
+    name: Option<&str>,
     test: Given<'_, '_>,
     part: Given<'_, '_>,
     columns: Given<'_, '_>,
 ) -> PyResult<String> {
-    let described = described_with(test, part, columns)?;
+    let (file, described) = (record_file(path, name)?, described_with(test, part, columns)?);
     job(py, move |watch| {
-        let found = Inspect::default().run(&OpenedFile::open(&path, &described)?, watch)?.result;
+        let found = Inspect::default().run(&OpenedFile::named(&file, &described)?, watch)?.result;
         found.refused.map_or(Ok(found.text), Err)
     })
 }
@@ -113,7 +135,7 @@ pub(crate) fn inspect(
 ///
 /// Parameters
 /// ----------
-/// path, test, part, columns
+/// path, name, test, part, columns
 ///     As for `read`.
 /// out
 ///     A file ending in .csv, .parquet or .json; it appears whole or not at all.
@@ -128,17 +150,18 @@ pub(crate) fn inspect(
 /// RecordError, OptionError, OSError
 ///     As for `read`; also a name that says no format.
 #[pyfunction]
-#[pyo3(signature = (path, out, *, test=None, part=None, columns=None))]
+#[pyo3(signature = (path, out, *, name=None, test=None, part=None, columns=None))]
 pub(crate) fn convert(
     py: Python<'_>,
-    path: PathBuf,
+    path: &Bound<'_, PyAny>,
     out: PathBuf,
+    name: Option<&str>,
     test: Given<'_, '_>,
     part: Given<'_, '_>,
     columns: Given<'_, '_>,
 ) -> PyResult<PathBuf> {
-    let described = described_with(test, part, columns)?;
-    let read = job(py, move |watch| Convert {}.run(&OpenedFile::open(&path, &described)?, watch))?.result;
+    let (file, described) = (record_file(path, name)?, described_with(test, part, columns)?);
+    let read = job(py, move |watch| Convert {}.run(&OpenedFile::named(&file, &described)?, watch))?.result;
     writing_job(py, move |watch| {
         read.write(&out, watch)?;
         Ok(out)
@@ -152,7 +175,8 @@ pub(crate) fn convert(
 /// Parameters
 /// ----------
 /// paths
-///     Files, folders with files, or patterns.
+///     Files, folders with files, or patterns; also bytes and objects that are read, as for `read`, or a mapping from names to these.
+///     A zip archive of several files gives the tests in all of them.
 /// out
 ///     A table ending in .parquet or .csv.
 /// test
@@ -182,7 +206,7 @@ pub(crate) fn convert(
 #[expect(clippy::too_many_arguments, reason = "keywords of Python")]
 pub(crate) fn batch(
     py: Python<'_>,
-    paths: Vec<PathBuf>,
+    paths: &Bound<'_, PyAny>,
     out: PathBuf,
     test: Given<'_, '_>,
     columns: Given<'_, '_>,
@@ -191,7 +215,7 @@ pub(crate) fn batch(
     fit_until_s: Option<f64>,
     restart: bool,
 ) -> PyResult<BatchResult> {
-    let described = described_with(test, None, columns)?;
+    let (files, described) = (record_files(paths)?, described_with(test, None, columns)?);
     let question = Batch {
         laws: laws.map(|laws| all_laws(&laws)).transpose()?,
         intervals: intervals.map(fit::intervals).transpose()?,
@@ -199,7 +223,7 @@ pub(crate) fn batch(
         restart,
         ..Batch::default()
     };
-    let done = writing_job(py, move |watch| question.run(NamedRecords::find(&paths, described)?, &out, watch))?.result;
+    let done = writing_job(py, move |watch| question.run(NamedRecords::find(files, described)?, &out, watch))?.result;
     Ok(BatchResult {
         answer: done.answer,
         rows: done.rows,
@@ -235,6 +259,10 @@ shown! {
         holds: usize = self.answer.holds,
         /// Holds without a fitted law.
         unfitted: usize = self.answer.unfitted,
+        /// Tests without a hold; each has one row, whose ``termination`` says why.
+        without_hold: usize = self.answer.without_hold,
+        /// Median of Young's modulus of the first loading ramp over the tests that have one, Pa.
+        loading_modulus_pa: Option<f64> = self.answer.loading_modulus.as_ref().map(|found| found.quartiles[1]),
         /// Rows of the table.
         rows: usize = self.rows,
         /// Why tests gave no rows, a sentence each.
@@ -329,7 +357,7 @@ pub(crate) fn reproduce(py: Python<'_>, folder: PathBuf, png: bool) -> PyResult<
 ///
 /// Parameters
 /// ----------
-/// path, test, part, columns
+/// path, name, test, part, columns
 ///     As for `read`.
 /// material
 ///     Path of a material file; the excess strain is then known from first touch on.
@@ -353,12 +381,13 @@ pub(crate) fn reproduce(py: Python<'_>, folder: PathBuf, png: bool) -> PyResult<
 ///     As for `read` and `Observer`.
 #[pyfunction]
 #[pyo3(signature = (
-    path, *, test=None, part=None, columns=None, material=None, exponent=None, slip_force_n=None, warn_before_s=None, every_s=None,
+    path, *, name=None, test=None, part=None, columns=None, material=None, exponent=None, slip_force_n=None, warn_before_s=None, every_s=None,
 ))]
 #[expect(clippy::too_many_arguments, reason = "keywords of Python")]
 pub(crate) fn watch<'py>(
     py: Python<'py>,
-    path: PathBuf,
+    path: &Bound<'py, PyAny>,
+    name: Option<&str>,
     test: Given<'py, '_>,
     part: Given<'py, '_>,
     columns: Given<'py, '_>,
@@ -368,7 +397,7 @@ pub(crate) fn watch<'py>(
     warn_before_s: Option<f64>,
     every_s: Option<f64>,
 ) -> PyResult<Bound<'py, PyAny>> {
-    let described = described_with(test, part, columns)?;
+    let (file, described) = (record_file(path, name)?, described_with(test, part, columns)?);
     let usual = WatchLog::default();
     let log = WatchLog {
         exponent: exponent.unwrap_or(usual.exponent),
@@ -379,9 +408,9 @@ pub(crate) fn watch<'py>(
     };
     let lines = job(py, move |watch| {
         let material = material.as_deref().map(read_material).transpose()?;
-        let opened = OpenedFile::open(&path, &described)?;
+        let opened = OpenedFile::named(&file, &described)?;
         let measured = opened.measurement(opened.only()?, watch)?;
-        let (place, mut lines) = (path.display().to_string(), Vec::new());
+        let (place, mut lines) = (file.name().display().to_string(), Vec::new());
         let holds = log.run((&measured.record, &place), material, watch, |observed: Observed| {
             lines.extend(observed.document());
             true

@@ -37,6 +37,8 @@ pub enum Dimension {
     ForceRate,
     /// Way per force in m/N.
     Compliance,
+    /// Force per way in N/m.
+    Stiffness,
     /// Voltage of a sensor in V.
     Voltage,
     /// Mass in kg.
@@ -71,6 +73,7 @@ impl Dimension {
             Self::Frequency => ("frequency", "100 Hz", FREQUENCY),
             Self::ForceRate => ("rate of force", "10 N/s", FORCE_RATE),
             Self::Compliance => ("compliance", "0.5 um/N", COMPLIANCE),
+            Self::Stiffness => ("stiffness", "0.04 N/m", STIFFNESS),
             Self::Voltage => ("voltage", "2.5 V", VOLTAGE),
             Self::Mass => ("mass", "150 g", MASS),
             Self::Acceleration => ("acceleration", "2 m/s^2", ACCELERATION),
@@ -188,6 +191,17 @@ const COMPLIANCE: &[(&str, f64)] = &[
     ("nm/nN", 1.0),
     ("nm/pN", 1e3),
     ("in/lbf", INCH / POUND_FORCE),
+];
+const STIFFNESS: &[(&str, f64)] = &[
+    ("N/m", 1.0),
+    ("N/mm", 1e3),
+    ("mN/m", 1e-3),
+    ("µN/m", 1e-6),
+    ("uN/m", 1e-6),
+    ("nN/nm", 1.0),
+    ("pN/nm", 1e-3),
+    ("nN/µm", 1e-3),
+    ("nN/um", 1e-3),
 ];
 const VOLTAGE: &[(&str, f64)] = &[("V", 1.0), ("mV", 1e-3), ("µV", 1e-6), ("uV", 1e-6)];
 const MASS: &[(&str, f64)] = &[

@@ -15,7 +15,7 @@ use crate::terminal::{note_report, notes, print};
 pub(crate) fn run(arguments: &AnalyzeArguments) -> Result<Verdict, JobError> {
     arguments.out.as_deref().map_or(Ok(()), check_folder)?;
     let described = arguments.described.read()?;
-    let records = NamedRecords::find(&arguments.records, described)?;
+    let records = NamedRecords::find(arguments.records.clone(), described)?;
     let air = arguments.air_run.as_ref().map(|air| OpenedFile::open(air, &records.described)).transpose()?;
     let air = air.map(|air| air.measurement(air.only()?, &mut Bars::default())).transpose()?;
     let (mut tests, mut failed) = (0, 0);

@@ -9,7 +9,7 @@ use crate::terminal::{notes, print};
 
 pub(crate) fn run(arguments: &BatchArguments) -> Result<Verdict, JobError> {
     let described = Described::read(arguments.test.as_deref(), None)?.with_columns(arguments.columns.as_ref());
-    let records = NamedRecords::find(&arguments.records, described)?;
+    let records = NamedRecords::find(arguments.records.clone(), described)?;
     let outcome = arguments.job.run(records, &arguments.out, &mut Bars::default())?;
     print(&outcome.result.answer.text())?;
     notes(&outcome.notes);

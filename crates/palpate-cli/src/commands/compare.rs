@@ -12,8 +12,8 @@ use crate::terminal::{note_report, notes, print};
 pub(crate) fn run(arguments: &CompareArguments) -> Result<Verdict, JobError> {
     arguments.out.as_deref().map_or(Ok(()), check_folder)?;
     let described = arguments.described.read()?;
-    let records = NamedRecords::find(&arguments.records, described)?;
-    let alone = arguments.records == records.paths;
+    let records = NamedRecords::find(arguments.records.clone(), described)?;
+    let alone = arguments.records.iter().eq(records.names());
     let outcome = arguments.job.run(&records, alone, &mut Bars::default(), notes)?;
     if let Some(folder) = &arguments.out {
         write_bundle(folder, &outcome.result.bundle(Pictures::default(), &mut Bars::default())?)?;

@@ -65,6 +65,78 @@ fn moduli_of_an_indented_gel_are_those_that_it_was_simulated_with() {
     assert!((2.0 * relaxed..4.0 * relaxed).contains(&apparent), "{apparent}");
 }
 
+/// Approach and retraction without a hold between them, of a ball on a half space: Hertz's F = 4/3 E/(1 − ν²) √R u^1.5.
+fn approach(modulus_pa: f64) -> String {
+    let (radius_m, poisson_ratio) = (5e-6_f64, 0.5_f64);
+    let row = |index: i32| {
+        let height = 2e-6 - 1e-8 * f64::from(index - 300).abs();
+        let depth = height.max(0.0);
+        let force = 4.0 / 3.0 * modulus_pa / (1.0 - poisson_ratio * poisson_ratio) * radius_m.sqrt() * depth.powf(1.5);
+        format!("{},{},{}\n", 0.001 * f64::from(index), 1e9 * height, 1e9 * force)
+    };
+    (0..600).map(row).fold("Time (s),Indentation (nm),Force (nN)\n".to_owned(), |text, row| text + &row)
+}
+
+const BALL_TIP: &str =
+    "[specimen]\nshape = \"spherical tip\"\nradius = \"5 um\"\npoisson_ratio = 0.5\n[contact]\ntouch = \"0 mm\"\n";
+
+#[test]
+fn curves_without_a_hold_in_a_zip_have_a_row_with_their_modulus() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    let curves = [("map/curve1.csv", 500.0), ("map/curve2.csv", 2000.0), ("map/curve3.csv", 1000.0)];
+    let mut zip = zip::ZipWriter::new(fs::File::create(folder.join("map.zip")).unwrap());
+    for (name, modulus_pa) in curves {
+        zip.start_file(name, zip::write::SimpleFileOptions::default()).unwrap();
+        std::io::Write::write_all(&mut zip, approach(modulus_pa).as_bytes()).unwrap();
+    }
+    zip.finish().unwrap();
+    file(folder, "tip.toml", BALL_TIP.as_bytes());
+    let printed = done(folder, &["batch", "map.zip", "--test", "tip.toml", "--out", "holds.csv"]);
+    assert!(
+        printed.starts_with("No hold in 3 tests. Apparent modulus of the first loading ramp: median 1000 Pa"),
+        "{printed}"
+    );
+    let table = lines(folder, "holds.csv");
+    assert_eq!(column(&table, "part"), curves.map(|(name, _)| name));
+    for (found, (_, expected)) in column(&table, "loading_modulus_pa").iter().zip(curves) {
+        let found: f64 = found.parse().unwrap();
+        assert!((found / expected - 1.0).abs() < 1e-3, "{found} for {expected}");
+    }
+    for name in ["hold", "law", "start_s", "mode", "force_end_n", "signal"] {
+        assert_eq!(column(&table, name), ["", "", ""], "{name}");
+    }
+    for (reason, findings) in column(&table, "termination").iter().zip(column(&table, "findings")) {
+        assert!(reason.starts_with("no hold found: "), "{reason}");
+        assert!(findings.split(' ').any(|code| code == "no_hold"), "{findings}");
+    }
+    // Without a body there is the reason alone, and it is no failure.
+    let printed = done(folder, &["batch", "map.zip", "--out", "bare.csv"]);
+    assert_eq!(printed.trim(), "No hold in 3 tests.");
+    assert_eq!(column(&lines(folder, "bare.csv"), "loading_modulus_pa"), ["", "", ""]);
+    // Any other command takes one of them, or says how.
+    assert!(done(folder, &["inspect", "map.zip"]).contains("3 files in a zip archive"));
+    assert!(done(folder, &["convert", "map.zip", "--part", "map/curve2.csv", "--out", "one.csv"]).is_empty());
+    let error = refused(folder, &["convert", "map.zip", "--out", "one.csv"]);
+    assert!(
+        error.contains("expected one test, found 3") && error.contains("--part \"map/curve1.csv\""),
+        "{error}"
+    );
+    // One curve gives its modulus, with the finding.
+    let document: serde_json::Value = serde_json::from_str(&done(
+        folder,
+        &["analyze", "map.zip", "--part", "2", "--test", "tip.toml", "--format", "json"],
+    ))
+    .unwrap();
+    let modulus = document["loading_modulus"]["modulus_pa"].as_f64().unwrap();
+    assert!((modulus / 2000.0 - 1.0).abs() < 1e-3, "{modulus}");
+    assert!(document["holds"].as_array().unwrap().is_empty());
+    let codes: Vec<&str> =
+        document["findings"].as_array().unwrap().iter().filter_map(|found| found["code"].as_str()).collect();
+    assert!(codes.contains(&"no_hold"), "{codes:?}");
+    assert!(refused(folder, &["analyze", "map.zip", "--part", "2"]).contains("no hold found"));
+}
+
 #[test]
 fn a_folder_becomes_one_table_of_holds_and_laws() {
     let folder = tempfile::tempdir().unwrap();

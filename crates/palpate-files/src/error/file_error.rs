@@ -10,7 +10,7 @@ use palpate::watch::Cancelled;
 
 use super::{
     foreign::Foreign,
-    shown::{bytes, files, shown, skipped},
+    shown::{bytes, shown, skipped},
 };
 use crate::cell::{DecimalMark, Delimiter};
 
@@ -109,9 +109,9 @@ pub enum FileProblem {
     /// The file holds no record in any format that is known here, but looks like this.
     #[error(": expected a record, found {0}")]
     Foreign(Foreign),
-    /// An archive that holds no file, or these.
-    #[error(": expected a zip archive of one file, found {}", files(.0))]
-    Archive(Vec<String>),
+    /// An archive that holds no file.
+    #[error(": expected a zip archive with a record, found one without files")]
+    EmptyArchive,
     /// Something in the file is not as its format has it, is of a kind that is not read, or is not the number that was
     /// requested.
     #[error("{place}: expected {}, found {}", shown(expected), shown(found))]
@@ -284,6 +284,13 @@ impl FileProblem {
 }
 
 impl FileError {
+    /// Its message less the file it is about.
+    pub(crate) fn without_path(&self) -> String {
+        let problem = self.problem.to_string();
+        let bare = [": ", ", "].iter().find_map(|mark| problem.strip_prefix(mark));
+        bare.map_or_else(|| self.to_string(), str::to_owned)
+    }
+
     /// Something is wrong with the file at `path`.
     pub(crate) fn of(path: &Path, problem: FileProblem) -> Self {
         let path = path.to_owned();

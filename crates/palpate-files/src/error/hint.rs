@@ -25,13 +25,7 @@ impl FileError {
             FileProblem::Unreadable(_) => return None,
             FileProblem::Empty => "export the record again",
             FileProblem::Foreign(looks_like) => foreign(*looks_like),
-            FileProblem::Archive(members) if members.is_empty() => "pack the record again",
-            FileProblem::Archive(_) => {
-                let stem = self.path.file_stem().unwrap_or(self.path.as_os_str()).to_string_lossy();
-                return Some(format!(
-                    "unpack it into a folder: `palpate batch {stem} --out holds.csv` reads all its files, any other command takes one of them"
-                ));
-            }
+            FileProblem::EmptyArchive => "pack the record again",
             FileProblem::Unlike { hint, .. } => hint,
             FileProblem::Encrypted => "open it in its program and save it without a password",
             FileProblem::TooLarge { .. } => "split the file, or export a part of it",

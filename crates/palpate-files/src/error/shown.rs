@@ -50,14 +50,6 @@ pub(crate) fn few(texts: impl ExactSizeIterator<Item = String>, most: usize, bet
     shown.join(between)
 }
 
-/// The first few of the files in an archive.
-pub(crate) fn files(members: &[String]) -> String {
-    match members.len() {
-        0 => "none".to_owned(),
-        count => format!("{count}: {}", few(members.iter().map(|member| shown(member)), 3, ", ")),
-    }
-}
-
 /// The first few of the parts of a file, with why they are no tests.
 pub(crate) fn skipped(parts: &[(String, String)]) -> String {
     let named = parts.iter().map(|(name, reason)| format!("{}: {}", shown(name), shown(reason)));

@@ -8,9 +8,11 @@
 //! | `spreadsheet/` | workbooks (`.xlsx`, `.xls`) |
 //! | `arrow/` | Parquet and Arrow |
 //! | `afm/` | force curves of atomic force microscopes |
+//! | `arrays/` | files of named arrays (`.mat`) |
 //! | `robot_log/` | logs of robots (MCAP), whose topics have clocks of their own |
 
 pub(crate) mod afm;
+pub(crate) mod arrays;
 pub(crate) mod arrow;
 pub(crate) mod robot_log;
 pub(crate) mod spreadsheet;

@@ -12,11 +12,11 @@ use std::{
 
 use super::{
     counting::Counting,
-    packing::{self, MOST_UNPACKED, Packing},
+    packing::{self, MOST_UNPACKED, Member, Packing},
     regular::{Stamp, is_standard_input, open_regular, read_whole},
 };
 use crate::{
-    error::{FileError, FileProblem},
+    error::{FileError, FileProblem, shown},
     faults::admits,
 };
 
@@ -43,10 +43,15 @@ pub struct Input {
     pub beginning: Vec<u8>,
     /// Its size in bytes, packed as it is.
     pub size: u64,
-    /// `None`: they lie on a disk.
-    memory: Option<Arc<[u8]>>,
-    /// How the file was when it was opened.
-    stamp: Option<Stamp>,
+    stored: Stored,
+}
+
+/// Where the bytes lie.
+#[derive(Clone)]
+enum Stored {
+    /// On a disk at this path, as the file was when it was opened.
+    Disk(PathBuf, Stamp),
+    Memory(Arc<[u8]>),
 }
 
 impl fmt::Debug for Input {
@@ -67,7 +72,8 @@ impl Input {
     /// [`FileError`] where it cannot be read, or is a packed file that holds no file, or several.
     pub fn open(path: &Path) -> Result<Self, FileError> {
         let (_, about) = open_regular(path)?;
-        Self::of(path.to_owned(), None, about.len(), Some(Stamp::of(&about)))
+        let stored = Stored::Disk(path.to_owned(), Stamp::of(&about));
+        Self::of(path.to_owned(), stored, about.len())
     }
 
     /// All bytes of the file at `path`, held in memory; `-` is standard input, read to its end.
@@ -94,9 +100,11 @@ impl Input {
     /// # Errors
     /// [`FileError`] where its length or the time of its last change is another one.
     pub fn check_unchanged(&self) -> Result<(), FileError> {
-        let Some(before) = self.stamp else { return Ok(()) };
-        let (_, about) = open_regular(&self.name)?;
-        if Stamp::of(&about) == before { Ok(()) } else { Err(self.wrong(FileProblem::Changed)) }
+        let Stored::Disk(path, before) = &self.stored else {
+            return Ok(());
+        };
+        let (_, about) = open_regular(path)?;
+        if Stamp::of(&about) == *before { Ok(()) } else { Err(self.wrong(FileProblem::Changed)) }
     }
 
     /// Hands out its bytes as they are stored, in pieces, for as long as `take` wants more.
@@ -104,7 +112,7 @@ impl Input {
     /// # Errors
     /// [`FileError`] where they cannot be read.
     pub fn each_piece(&self, mut take: impl FnMut(&[u8]) -> bool) -> Result<(), FileError> {
-        let (mut stored, mut piece) = (self.stored()?, vec![0; 1 << 18]);
+        let (mut stored, mut piece) = (self.as_stored()?, vec![0; 1 << 18]);
         loop {
             match stored.read(&mut piece).map_err(|error| FileError::from_io(&self.name, error))? {
                 0 => return Ok(()),
@@ -117,7 +125,10 @@ impl Input {
     /// All of its bytes as they are stored, where they lie in memory.
     #[must_use]
     pub fn in_memory(&self) -> Option<&[u8]> {
-        self.memory.as_deref()
+        match &self.stored {
+            Stored::Memory(bytes) => Some(bytes),
+            Stored::Disk(..) => None,
+        }
     }
 
     /// Bytes in memory. `name` is what messages call them.
@@ -127,23 +138,43 @@ impl Input {
     pub fn from_bytes(name: impl Into<PathBuf>, bytes: impl Into<Arc<[u8]>>) -> Result<Self, FileError> {
         let bytes = bytes.into();
         let size = bytes.len() as u64;
-        Self::of(name.into(), Some(bytes), size, None)
+        Self::of(name.into(), Stored::Memory(bytes), size)
     }
 
-    fn of(name: PathBuf, memory: Option<Arc<[u8]>>, size: u64, stamp: Option<Stamp>) -> Result<Self, FileError> {
+    fn of(name: PathBuf, stored: Stored, size: u64) -> Result<Self, FileError> {
         let mut input = Self {
             name,
-            memory,
+            stored,
             packing: Packing::None,
             beginning: Vec::new(),
             size,
-            stamp,
         };
         input.beginning = input.first_bytes()?;
-        input.packing = packing::recognise(&input.name, &input.beginning, || input.stored())?;
-        if input.packing != Packing::None {
+        input.packing = packing::recognise(&input.name, &input.beginning, || input.as_stored())?;
+        if matches!(input.packing, Packing::Gzip | Packing::Zip(_)) {
             input.beginning = input.first_bytes()?;
         }
+        Ok(input)
+    }
+
+    /// The files of a zip archive of several, in its order.
+    pub(crate) fn members(&self) -> Result<Vec<Member>, FileError> {
+        packing::members(&self.name, self.as_stored()?)
+    }
+
+    /// One of the files of a zip archive, which messages call by archive and file.
+    pub(crate) fn member(&self, member: &Member) -> Result<Self, FileError> {
+        let mut input = Self {
+            name: format!("{}/{}", self.name.display(), shown(&member.name)).into(),
+            stored: self.stored.clone(),
+            packing: Packing::Zip(member.clone()),
+            beginning: Vec::new(),
+            size: member.packed,
+        };
+        if member.is_encrypted {
+            return Err(input.wrong(FileProblem::Encrypted));
+        }
+        input.beginning = input.first_bytes()?;
         Ok(input)
     }
 
@@ -156,7 +187,7 @@ impl Input {
 
     /// Its bytes from the first on, unpacked.
     pub(crate) fn reader(&self) -> Result<InputReader, FileError> {
-        let (inner, count) = (self.stored()?, Arc::default());
+        let (inner, count) = (self.as_stored()?, Arc::default());
         let counting = Counting {
             inner,
             count: Arc::clone(&count),
@@ -171,17 +202,17 @@ impl Input {
     /// It, or where it is packed all of its bytes unpacked in memory: not to be unpacked for every look into it.
     pub(crate) fn unpacked(&self) -> Result<Self, FileError> {
         match self.packing {
-            Packing::None => Ok(self.clone()),
-            _ => Self::from_bytes(&self.name, self.bytes()?),
+            Packing::None | Packing::Archive(_) => Ok(self.clone()),
+            Packing::Gzip | Packing::Zip(_) => Self::from_bytes(&self.name, self.bytes()?),
         }
     }
 
     /// Its bytes in any order, unpacked. A packed file is unpacked into memory.
     pub(crate) fn seekable(&self) -> Result<Box<dyn Seekable>, FileError> {
-        if self.packing == Packing::None {
-            return self.stored();
+        match self.packing {
+            Packing::None | Packing::Archive(_) => self.as_stored(),
+            Packing::Gzip | Packing::Zip(_) => Ok(Box::new(Cursor::new(self.bytes()?))),
         }
-        Ok(Box::new(Cursor::new(self.bytes()?)))
     }
 
     /// All of its bytes, unpacked, up to [`MOST_IN_MEMORY`] and to what its size warrants.
@@ -218,10 +249,10 @@ impl Input {
     }
 
     /// The bytes as they lie there, packed or not.
-    fn stored(&self) -> Result<Box<dyn Seekable>, FileError> {
-        Ok(match &self.memory {
-            None => Box::new(open_regular(&self.name)?.0),
-            Some(bytes) => Box::new(Cursor::new(Arc::clone(bytes))),
+    fn as_stored(&self) -> Result<Box<dyn Seekable>, FileError> {
+        Ok(match &self.stored {
+            Stored::Disk(path, _) => Box::new(open_regular(path)?.0),
+            Stored::Memory(bytes) => Box::new(Cursor::new(Arc::clone(bytes))),
         })
     }
 
@@ -257,7 +288,7 @@ impl Input {
     }
 
     /// A build with more features would read it.
-    #[cfg(not(all(feature = "arrow", feature = "robot-log")))]
+    #[cfg(not(all(feature = "arrow", feature = "hdf5", feature = "robot-log")))]
     pub(crate) fn not_in_this_build(&self, expected: &'static str, hint: &'static str) -> FileError {
         self.wrong(FileProblem::unfit("its format", expected, "one without", hint))
     }

@@ -29,7 +29,7 @@ pub(super) fn choose(part: &Part, test: &TestDescription) -> Result<Plan, Column
     let stated = &test.columns;
     let load = chooser.load(test)?;
     let displacement = chooser.travel(test, load.as_ref())?;
-    let load_choice = stated.stated(Quantity::is_load).map(|(_, choice)| choice);
+    let load_choice = load.as_ref().and_then(|load| load.choice);
     let travel_choice = stated.stated(Quantity::is_travel).map(|(_, choice)| choice);
     let may_be_there = displacement.is_none() && load_choice.is_none_or(|load| load.column.is_none());
     let clocks = [(travel_choice, displacement.as_ref()), (load_choice, load.as_ref())];

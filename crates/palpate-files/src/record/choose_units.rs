@@ -27,7 +27,7 @@ impl Chooser<'_> {
         if let Some(travel) = found.choice.and_then(|choice| choice.travel_per_unit) {
             return Ok(Some(found.used(format!("{} mm each", travel * 1e3), travel)));
         }
-        if found.role.measured() != Quantity::Time {
+        if found.quantity() != Quantity::Time {
             return Ok(None);
         }
         if let Some(rate) = found.rate {
@@ -68,7 +68,7 @@ impl Chooser<'_> {
     fn refuse_contradiction(&self, found: &Found<'_>) -> Result<(), ColumnError> {
         if let Some(choice) = found.choice
             && let (Some(machine), Some(stated), Some(written)) = (&choice.unit_by, &choice.unit, &found.column.unit)
-            && contradicts(found.role.measured(), choice, found.column)
+            && contradicts(found.quantity(), choice, found.column)
         {
             let (machine, stated, written) = (machine.clone(), stated.clone(), written.clone());
             return Err(found.wrong_unit(UnitProblem::OfMachine {
@@ -82,7 +82,7 @@ impl Chooser<'_> {
 
     /// A unit in the name of a column and another one in the row of units, or beside the column in a typed file: nobody knows which holds.
     fn refuse_two_units(&self, found: &Found<'_>) -> Result<(), ColumnError> {
-        let dimension = found.role.measured().dimension();
+        let dimension = found.quantity().dimension();
         if let (Some(name), Some(beside), None) = (&found.column.name, &found.column.unit, found.unit)
             && let Some(in_name) = unit::split(name).1
             && let (Some(one), Some(other)) = (unit_factor(&in_name, dimension), unit_factor(beside, dimension))
@@ -98,7 +98,7 @@ impl Chooser<'_> {
         let mut used = Vec::new();
         let mut without = Vec::new();
         for found in found {
-            let quantity = found.role.measured();
+            let quantity = found.quantity();
             if let Some(used_as) = self.without_plain_unit(found)? {
                 used.push(used_as);
                 continue;
@@ -133,7 +133,7 @@ impl Chooser<'_> {
         if let ([_], Some(found)) = (&without[..], found.iter().find(bare))
             && let Some(unit) = found.column.name.as_deref().and_then(in_brackets)
         {
-            return Err(found.wrong_unit(UnitProblem::Unknown(found.role.measured(), unit.to_owned())));
+            return Err(found.wrong_unit(UnitProblem::Unknown(found.quantity(), unit.to_owned())));
         }
         Err(ColumnError::NoUnit {
             without,

@@ -1,5 +1,7 @@
 //! A part of a file whose columns are chosen, and the columns found in it.
 
+use palpate::units::{self, Dimension};
+
 use super::{
     column_use::{ColumnUse, Role},
     error::{ColumnError, UnitProblem},
@@ -7,9 +9,9 @@ use super::{
 };
 use crate::{
     cell::number,
-    description::{ClockChoice, ColumnChoice, Torsion},
+    description::{ClockChoice, ColumnChoice, TestDescription, Torsion},
     naming::Quantity,
-    table::{ColumnInfo, ColumnRef, Part, epoch, recognise},
+    table::{ColumnInfo, ColumnRef, Metadata, Part, epoch, recognise},
 };
 
 /// A column that was found, before its unit is looked at.
@@ -20,6 +22,8 @@ pub(super) struct Found<'a> {
     pub(super) choice: Option<&'a ColumnChoice>,
     /// Of a time: it counts samples, so many a second.
     pub(super) rate: Option<f64>,
+    /// The column is the deflection of a cantilever with this spring constant (N/m), which makes it the force.
+    pub(super) spring_constant: Option<f64>,
 }
 
 impl<'a> Found<'a> {
@@ -32,12 +36,22 @@ impl<'a> Found<'a> {
             unit,
             choice,
             rate: choice.and_then(|choice| choice.rate),
+            spring_constant: None,
+        }
+    }
+
+    /// What its unit is one of.
+    pub(super) fn quantity(&self) -> Quantity {
+        match self.spring_constant {
+            Some(_) => Quantity::Displacement,
+            None => self.role.measured(),
         }
     }
 
     /// The key of a description that says its unit.
     pub(super) fn key(&self) -> String {
         match self.role {
+            Role::Values(_) if self.spring_constant.is_some() => "columns.deflection.unit".to_owned(),
             Role::Values(quantity) | Role::Added(quantity) => format!("columns.{quantity}.unit"),
             Role::Deflection => "columns.deflection.unit".to_owned(),
             Role::ClockOf(quantity) => format!("columns.{quantity}.clock.unit"),
@@ -57,7 +71,8 @@ impl<'a> Found<'a> {
                 Role::Added(_) => 0.0,
                 _ => self.choice.map_or(0.0, |choice| choice.offset),
             },
-            factor: if doubled { 2.0 * factor } else { factor },
+            factor: if doubled { 2.0 } else { self.spring_constant.unwrap_or(1.0) } * factor,
+            spring_constant: self.spring_constant,
             epoch: self.role.measured() == Quantity::Time && epoch::counts(self.column, factor),
         }
     }
@@ -65,6 +80,19 @@ impl<'a> Found<'a> {
 
 /// In names of columns of which the deflection of the cantilever is off already.
 const INDENTATIONS: [&str; 4] = ["indentation", "tip position", "tipposition", "separation"];
+
+/// Names of the spring constant of a cantilever in the metadata of files.
+const SPRING_CONSTANTS: [&str; 4] = ["springconstant", "spring constant", "spring_constant", "k"];
+
+/// The spring constant that stands in a file with its unit, N/m.
+fn spring_constant_of(part: &Part) -> Option<f64> {
+    let entry = |entry: &&Metadata| SPRING_CONSTANTS.contains(&entry.name.trim().to_lowercase().as_str());
+    part.metadata.iter().filter(entry).find_map(|entry| {
+        let factor = units::factor(entry.unit.as_deref()?.trim(), Dimension::Stiffness)?;
+        let value = entry.value.trim().parse::<f64>().ok()? * factor;
+        (value.is_finite() && value > 0.0).then_some(value)
+    })
+}
 
 #[derive(Clone, Copy)]
 pub(super) struct Chooser<'a> {
@@ -125,6 +153,28 @@ impl<'a> Chooser<'a> {
         let named = choice.column.as_ref().unwrap_or(&ColumnRef::Number(0));
         let column = self.beside(height, "columns.deflection.column", named)?;
         Ok(Found::of(Role::Deflection, column, Some(choice)))
+    }
+
+    /// The deflection of a cantilever as the force: by the spring constant of the description, or where there is no column of force by that of
+    /// the file.
+    pub(super) fn force_of_deflection(&self, test: &'a TestDescription) -> Result<Option<Found<'a>>, ColumnError> {
+        let stated = &test.columns;
+        let Some(choice) = &stated.deflection else {
+            return Ok(None);
+        };
+        let has_force = || {
+            let is_there = |quantity| !recognise::candidates(&self.part.columns, quantity).is_empty();
+            stated.stated(Quantity::is_load).is_some() || is_there(Quantity::Force) || is_there(Quantity::Stress)
+        };
+        let of_file = || if has_force() { None } else { spring_constant_of(self.part) };
+        let (Some(spring_constant), Some(named)) = (stated.spring_constant.or_else(of_file), &choice.column) else {
+            return Ok(None);
+        };
+        let column = self.named("columns.deflection.column", named)?;
+        Ok(Some(Found {
+            spring_constant: Some(spring_constant),
+            ..Found::of(Role::Values(Quantity::Force), column, Some(choice))
+        }))
     }
 
     /// Another column that is named under a key, and must have the clock of `values`.
@@ -202,6 +252,7 @@ impl<'a> Chooser<'a> {
     /// Two clocks may be one column, two measured quantities may not.
     pub(super) fn refuse_twice(&self, found: &[Found<'_>]) -> Result<(), ColumnError> {
         let values = |found: &Found<'_>| match found.role {
+            Role::Values(_) if found.spring_constant.is_some() => None,
             Role::Values(quantity) | Role::Added(quantity) => Some((quantity, found.column.number)),
             // The bending of a cantilever may be the force as well, by another scale.
             Role::ClockOf(_) | Role::Deflection => None,

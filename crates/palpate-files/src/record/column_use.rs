@@ -52,4 +52,7 @@ pub struct ColumnUse {
     pub epoch: bool,
     /// What is then added, in SI, before the sign.
     pub offset: f64,
+    /// Of a deflection whose column is the force: the spring constant, N/m, which is part of the factor.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub spring_constant: Option<f64>,
 }

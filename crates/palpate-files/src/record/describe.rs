@@ -159,6 +159,8 @@ fn write_columns(out: &mut String, part: &Part, file: &RecordFile) {
     for column in columns {
         let quantity = column.role.measured();
         let table = match column.role {
+            // It stands with the deflection.
+            Role::Values(_) if column.spring_constant.is_some() => continue,
             Role::Values(quantity) => quantity.to_string(),
             Role::Deflection => "deflection".to_owned(),
             Role::Added(_) | Role::ClockOf(_) => continue,
@@ -173,6 +175,10 @@ fn write_columns(out: &mut String, part: &Part, file: &RecordFile) {
         }
         if column.sign < 0.0 {
             let _ = writeln!(out, "sign = -1");
+        }
+        let spring_constant = columns.iter().find_map(|other| other.spring_constant);
+        if let Some(spring_constant) = spring_constant.filter(|_| column.role == Role::Deflection) {
+            let _ = writeln!(out, "spring_constant = \"{spring_constant} N/m\"");
         }
         let added = columns.iter().find(|other| other.role == Role::Added(quantity));
         if let Some(added) = added.filter(|_| column.role == Role::Values(quantity)) {

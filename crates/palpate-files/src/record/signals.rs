@@ -22,6 +22,9 @@ impl<'a> Chooser<'a> {
     /// The column of what becomes the force: the one that is stated, otherwise force, stress, a modulus or a torque, in this order; none
     /// where there is a compliance or a strain alone.
     pub(super) fn load(&self, test: &'a TestDescription) -> Result<Option<Found<'a>>, ColumnError> {
+        if let Some(bent) = self.force_of_deflection(test)? {
+            return Ok(Some(bent));
+        }
         if let Some((quantity, choice)) = test.columns.stated(Quantity::is_load) {
             return self.find(quantity, Some(choice));
         }

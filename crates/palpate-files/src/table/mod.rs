@@ -41,7 +41,7 @@ pub(crate) use header::Header;
 pub(crate) use lacking::Lacking;
 pub use layout::Layout;
 pub use part::{Clock, ColumnInfo, ColumnKind, Label, Metadata, Part, SkippedPart};
-pub(crate) use reader::{Found, ReadPart, share};
+pub(crate) use reader::{Found, ReadPart, not_finite, share};
 pub use reader::{Heard, ReadOptions};
 pub(crate) use recognise::names_time;
 pub(crate) use stacked::{RowKind, Starts};

@@ -13,8 +13,8 @@ use super::{
 };
 use crate::{
     cell::{DecimalMark, Delimiter},
-    error::FileError,
-    input::Encoding,
+    error::{FileError, FileProblem},
+    input::{Encoding, Input},
 };
 
 /// How the file is written, where it should not be found out, and which of its tests is meant.
@@ -51,6 +51,13 @@ pub type Heard<'a> = dyn FnMut(u64, u64) -> Result<(), Cancelled> + 'a;
 /// The share `done` of `total` in the bytes of a file of this size.
 pub(crate) fn share(done: u64, total: u64, size: u64) -> u64 {
     (done as f64 / total.max(1) as f64 * size as f64) as u64
+}
+
+/// A number that is none or infinite, in a format whose rows (from 0) and columns (from 1) have numbers.
+pub(crate) fn not_finite(input: &Input, row: usize, column: usize) -> FileError {
+    let place = format!("row {}, column {column}", row + 1);
+    let hint = "export the record again, or choose another column";
+    input.wrong(FileProblem::bad_cell(&place, "a finite number", "none, or an infinite one", hint))
 }
 
 /// What a format can do once it has looked into a file.

@@ -8,6 +8,8 @@
 //! | xlsx, JPK's archives, packed files | members, each behind a line `=== NAME` |
 //! | xls | the records of a workbook |
 //! | Parquet | the footer |
+//! | Igor waves | a wave whose checksum is set right |
+//! | MATLAB files | elements, each behind a line `===` |
 //! | robot logs | `=== cdr ros2msg TYPE`, the definition, and each message behind a line `===` |
 
 use std::io::{Cursor, Write};
@@ -27,13 +29,18 @@ pub(crate) enum Kind {
     JpkForce,
     RobotLog,
     Packed,
+    Igor,
+    Matlab,
+    Hdf5,
 }
 
 /// The file that `bytes` stand for.
 pub(crate) fn packed(kind: Kind, bytes: &[u8]) -> Vec<u8> {
     let whole = |magic: &[u8]| bytes.starts_with(magic);
     match kind {
-        Kind::Text | Kind::JpkText | Kind::AfmTab | Kind::Arrow => bytes.to_vec(),
+        Kind::Text | Kind::JpkText | Kind::AfmTab | Kind::Arrow | Kind::Hdf5 => bytes.to_vec(),
+        Kind::Igor => with_checksum(bytes),
+        Kind::Matlab if whole(b"===") => of_elements(members(bytes)),
         Kind::Xls if !whole(b"\xD0\xCF\x11\xE0") => compound("Workbook", bytes),
         Kind::Parquet if !whole(b"PAR1") => around_footer(bytes),
         Kind::RobotLog if whole(b"===") => log(&members(bytes)),
@@ -95,6 +102,46 @@ fn archive(mut members: Vec<(String, &[u8])>, usual: &[(&str, &'static str)]) ->
         }
     }
     zip.finish().expect("an archive in memory").into_inner()
+}
+
+/// A wave whose header adds up to nothing, as it must.
+fn with_checksum(bytes: &[u8]) -> Vec<u8> {
+    let mut bytes = bytes.to_vec();
+    let (lowest_first, version) = match bytes.first_chunk() {
+        Some([version, 0]) => (true, *version),
+        Some([0, version]) => (false, *version),
+        _ => return bytes,
+    };
+    let (length, at) = match version {
+        1 => (118, 6),
+        2 => (126, 14),
+        3 => (130, 18),
+        _ => (384, 2),
+    };
+    if let Some(header) = bytes.get_mut(..length) {
+        header[at..at + 2].fill(0);
+        let short = |pair: &[u8]| match lowest_first {
+            true => u16::from_le_bytes([pair[0], pair[1]]),
+            false => u16::from_be_bytes([pair[0], pair[1]]),
+        };
+        let sum = header.chunks_exact(2).fold(0_u16, |sum, pair| sum.wrapping_add(short(pair))).wrapping_neg();
+        header[at..at + 2].copy_from_slice(&if lowest_first { sum.to_le_bytes() } else { sum.to_be_bytes() });
+    }
+    bytes
+}
+
+/// A MATLAB file of elements, each packed.
+fn of_elements(elements: Vec<(String, &[u8])>) -> Vec<u8> {
+    let mut file = [&[b' '; 116][..], &[0; 8], &[0, 1, b'I', b'M']].concat();
+    for (_, element) in elements {
+        let mut packer = flate2::write::ZlibEncoder::new(Vec::new(), flate2::Compression::fast());
+        packer.write_all(element).expect("packed in memory");
+        let packed = packer.finish().expect("packed in memory");
+        file.extend(15_u32.to_le_bytes());
+        file.extend((packed.len() as u32).to_le_bytes());
+        file.extend(packed);
+    }
+    file
 }
 
 fn gzip(bytes: &[u8]) -> Vec<u8> {

@@ -8,7 +8,7 @@ use crate::{
 };
 
 /// The folders of the corpus by what their files are.
-const FOLDERS: [(&str, Option<Kind>); 11] = [
+const FOLDERS: [(&str, Option<Kind>); 14] = [
     ("text", Some(Kind::Text)),
     ("jpk_text", Some(Kind::JpkText)),
     ("afm_tab", Some(Kind::AfmTab)),
@@ -19,6 +19,9 @@ const FOLDERS: [(&str, Option<Kind>); 11] = [
     ("jpk_force", Some(Kind::JpkForce)),
     ("robot_log", Some(Kind::RobotLog)),
     ("packed", Some(Kind::Packed)),
+    ("igor", Some(Kind::Igor)),
+    ("matlab", Some(Kind::Matlab)),
+    ("hdf5", Some(Kind::Hdf5)),
     ("description", None),
 ];
 

@@ -20,13 +20,17 @@ pub(super) struct Tally {
     holds: usize,
     /// Holds without a fitted law.
     unfitted: usize,
+    /// Tests without a hold.
+    without_hold: usize,
+    /// The modulus of the first loading ramp of each test that has one, Pa.
+    moduli: Vec<f64>,
     /// How many holds each law is recommended for.
     laws: HashMap<String, usize>,
     /// Values of each parameter of each recommended law, by law, name and unit.
     values: HashMap<(String, String, String), Vec<f64>>,
     /// How many holds have each finding.
     findings: HashMap<String, usize>,
-    hold: [usize; 6],
+    hold: [usize; 7],
     parameter: [usize; 6],
 }
 
@@ -39,6 +43,10 @@ pub struct BatchAnswer {
     pub holds: usize,
     /// Holds without a fitted law.
     pub unfitted: usize,
+    /// Tests without a hold.
+    pub without_hold: usize,
+    /// Young's modulus of the first loading ramp over the tests that have one, Pa.
+    pub loading_modulus: Option<Spread>,
     /// The laws with the number of holds that each is recommended for, the most first.
     pub laws: Vec<(String, usize)>,
     /// Parameters of the first of these laws over the holds that it is recommended for.
@@ -54,13 +62,13 @@ pub struct Spread {
     pub name: String,
     /// Its unit, `1` of a dimensionless parameter.
     pub unit: String,
-    /// Holds with a value.
+    /// Holds with a value; of the modulus of the first loading ramp, tests.
     pub holds: usize,
     /// Lower quartile, median and upper quartile.
     pub quartiles: [f64; 3],
 }
 
-fn columns(fields: &[Field], names: [&str; 6]) -> [usize; 6] {
+fn columns<const N: usize>(fields: &[Field], names: [&str; N]) -> [usize; N] {
     names.map(|name| fields.iter().position(|field| field.name == name).unwrap_or(usize::MAX))
 }
 
@@ -74,11 +82,13 @@ fn is_set(row: &[Value], column: usize) -> bool {
 
 impl Tally {
     pub(super) fn new() -> Self {
-        let hold = ["record", "part", "hold", "law", "recommended", "findings"];
+        let hold = ["record", "part", "hold", "law", "recommended", "findings", "loading_modulus_pa"];
         let parameter = ["law", "parameter", "unit", "value", "recommended", "role"];
         Self {
             holds: 0,
             unfitted: 0,
+            without_hold: 0,
+            moduli: Vec::new(),
             laws: HashMap::new(),
             values: HashMap::new(),
             findings: HashMap::new(),
@@ -89,7 +99,7 @@ impl Tally {
 
     /// Counts the holds of a file.
     pub(super) fn add(&mut self, entry: &Entry) {
-        let [record, part, hold, law, recommended, findings] = self.hold;
+        let [record, part, hold, law, recommended, findings, modulus] = self.hold;
         let key = |row: &[Value]| (text(row, record).to_owned(), text(row, part).to_owned(), row[hold].as_i64());
         let mut last = None;
         for row in &entry.rows {
@@ -98,9 +108,17 @@ impl Tally {
             }
             let of = Some(key(row));
             if last != of {
+                // The modulus is that of the record, the same for all of its holds.
+                if row[hold].as_i64().is_none_or(|hold| hold == 1) {
+                    self.moduli.extend(row[modulus].as_f64());
+                }
                 last = of;
-                self.holds += 1;
-                self.unfitted += usize::from(text(row, law).is_empty());
+                if row[hold].is_null() {
+                    self.without_hold += 1;
+                } else {
+                    self.holds += 1;
+                    self.unfitted += usize::from(text(row, law).is_empty());
+                }
                 for code in text(row, findings).split_whitespace() {
                     *self.findings.entry(code.to_owned()).or_default() += 1;
                 }
@@ -121,28 +139,35 @@ impl Tally {
         let of_first = self.values.into_iter().filter(|((law, ..), _)| Some(law) == first.as_ref());
         let parameters: BTreeMap<(String, String), Vec<f64>> =
             of_first.map(|((_, name, unit), values)| ((name, unit), values)).collect();
-        let spread = |((name, unit), mut values): ((String, String), Vec<f64>)| {
-            values.sort_by(f64::total_cmp);
-            // Between the order statistics on both sides, straight.
-            let at = |share: f64| {
-                let place = (values.len() - 1) as f64 * share;
-                let (below, above) = (values[place.floor() as usize], values[place.ceil() as usize]);
-                below + (above - below) * place.fract()
-            };
-            Spread {
-                name,
-                unit,
-                holds: values.len(),
-                quartiles: [at(0.25), at(0.5), at(0.75)],
-            }
-        };
+        let modulus = (!self.moduli.is_empty()).then(|| Spread::of("loading_modulus_pa", "Pa", self.moduli));
         BatchAnswer {
             compared,
             holds: self.holds,
             unfitted: self.unfitted,
             laws,
-            parameters: parameters.into_iter().map(spread).collect(),
+            parameters: parameters.into_iter().map(|((name, unit), values)| Spread::of(&name, &unit, values)).collect(),
+            without_hold: self.without_hold,
+            loading_modulus: modulus,
             findings: most(self.findings, MOST_FINDINGS),
+        }
+    }
+}
+
+impl Spread {
+    /// Of one value or more.
+    fn of(name: &str, unit: &str, mut values: Vec<f64>) -> Self {
+        values.sort_by(f64::total_cmp);
+        // Between the order statistics on both sides, straight.
+        let at = |share: f64| {
+            let place = (values.len() - 1) as f64 * share;
+            let (below, above) = (values[place.floor() as usize], values[place.ceil() as usize]);
+            below + (above - below) * place.fract()
+        };
+        Self {
+            name: name.to_owned(),
+            unit: unit.to_owned(),
+            holds: values.len(),
+            quartiles: [at(0.25), at(0.5), at(0.75)],
         }
     }
 }
@@ -159,6 +184,27 @@ impl BatchAnswer {
     /// The answer in sentences and a table.
     #[must_use]
     pub fn text(&self) -> String {
+        let text = [self.of_laws(), self.of_tests()].into_iter().filter(|text| !text.is_empty());
+        text.collect::<Vec<_>>().join("\n")
+    }
+
+    /// What is known of the tests besides their holds.
+    fn of_tests(&self) -> String {
+        let without = (self.without_hold > 0).then(|| format!("No hold in {}.", counted(self.without_hold, "test")));
+        let modulus = self.loading_modulus.as_ref().map(|found| {
+            let [low, median, high] = found.quartiles.map(|value| significant(value, 4));
+            let quartiles = if found.holds > 1 { format!(" (quartiles {low} and {high})") } else { String::new() };
+            format!(
+                "Apparent modulus of the first loading ramp: median {median} Pa{quartiles} over {}.",
+                counted(found.holds, "test")
+            )
+        });
+        let sentences: Vec<String> = without.into_iter().chain(modulus).collect();
+        if sentences.is_empty() { String::new() } else { wrapped(&sentences.join(" ")) }
+    }
+
+    /// Which laws were recommended, with the parameters of the first.
+    fn of_laws(&self) -> String {
         let Some((law, count)) = self.laws.first() else {
             return match self.holds {
                 0 => String::new(),

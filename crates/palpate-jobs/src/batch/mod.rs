@@ -30,7 +30,7 @@ use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
 use crate::depends::BUILD;
-use crate::input::{Described, NamedRecords, OpenedFile, Source};
+use crate::input::{Described, NamedFile, NamedRecords, OpenedFile, Source};
 use crate::output::{is_same, keep_apart, sha256};
 use crate::store::{Store, beside};
 use crate::threads::{Share, over_threads};
@@ -123,13 +123,13 @@ impl Batch {
     /// other.
     pub fn run(&self, records: NamedRecords, out: &Path, watch: &mut dyn Watch) -> Result<Outcome<Batched>, JobError> {
         let started = Instant::now();
-        let NamedRecords { mut paths, described } = records;
+        let NamedRecords { mut files, described } = records;
         let of_parameters = table::of_parameters(out);
         keep_apart(&described.path, [out, &of_parameters])?;
         let format = Format::of(out)?;
         let options = self.options(&described);
         if !is_written_by_batch(out) {
-            keep_apart(&paths, [out])?;
+            keep_apart(files.iter().filter_map(NamedFile::path), [out])?;
         }
         let journal = beside(out, ".journal");
         // In the folder of the records they are no records.
@@ -138,19 +138,19 @@ impl Batch {
                 || is_same(path, &of_parameters)
                 || path.parent().is_some_and(|folder| is_same(folder, &journal))
         };
-        paths.retain(|path| !is_ours(path));
+        files.retain(|file| !file.path().is_some_and(is_ours));
         let settings = settings(&options, &described)?;
         let store = Store::open(&journal, "batch", &sha256(settings.as_bytes()), self.restart)?;
-        let progress = Progress::counted("analysing", 0, paths.len());
-        let places = over_threads(paths.len(), self.threads, progress, watch, |index, share| {
-            let place = file(&paths[index], &described, &options, &store, share)?;
+        let progress = Progress::counted("analysing", 0, files.len());
+        let places = over_threads(files.len(), self.threads, progress, watch, |index, share| {
+            let place = file(&files[index], &described, &options, &store, share)?;
             share.advance(1)?;
             Ok(place)
         })?;
         let how = (settings.as_str(), options.compare.is_some());
         let batched = table::write(out, format, &store, places.iter().map(|(place, _)| place), how)?;
         let before = places.iter().filter(|(_, before)| *before).count();
-        let (all, notes) = (batched.failures.is_empty(), batched.notes(out, paths.len(), before, started));
+        let (all, notes) = (batched.failures.is_empty(), batched.notes(out, files.len(), before, started));
         Ok(Outcome::of(batched).answered(all).noted(notes))
     }
 
@@ -174,13 +174,13 @@ impl Batch {
 
 /// Where the entry of a file lies, and whether it was there before.
 fn file(
-    path: &Path,
+    named: &NamedFile,
     described: &Described,
     options: &AnalysisOptions,
     store: &Store,
     mut share: Share<'_>,
 ) -> Result<(Range<u64>, bool), JobError> {
-    let source = Source::open(path);
+    let (path, source) = (named.name(), Source::open(named));
     let digest = source.as_ref().ok().and_then(|source| source.digest.get(&mut share).ok());
     let key = format!("{} {}", digest.as_deref().unwrap_or("-"), path.display());
     if let Some(place) = store.find(&key).filter(|_| digest.is_some()) {
@@ -223,7 +223,7 @@ fn document(
 ) -> Result<AnalysisDocument, JobError> {
     let measured = opened.measurement(part, &mut share)?;
     let analysis = examine(&measured.record, options, &mut share)
-        .map_err(|error| JobError::analysis(&error, &measured.input.path))?;
+        .map_err(|error| JobError::analysis(&error, &measured.input.called()))?;
     Ok(AnalysisDocument::new(&analysis, measured.input))
 }
 

@@ -1,4 +1,5 @@
-//! An analysed record as rows of the table: one a hold and law, and one for a hold to which no law was fitted.
+//! An analysed record as rows of the table: one a hold and law, one for a hold to which no law was fitted, and one for a record without a
+//! hold.
 
 use palpate_files::parquet_table::Kind::{self, Count, Number, Text};
 use palpate_files::parquet_table::{Field, Rows, Values};
@@ -8,10 +9,14 @@ use palpate_report::document::{
 use palpate_report::result::Parameters;
 use serde_json::Value;
 
+/// The code of the finding that a record has no hold.
+const NO_HOLD: &str = "no_hold";
+
 /// What a row is made of.
 struct Line<'a> {
     document: &'a AnalysisDocument,
-    hold: &'a HoldDocument,
+    /// `None`: the record has none.
+    hold: Option<&'a HoldDocument>,
     law: LawRow<'a>,
     /// Whether it is the law to use.
     is_recommended: bool,
@@ -35,18 +40,18 @@ const HOLD: [Column; 16] = [
     (Text, "record_sha256", |line| line.document.input.sha256.clone().into()),
     (Count, "rows", |line| line.document.input.rows.into()),
     (Count, "rows_averaged", |line| line.document.input.rows_averaged.into()),
-    (Number, "start_s", |line| line.hold.start_s.into()),
-    (Number, "end_s", |line| line.hold.end_s.into()),
-    (Number, "fit_start_s", |line| line.hold.fit_start_s.into()),
-    (Number, "displacement_m", |line| line.hold.displacement_m.into()),
-    (Text, "after", |line| line.hold.after.clone().into()),
-    (Text, "mode", |line| line.hold.mode.clone().into()),
-    (Text, "relaxation", |line| line.hold.relaxation.clone().into()),
-    (Number, "relaxation_p_value", |line| line.hold.p_value.into()),
-    (Number, "force_start_n", |line| line.hold.force_start_n.into()),
-    (Number, "force_end_n", |line| line.hold.force_end_n.into()),
-    (Number, "force_change_n", |line| line.hold.force_change_n.into()),
-    (Text, "signal", |line| line.hold.signal.clone().into()),
+    (Number, "start_s", |line| line.of_hold(|hold| hold.start_s.into())),
+    (Number, "end_s", |line| line.of_hold(|hold| hold.end_s.into())),
+    (Number, "fit_start_s", |line| line.of_hold(|hold| hold.fit_start_s.into())),
+    (Number, "displacement_m", |line| line.of_hold(|hold| hold.displacement_m.into())),
+    (Text, "after", |line| line.of_hold(|hold| hold.after.clone().into())),
+    (Text, "mode", |line| line.of_hold(|hold| hold.mode.clone().into())),
+    (Text, "relaxation", |line| line.of_hold(|hold| hold.relaxation.clone().into())),
+    (Number, "relaxation_p_value", |line| line.of_hold(|hold| hold.p_value.into())),
+    (Number, "force_start_n", |line| line.of_hold(|hold| hold.force_start_n.into())),
+    (Number, "force_end_n", |line| line.of_hold(|hold| hold.force_end_n.into())),
+    (Number, "force_change_n", |line| line.of_hold(|hold| hold.force_change_n.into())),
+    (Text, "signal", |line| line.of_hold(|hold| hold.signal.clone().into())),
     (Text, "findings", |line| codes(line).into()),
 ];
 
@@ -54,7 +59,7 @@ const HOLD: [Column; 16] = [
 const ANSWER: [Column; 9] = [
     (Text, "record", |line| line.document.input.path.clone().into()),
     (Text, "part", |line| line.document.input.part.clone().into()),
-    (Count, "hold", |line| line.hold.index.into()),
+    (Count, "hold", |line| line.of_hold(|hold| hold.index.into())),
     (Text, "law", |line| line.name().into()),
     (Count, "recommended", |line| i64::from(line.is_recommended).into()),
     (Text, "formula", |line| {
@@ -70,7 +75,16 @@ const FIT: [Column; 5] = [
     (Number, "rmse", |line| line.of_law(|fit| fit.rmse.into(), |_| Value::Null)),
     (Number, "relative_rmse", |line| line.of_law(|fit| fit.relative_rmse.into(), |law| law.rmse.into())),
     (Number, "delta_bic", |line| line.of_law(|fit| fit.delta_bic.into(), |law| law.delta_bic.into())),
-    (Text, "termination", |line| line.of_law(|fit| fit.termination.clone().into(), ending)),
+    (Text, "termination", |line| match line.hold {
+        Some(_) => line.of_law(|fit| fit.termination.clone().into(), ending),
+        None => line
+            .document
+            .findings
+            .iter()
+            .find(|found| found.code == NO_HOLD)
+            .map(|found| found.observation.clone())
+            .into(),
+    }),
     (Text, "parameters", |line| {
         let written = |parameters: &Parameters| serde_json::to_string(parameters).ok().into();
         line.parameters().map_or(Value::Null, written)
@@ -113,6 +127,14 @@ pub(super) fn fields() -> Vec<Field> {
 
 /// The rows of a record, in the order of its holds; of each the recommended law first, then the latency law, n given before free.
 pub(super) fn rows(document: &AnalysisDocument) -> Vec<Vec<Value>> {
+    if document.holds.is_empty() {
+        return vec![row(&Line {
+            document,
+            hold: None,
+            law: LawRow::None,
+            is_recommended: false,
+        })];
+    }
     document.holds.iter().flat_map(|hold| of_hold(document, hold)).collect()
 }
 
@@ -128,7 +150,7 @@ fn of_hold<'a>(document: &'a AnalysisDocument, hold: &'a HoldDocument) -> impl I
     let line = |law| {
         let mut line = Line {
             document,
-            hold,
+            hold: Some(hold),
             law,
             is_recommended: false,
         };
@@ -154,6 +176,11 @@ fn row(line: &Line<'_>) -> Vec<Value> {
 }
 
 impl Line<'_> {
+    /// What stands in the hold, if there is one.
+    fn of_hold(&self, value: fn(&HoldDocument) -> Value) -> Value {
+        self.hold.map_or(Value::Null, value)
+    }
+
     /// What stands in the latency law, or in another one.
     fn of_law(&self, latency: fn(&FitDocument) -> Value, other: fn(&LawDocument) -> Value) -> Value {
         match &self.law {
@@ -180,12 +207,12 @@ impl Line<'_> {
     /// The law as the comparison has it, if it was compared.
     fn compared(&self) -> Option<&LawDocument> {
         let name = self.name()?;
-        self.hold.comparison.as_ref()?.laws.iter().find(|law| law.law == name)
+        self.hold?.comparison.as_ref()?.laws.iter().find(|law| law.law == name)
     }
 
     /// What is judged of the hold, in the row of the recommended law.
     fn verdict(&self) -> Option<&VerdictDocument> {
-        self.hold.comparison.as_ref()?.verdict.as_ref().filter(|_| self.is_recommended)
+        self.hold?.comparison.as_ref()?.verdict.as_ref().filter(|_| self.is_recommended)
     }
 
     /// Of the recommended law: the other laws that the data do not distinguish from the best.
@@ -208,7 +235,7 @@ impl Line<'_> {
 
 /// Codes of the findings about the record and the hold.
 fn codes(line: &Line<'_>) -> String {
-    let all = line.document.findings.iter().chain(&line.hold.findings);
+    let all = line.document.findings.iter().chain(line.hold.iter().flat_map(|hold| &hold.findings));
     let mut codes: Vec<&str> = Vec::new();
     for finding in all {
         // Of both columns, say.

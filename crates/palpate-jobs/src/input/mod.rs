@@ -5,7 +5,7 @@
 //!
 //! | file | what |
 //! |---|---|
-//! | `source.rs` | the bytes of a file and their digest |
+//! | `source.rs` | a file as it is named ([`NamedFile`]), its bytes and their digest |
 //! | `described.rs` | the description of a test |
 //! | `opened.rs` | a file of records that was looked into ([`OpenedFile`]) |
 //! | `named.rs` | the files that were named: one by one, by a folder, by a pattern ([`NamedRecords`]) |
@@ -19,4 +19,5 @@ pub use described::Described;
 pub use named::{NamedRecords, Part};
 pub(crate) use opened::averaged;
 pub use opened::{Measurement, OpenedFile, called, record_sha256};
+pub use source::NamedFile;
 pub(crate) use source::Source;

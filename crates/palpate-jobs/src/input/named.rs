@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use palpate::watch::Watch;
 use palpate_files::input::is_standard_input;
 
-use super::{Described, Measurement, OpenedFile};
+use super::{Described, Measurement, NamedFile, OpenedFile};
 use crate::output::Names;
 use crate::written_by_batch::is_written_by_batch;
 use crate::{ErrorKind, JobError};
@@ -19,7 +19,7 @@ use crate::{ErrorKind, JobError};
 #[derive(Debug, Clone)]
 pub struct NamedRecords {
     /// The files.
-    pub paths: Vec<PathBuf>,
+    pub files: Vec<NamedFile>,
     /// What is stated about them.
     pub described: Described,
 }
@@ -40,22 +40,28 @@ pub struct Part<'a> {
 }
 
 impl NamedRecords {
-    /// Finds the files.
+    /// Finds the files; what lies in memory is there.
     ///
     /// # Errors
     /// [`JobError`] where a name leads to none.
-    pub fn find(named: &[PathBuf], described: Described) -> Result<Self, JobError> {
-        let mut paths = Vec::new();
-        if let [path, ..] = named
-            && !named.iter().any(|path| path.exists() || is_pattern(path) || is_standard_input(path))
+    pub fn find(named: impl IntoIterator<Item = impl Into<NamedFile>>, described: Described) -> Result<Self, JobError> {
+        let named: Vec<NamedFile> = named.into_iter().map(Into::into).collect();
+        let leads = |path: &Path| path.exists() || is_pattern(path) || is_standard_input(path);
+        if let [first, ..] = &named[..]
+            && !named.iter().any(|file| file.path().is_none_or(leads))
         {
-            return Err(unmatched(path, "no such file", "check the spelling of the path"));
+            return Err(unmatched(first.name(), "no such file", "check the spelling of the path"));
         }
-        for path in named {
-            let before = paths.len();
+        let mut files = Vec::new();
+        for file in named {
+            let NamedFile::Path(path) = &file else {
+                files.push(file);
+                continue;
+            };
+            let mut paths = Vec::new();
             if path.is_dir() {
                 below(path, &mut paths)?;
-                if paths.len() == before {
+                if paths.is_empty() {
                     return Err(unmatched(
                         path,
                         "expected a folder with records, found none in it or its subfolders",
@@ -67,10 +73,17 @@ impl NamedRecords {
             } else {
                 paths.push(path.clone());
             }
+            files.extend(paths.into_iter().map(NamedFile::Path));
         }
         let mut observed = HashSet::new();
-        paths.retain(|path| observed.insert(path.canonicalize().unwrap_or_else(|_| path.clone())));
-        Ok(Self { paths, described })
+        let place = |path: &Path| path.canonicalize().unwrap_or_else(|_| path.to_owned());
+        files.retain(|file| file.path().is_none_or(|path| observed.insert(place(path))));
+        Ok(Self { files, described })
+    }
+
+    /// The names of the files, in order.
+    pub fn names(&self) -> impl Iterator<Item = &Path> {
+        self.files.iter().map(NamedFile::name)
     }
 
     /// Hands every test to `take`, one in memory at a time, with `out` as the folder for the results of all; `reported` hears what else a file
@@ -85,9 +98,10 @@ impl NamedRecords {
         mut reported: impl FnMut(&[String]),
         mut take: impl FnMut(Part<'_>, &mut dyn Watch) -> Result<(), JobError>,
     ) -> Result<(), JobError> {
-        let alone = self.paths.len() == 1;
+        let alone = self.files.len() == 1;
         let mut names = Names::default();
-        for path in &self.paths {
+        for file in &self.files {
+            let path = file.name();
             let folder = out.map(|out| match alone {
                 true => out.to_owned(),
                 false => {
@@ -95,7 +109,7 @@ impl NamedRecords {
                     names.folder_in(out, &stem)
                 }
             });
-            let opened = OpenedFile::open(path, &self.described);
+            let opened = OpenedFile::named(file, &self.described);
             opened.iter().for_each(|opened| reported(&opened.notes()));
             let parts = opened.as_ref().map_or(&[0][..], |opened| &opened.tests.parts);
             let (several, mut names) = (parts.len() > 1, Names::default());

@@ -12,7 +12,7 @@ use palpate_report::result::Input;
 use sha2::{Digest, Sha256};
 
 use super::Described;
-use super::source::{FileDigest, Source};
+use super::source::{FileDigest, NamedFile, Source};
 use crate::JobError;
 use crate::output::hexadecimal;
 
@@ -46,7 +46,15 @@ impl<'d> OpenedFile<'d> {
     /// # Errors
     /// [`JobError`] where it cannot be read, or holds no test.
     pub fn open(path: &Path, described: &'d Described) -> Result<Self, JobError> {
-        Self::of(Source::open(path)?, described)
+        Self::named(&NamedFile::Path(path.to_owned()), described)
+    }
+
+    /// Looks into a file that may lie in memory.
+    ///
+    /// # Errors
+    /// As for [`open`](Self::open).
+    pub fn named(file: &NamedFile, described: &'d Described) -> Result<Self, JobError> {
+        Self::of(Source::open(file)?, described)
     }
 
     /// Looks into a file whose bytes are there.

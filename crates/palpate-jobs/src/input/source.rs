@@ -1,7 +1,7 @@
 //! The bytes of a file and their digest.
 
 use std::cell::{OnceCell, RefCell};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::thread::{self, JoinHandle};
@@ -20,6 +20,37 @@ use crate::{ErrorKind, JobError};
 /// while it is read.
 const IN_MEMORY: u64 = 64 << 20;
 
+/// A file of records as a front end names it.
+#[derive(Debug, Clone)]
+pub enum NamedFile {
+    /// On a disk; `-` is standard input.
+    Path(PathBuf),
+    /// In memory, under a name for results and messages.
+    Bytes(PathBuf, Arc<[u8]>),
+}
+
+impl NamedFile {
+    /// What results and messages call it.
+    #[must_use]
+    pub fn name(&self) -> &Path {
+        match self {
+            Self::Path(name) | Self::Bytes(name, _) => name,
+        }
+    }
+
+    /// Where it lies, if it lies on a disk.
+    #[must_use]
+    pub fn path(&self) -> Option<&Path> {
+        if let Self::Path(path) = self { Some(path) } else { None }
+    }
+}
+
+impl From<PathBuf> for NamedFile {
+    fn from(path: PathBuf) -> Self {
+        Self::Path(path)
+    }
+}
+
 /// A file to read a record from, and the digest of its bytes.
 pub(crate) struct Source {
     pub(crate) input: Input,
@@ -27,12 +58,13 @@ pub(crate) struct Source {
 }
 
 impl Source {
-    /// The file at `path`; `-` is standard input, read to its end.
-    pub(crate) fn open(path: &Path) -> Result<Self, JobError> {
-        let input = match is_standard_input(path) {
-            true => Input::read(path),
+    /// The file; standard input is read to its end.
+    pub(crate) fn open(file: &NamedFile) -> Result<Self, JobError> {
+        let input = match file {
+            NamedFile::Bytes(name, bytes) => Input::from_bytes(name, Arc::clone(bytes)),
+            NamedFile::Path(path) if is_standard_input(path) => Input::read(path),
             // Opened first: only a regular file is read.
-            false => {
+            NamedFile::Path(path) => {
                 Input::open(path).and_then(|input| if input.size <= IN_MEMORY { Input::read(path) } else { Ok(input) })
             }
         };

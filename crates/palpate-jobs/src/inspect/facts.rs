@@ -66,7 +66,12 @@ fn roles(column: &ColumnInfo, file: Option<&RecordFile>) -> String {
     let roles = used.map(|used| {
         let sign = if used.sign < 0.0 { ", sign turned" } else { "" };
         let what = match used.role {
-            Role::Values(quantity) => quantity.to_string(),
+            Role::Values(quantity) => match used.spring_constant {
+                Some(spring_constant) => {
+                    format!("{quantity}, {} N/m times the deflection,", significant(spring_constant, 4))
+                }
+                None => quantity.to_string(),
+            },
             Role::Added(quantity) => format!("added to {quantity}"),
             Role::Deflection => "deflection, off the displacement,".to_owned(),
             Role::ClockOf(quantity) => format!("time of {quantity}"),

@@ -1,9 +1,10 @@
 """Types of the compiled part. Checked against it by mypy's stubtest."""
 
 import os
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from contextlib import AbstractContextManager
 from pathlib import Path
-from typing import Any, Final, Literal, Self, TypeAlias, final, overload
+from typing import Any, Final, Literal, Protocol, Self, TypeAlias, final, overload
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -61,6 +62,11 @@ __all__ = [
 
 _Doubles: TypeAlias = NDArray[np.float64]
 _Path: TypeAlias = str | os.PathLike[str]
+
+class _Readable(Protocol):
+    def read(self) -> bytes | str: ...
+
+_File: TypeAlias = _Path | bytes | bytearray | memoryview | _Readable | AbstractContextManager[_Readable]
 _Described: TypeAlias = _Path | Mapping[str, Any] | Material
 _Columns: TypeAlias = str | Mapping[str, str]
 # Numbers are arrays, texts and truths are lists; which of them only the name of the column tells.
@@ -184,6 +190,8 @@ class BatchResult(_Value):
     findings: Final[dict[str, int]]
     holds: Final[int]
     unfitted: Final[int]
+    without_hold: Final[int]
+    loading_modulus_pa: Final[float | None]
     rows: Final[int]
     failures: Final[list[str]]
 
@@ -539,9 +547,16 @@ class ContactStates(_Moved):
     def __len__(self) -> int: ...
 
 def read(
-    path: _Path, *, test: _Described | None = None, part: str | int | None = None, columns: _Columns | None = None
+    path: _File,
+    *,
+    name: str | None = None,
+    test: _Described | None = None,
+    part: str | int | None = None,
+    columns: _Columns | None = None,
 ) -> Record: ...
-def read_all(path: _Path, *, test: _Described | None = None, columns: _Columns | None = None) -> list[Record]: ...
+def read_all(
+    path: _File, *, name: str | None = None, test: _Described | None = None, columns: _Columns | None = None
+) -> list[Record]: ...
 def fit_hold(
     time_s: ArrayLike, signal: ArrayLike, weights: ArrayLike | None, keywords: Mapping[str, Any]
 ) -> Fit: ...
@@ -596,18 +611,24 @@ def simulate_many(
     progress: Callable[[int], None] | None,
 ) -> Table: ...
 def inspect(
-    path: _Path, *, test: _Described | None = None, part: str | int | None = None, columns: _Columns | None = None
+    path: _File,
+    *,
+    name: str | None = None,
+    test: _Described | None = None,
+    part: str | int | None = None,
+    columns: _Columns | None = None,
 ) -> str: ...
 def convert(
-    path: _Path,
+    path: _File,
     out: _Path,
     *,
+    name: str | None = None,
     test: _Described | None = None,
     part: str | int | None = None,
     columns: _Columns | None = None,
 ) -> Path: ...
 def batch(
-    paths: Sequence[_Path],
+    paths: Iterable[_File] | Mapping[str, _File],
     out: _Path,
     *,
     test: _Described | None = None,
@@ -622,8 +643,9 @@ def sweep(
 ) -> tuple[int, int]: ...
 def reproduce(folder: _Path, *, png: bool = False) -> bool: ...
 def watch(
-    path: _Path,
+    path: _File,
     *,
+    name: str | None = None,
     test: _Described | None = None,
     part: str | int | None = None,
     columns: _Columns | None = None,

@@ -1,11 +1,9 @@
 //! Records read from files.
 
-use std::path::PathBuf;
-
-use palpate_jobs::input::{Described, Measurement, OpenedFile};
+use palpate_jobs::input::{Described, Measurement, NamedFile, OpenedFile};
 use pyo3::prelude::*;
 
-use crate::files::{Given, described_with};
+use crate::files::{Given, described_with, record_file};
 use crate::records::record::Record;
 use crate::work::job;
 
@@ -14,7 +12,11 @@ use crate::work::job;
 /// Parameters
 /// ----------
 /// path
-///     Delimited text, workbook, Parquet, Arrow, AFM force curve or robot's log; packed by gzip or zip or not.
+///     Delimited text, workbook, Parquet, Arrow, AFM force curve, robot's log and more; packed by gzip or zip or not. A path; or the bytes
+///     of a file; or an object with them: an open file, ``io.BytesIO``, a member of a zip archive, an upload, an ``OpenFile`` of fsspec,
+///     which is read from where it stands and not closed.
+/// name
+///     What results and messages call bytes; else the name that the object has.
 /// test
 ///     Test description that says what the file cannot know: path of a TOML file, or a mapping with its tables.
 /// part
@@ -38,22 +40,23 @@ use crate::work::job;
 /// OSError
 ///     The operating system does not hand the file out.
 #[pyfunction]
-#[pyo3(signature = (path, *, test=None, part=None, columns=None))]
+#[pyo3(signature = (path, *, name=None, test=None, part=None, columns=None))]
 pub(crate) fn read(
     py: Python<'_>,
-    path: PathBuf,
+    path: &Bound<'_, PyAny>,
+    name: Option<&str>,
     test: Given<'_, '_>,
     part: Given<'_, '_>,
     columns: Given<'_, '_>,
 ) -> PyResult<Record> {
-    Ok(read_parts(py, path, &described_with(test, part, columns)?, true)?.remove(0))
+    Ok(read_parts(py, record_file(path, name)?, &described_with(test, part, columns)?, true)?.remove(0))
 }
 
-/// Read all tests in a file: the sheets of a workbook, the curves of a map, the ``test_id`` of a table.
+/// Read all tests in a file: the sheets of a workbook, the curves of a map, the ``test_id`` of a table, the files of a zip archive.
 ///
 /// Parameters
 /// ----------
-/// path, test, columns
+/// path, name, test, columns
 ///     As for `read`.
 ///
 /// Returns
@@ -66,21 +69,22 @@ pub(crate) fn read(
 /// RecordError, OptionError, OSError
 ///     As for `read`, for the first test that makes no record.
 #[pyfunction]
-#[pyo3(signature = (path, *, test=None, columns=None))]
+#[pyo3(signature = (path, *, name=None, test=None, columns=None))]
 pub(crate) fn read_all(
     py: Python<'_>,
-    path: PathBuf,
+    path: &Bound<'_, PyAny>,
+    name: Option<&str>,
     test: Given<'_, '_>,
     columns: Given<'_, '_>,
 ) -> PyResult<Vec<Record>> {
-    read_parts(py, path, &described_with(test, None, columns)?, false)
+    read_parts(py, record_file(path, name)?, &described_with(test, None, columns)?, false)
 }
 
 /// The records in a file, `only` one of them or all.
-fn read_parts(py: Python<'_>, path: PathBuf, described: &Described, only: bool) -> PyResult<Vec<Record>> {
+fn read_parts(py: Python<'_>, file: NamedFile, described: &Described, only: bool) -> PyResult<Vec<Record>> {
     let stated = described.clone();
     let read = job(py, move |watch| {
-        let opened = OpenedFile::open(&path, &stated)?;
+        let opened = OpenedFile::named(&file, &stated)?;
         if only {
             opened.only()?;
         }

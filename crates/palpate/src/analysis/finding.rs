@@ -54,6 +54,11 @@ pub enum Finding {
     },
     /// The record has no ramp; it is one hold from its first sample to its last.
     OneHold,
+    /// The record has no hold: nothing relaxes or creeps in it that a law could be fitted to.
+    NoHold {
+        /// What was found in place of one.
+        reason: String,
+    },
     /// The relative rate of a fit is at its bound.
     RateAtBound {
         /// The exponent of that fit.

@@ -13,7 +13,7 @@ use crate::contact::{Specimen, SpecimenError};
 use crate::fit::{ErrorParts, Fit, Parameter};
 use crate::number::significant;
 use crate::record::{Record, SignalReport};
-use crate::segment::{ContactPoint, Phase, Segmentation, ramps_before};
+use crate::segment::{ContactChoice, ContactPoint, Phase, SegmentError, Segmentation, TouchMethod, ramps_before};
 use crate::watch::{Cancelled, Progress, Unwatched, Watch};
 
 /// The study of one record.
@@ -85,9 +85,8 @@ const POOR: f64 = 0.05;
 /// Analyses a record: phases, first touch, strains, laws per hold and over holds, overlay.
 ///
 /// # Errors
-/// [`AnalysisError`] when the record has no hold, a requested correction cannot be made, the geometry is invalid or smaller than the
-/// travel of the jaw,
-/// or no hold has anything to fit.
+/// [`AnalysisError`] when the record has neither a hold nor a [modulus of its first ramp](Analysis::loading_modulus), a requested correction
+/// cannot be made, the geometry is invalid or smaller than the travel of the jaw, or no hold has anything to fit.
 pub fn analyze(record: &Record, options: &AnalysisOptions) -> Result<Analysis, AnalysisError> {
     analyze_watched(record, options, &mut Unwatched)
 }
@@ -101,23 +100,43 @@ pub fn analyze_watched(
     options: &AnalysisOptions,
     watch: &mut dyn Watch,
 ) -> Result<Analysis, AnalysisError> {
-    let analysis = examine(record, options, watch)?;
-    nothing_to_fit(&analysis.holds)?;
-    Ok(analysis)
+    let (analysis, no_hold) = examined(record, options, watch)?;
+    match no_hold {
+        Some(error) if analysis.loading_modulus.is_none() => Err(error.into()),
+        _ => nothing_to_fit(&analysis.holds).map(|()| analysis),
+    }
 }
 
-/// As [`analyze_watched`], but a record without a hold that can be fitted is no error: the findings of its holds give the reasons.
+/// As [`analyze_watched`], but a record without a hold, or without one that can be fitted, is no error: its findings, or those of its holds,
+/// give the reasons.
 ///
 /// # Errors
-/// Those of [`analyze_watched`] but [`AnalysisError::NothingToFit`].
+/// Those of [`analyze_watched`] but [`AnalysisError::NothingToFit`], and [`AnalysisError::Segment`] only where phases cannot be sought.
 pub fn examine(record: &Record, options: &AnalysisOptions, watch: &mut dyn Watch) -> Result<Analysis, AnalysisError> {
+    examined(record, options, watch).map(|(analysis, _)| analysis)
+}
+
+/// An analysis, and why the record has no hold, if it has none.
+fn examined(
+    record: &Record,
+    options: &AnalysisOptions,
+    watch: &mut dyn Watch,
+) -> Result<(Analysis, Option<SegmentError>), AnalysisError> {
     let signals = record.signals();
-    let corrected = corrected_watched(record, options, watch)?;
+    let (corrected, no_hold) = corrected_watched(record, options, watch)?.or_ramps_alone(options);
     let mut hear = |task: &str| watch.report(Progress::open(task, 0));
     hear("finding first touch")?;
-    let prepared = corrected.prepared(options)?;
+    // The curve of loading that finds first touch by itself needs the hold behind it.
+    let touch = match (options.touch, &no_hold) {
+        (ContactChoice::Auto, Some(_)) => ContactChoice::By(TouchMethod::Hertz),
+        (touch, _) => touch,
+    };
+    let prepared = corrected.prepared(options, touch)?;
     hear("examining the columns")?;
     let mut findings = signal_findings((record, &signals), &corrected, &prepared, options.touch);
+    findings.extend(no_hold.as_ref().map(|error| Finding::NoHold {
+        reason: error.to_string(),
+    }));
     let skew = corrected.skew;
     let Prepared {
         record,
@@ -161,7 +180,7 @@ pub fn examine(record: &Record, options: &AnalysisOptions, watch: &mut dyn Watch
     findings.extend(specimen.as_ref().and_then(|specimen| uncertain_touch(&contact, specimen, &holds)));
     let across = across(&holds, &exponents, options, 4.0 * segmentation.settings.tolerance, watch)?;
     findings.extend(changing_rate(&across.joint));
-    let overlay = specimen.as_ref().and_then(|specimen| {
+    let overlay = specimen.as_ref().filter(|_| !holds.is_empty()).and_then(|specimen| {
         let result = overlay(&record, &segmentation, specimen, &holds, across.common_exponent, options);
         result.map_err(|reason| findings.push(Finding::NoOverlay { reason })).ok()
     });
@@ -172,7 +191,7 @@ pub fn examine(record: &Record, options: &AnalysisOptions, watch: &mut dyn Watch
     if let Some(causes) = &causes {
         holds.iter_mut().for_each(|hold| causes.add_to(hold));
     }
-    Ok(Analysis {
+    let analysis = Analysis {
         inputs: causes.map_or_else(Vec::new, |causes| causes.inputs),
         modulus,
         record,
@@ -188,7 +207,8 @@ pub fn examine(record: &Record, options: &AnalysisOptions, watch: &mut dyn Watch
         across,
         overlay,
         findings,
-    })
+    };
+    Ok((analysis, no_hold))
 }
 
 /// The specimen with its given modulus, or with the one that the equilibrium forces imply.

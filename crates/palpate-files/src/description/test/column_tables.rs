@@ -121,6 +121,9 @@ struct DeflectionTable {
     unit: Option<String>,
     /// Sensitivity, such as "52 nm/V", where the column holds volts; the unit is then "V" or "mV".
     scale: Option<String>,
+    /// Spring constant of the cantilever, such as "0.04 N/m": the force is then the deflection times it. Without it and without a column of
+    /// force, the spring constant that stands in the file is taken.
+    spring_constant: Option<QuantityText>,
     /// -1 where the file counts the deflection as negative when the sample pushes; 1 otherwise.
     #[schemars(extend("enum" = [1, -1]))]
     sign: Option<f64>,
@@ -148,6 +151,14 @@ impl ColumnsTable {
         // What a header calls a displacement may be one of which the deflection is off already.
         let names_height = self.displacement.as_ref().is_some_and(|table| table.column.is_some());
         let time = self.time.map(|time| time.checked(source, machine)).transpose()?;
+        let spring_constant = self.deflection.as_ref().and_then(|table| table.spring_constant.as_ref());
+        let spring_key = "columns.deflection.spring_constant";
+        if let (Some(_), Some((key, ..))) =
+            (spring_constant, given.iter().find(|(_, given, is_load)| *given && *is_load))
+        {
+            return Err(source.both(spring_key, *key));
+        }
+        let spring_constant = source.positive_if(spring_key, spring_constant, Dimension::Stiffness)?;
         let deflection = self.deflection.map(|table| ColumnTable {
             column: Some(table.column),
             unit: table.unit,
@@ -168,6 +179,7 @@ impl ColumnsTable {
             compliance: measured(self.compliance, "compliance", Quantity::Compliance)?,
             torque: measured(self.torque, "torque", Quantity::Torque)?,
             angle: measured(self.angle, "angle", Quantity::Angle)?,
+            spring_constant,
             deflection: match deflection {
                 Some(_) if !names_height => return Err(source.missing("columns.displacement", HEIGHT)),
                 deflection => measured(deflection, "deflection", Quantity::Displacement)?,

@@ -97,6 +97,7 @@ pub(crate) fn usual(dimension: Dimension) -> (&'static str, &'static str, &'stat
         Dimension::Frequency => ("Hz", "10..1000", "10, 100, 1000"),
         Dimension::ForceRate => ("N/s", "1..20", "1, 5, 20"),
         Dimension::Compliance => ("um/N", "0.1..10", "0.1, 1, 10"),
+        Dimension::Stiffness => ("N/m", "0.01..10", "0.01, 0.1, 1"),
         Dimension::Voltage => ("V", "1..10", "1, 5, 10"),
         Dimension::Mass => ("g", "10..500", "10, 100, 500"),
         Dimension::Acceleration => ("m/s^2", "1..10", "1, 5, 10"),

@@ -222,8 +222,10 @@ fn derived(segments: &[&Draft], about: &mut Vec<Metadata>) -> Vec<Column> {
         }
     }
     let (formulas, how) = indentation(segments);
-    add("indentation", Some("m"), formulas);
-    about.push(metadata("indentation", &how));
+    let is_curve = height_of(segments).is_some() || segments.iter().any(|draft| draft.load.raw.is_some());
+    if add("indentation", Some("m"), formulas) || is_curve {
+        about.push(metadata("indentation", &how));
+    }
     add("cantilever deflection", Some("m"), lines(&|draft| draft.load.deflection));
     columns
 }

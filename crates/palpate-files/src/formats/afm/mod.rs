@@ -1,4 +1,4 @@
-//! Force curves of atomic force microscopes: JPK's binary files and text export, and the text format of afmformats.
+//! Force curves of atomic force microscopes: JPK's binary files and text export, waves of Asylum Research, and the formats of afmformats.
 //!
 //! A curve is a cantilever driven towards a sample, held and drawn back, in segments that the file names. Whatever the
 //! format, a curve becomes one test with these columns, and then every channel of the file under its own name:
@@ -22,14 +22,23 @@
 //! | `curve.rs` | columns as formulas of channels, segment by segment |
 //! | `assemble.rs` | which columns the segments of a curve make together |
 //! | `rows.rs` | curves in lines of text |
+//! | `numbers.rs` | curves whose channels are columns of numbers |
 //! | `jpk_text/` | JPK's text export |
 //! | `jpk_force/` | JPK's binary files: a curve, a map of curves |
+//! | `afmformats.rs` | what afmformats means by its columns |
 //! | `tab/` | the text format of afmformats |
+//! | `h5.rs` | HDF5 of afmformats, with the feature `hdf5` |
+//! | `igor/` | Igor binary waves, as Asylum Research's microscopes write them |
 
+mod afmformats;
 mod assemble;
 mod curve;
+#[cfg(feature = "hdf5")]
+pub(crate) mod h5;
+pub(crate) mod igor;
 pub(crate) mod jpk_force;
 pub(crate) mod jpk_text;
+mod numbers;
 mod rows;
 pub(crate) mod tab;
 
@@ -40,6 +49,7 @@ fn metadata(name: &str, value: &str) -> Metadata {
     let unit = match name {
         "springConstant" | "spring constant" => Some("N/m"),
         "sensitivity" => Some("m/V"),
+        "position x" | "position y" => Some("m"),
         "duration" | "duration approach" | "duration intermediate" | "duration retract" => Some("s"),
         _ => None,
     };

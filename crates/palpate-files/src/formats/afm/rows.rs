@@ -18,6 +18,8 @@ pub(super) struct Rows {
     /// What separates the cells, where it is not blanks. Numbers may be truths there: old versions of afmformats wrote
     /// approach and retract so.
     pub(super) delimiter: Option<u8>,
+    /// A first row that stands in the line of the names, right behind them, and the number of that line.
+    pub(super) behind_names: Option<(Vec<u8>, usize)>,
 }
 
 impl Rows {
@@ -108,8 +110,14 @@ impl ReadPart for Lines {
             let mut stored = vec![0.0; rows.columns.len()];
             let mut index = 0;
             while index < segment.rows {
-                let number = lines.line() + 1;
-                let Some(line) = lines.next_line()? else { break };
+                let (line, number) = match rows.behind_names.as_ref().filter(|_| index == 0) {
+                    Some((line, number)) => (&line[..], *number),
+                    None => {
+                        let number = lines.line() + 1;
+                        let Some(line) = lines.next_line()? else { break };
+                        (line, number)
+                    }
+                };
                 if number < rows.first_line || !is_row(line) {
                     continue;
                 }

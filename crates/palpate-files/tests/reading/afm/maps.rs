@@ -13,7 +13,13 @@ fn map(numbers: &[usize]) -> Vec<Member> {
     ];
     for number in numbers {
         let folder = format!("index/{number}/");
-        members.push((format!("{folder}header.properties"), HEADER.as_bytes().to_vec()));
+        let place = format!(
+            "force-scan-series.header.position-index={}\nforce-scan-series.header.position.x={}\n\
+             force-scan-series.header.position.y=-2.5E-6\n",
+            number + 7,
+            1e-6 * *number as f64
+        );
+        members.push((format!("{folder}header.properties"), format!("{HEADER}\n{place}").into_bytes()));
         let force = *number as i16;
         members.extend(segment(&format!("{folder}segments/0/"), "extend", &[0, force], &[0, 1000]));
         members.extend(segment(&format!("{folder}segments/1/"), "retract", &[force, 0], &[1000, 0]));
@@ -32,6 +38,12 @@ fn every_curve_is_a_test() {
     }
     assert_eq!(labels(&contents.parts[3]), [("extend", 0, 2), ("retract", 2, 4)]);
     assert_eq!(metadata(&contents.parts[1], "force-scan-series.description.instrument"), Some("JPK00001"));
+    let place = ["index", "position index", "position x", "position y"];
+    let first = contents.parts[2].metadata.iter().take(4).map(|entry| (entry.name.as_str(), entry.unit.as_deref()));
+    let units = [None, None, Some("m"), Some("m")];
+    assert!(first.eq(place.into_iter().zip(units)));
+    let found = place.map(|name| metadata(&contents.parts[2], name));
+    assert_eq!(found, [Some("9"), Some("16"), Some("0.000009"), Some("-2.5E-6")]);
 }
 
 #[test]

@@ -1,7 +1,9 @@
-//! Force curves: JPK's archives and text export, the text of afmformats, damage to each, and real records.
+//! Force curves: JPK's archives and text export, Igor waves, the formats of afmformats, damage to each, and real records.
 
 mod archives;
 mod exports;
+mod h5;
+mod igor;
 mod maps;
 mod records;
 mod tabs;

@@ -49,6 +49,23 @@ fn the_segments_are_labels() {
 }
 
 #[test]
+fn a_row_behind_the_names_is_the_first_row() {
+    let glued = file(METADATA, NAMES.trim_end(), ROWS);
+    let (contents, whole) = (opened(&glued), opened(&press()));
+    assert_eq!(contents.parts[0].columns, whole.parts[0].columns);
+    assert_eq!(labels(&contents.parts[0]), labels(&whole.parts[0]));
+    for name in ["time", "force", "indentation", "index"] {
+        assert_eq!(column(&contents, name), column(&whole, name), "{name}");
+    }
+    let read = contents.read(0, &[1], &mut |_, _| Ok(())).unwrap();
+    // It stands in the line of the names.
+    assert_eq!((read.line_of(0), read.line_of(1)), (Some(11), Some(12)));
+    // Of one number too few, the line holds names alone, which the rows do not match.
+    let other = file(METADATA, &NAMES.replace("time\r\n", "time\t1\r\n"), ROWS);
+    assert!(refusal(&other).contains("expected 7 cells, found 6"), "{}", refusal(&other));
+}
+
+#[test]
 fn a_record_needs_no_description() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("curve.tab");

@@ -1,10 +1,10 @@
-//! One file packed by gzip or in a zip archive.
+//! Files packed by gzip or in a zip archive.
 
 use std::io::Write;
 
 use flate2::{Compression, write::GzEncoder};
 use palpate::watch::Cancelled;
-use palpate_files::{FileProblem, input::Packing};
+use palpate_files::{FileProblem, input::Packing, open::Format};
 use zip::{CompressionMethod, ZipWriter, write::SimpleFileOptions};
 
 use super::{TABLE, check, contents, refused};
@@ -47,17 +47,80 @@ fn zip_of_one_file() {
 }
 
 #[test]
-fn zip_of_several_files_or_none() {
-    let members = ["a.csv", "b.csv", "c.csv", "d.csv"].map(|name| (name, TABLE.as_bytes()));
-    let error = refused("many.zip", zip(&members, CompressionMethod::Deflated));
-    assert_eq!(
-        error.to_string(),
-        "many.zip: expected a zip archive of one file, found 4: a.csv, b.csv, c.csv, and 1 more"
-    );
-    let hint = error.hint().expect("a way out");
-    assert!(hint.contains("`palpate batch many --out holds.csv` reads all its files"), "{hint}");
+fn each_file_of_a_zip_is_a_test() {
+    let names = ["map/b.csv", "map/a.csv", "map/notes.txt", "map/c.csv.gz"];
+    let members = [
+        (names[0], TABLE.as_bytes()),
+        ("map/", b"".as_slice()),
+        (names[1], TABLE.as_bytes()),
+        (names[2], b"nothing of interest\n".as_slice()),
+        (names[3], b"\x1F\x8B\x08".as_slice()),
+        ("__MACOSX/map/._b.csv", b"\0\x05\x16".as_slice()),
+    ];
+    for method in [CompressionMethod::Deflated, CompressionMethod::Stored] {
+        let contents = contents("map.zip", zip(&members, method)).expect("tests");
+        assert_eq!(contents.format, Format::Archive);
+        assert_eq!(contents.input.packing.to_string(), "4 files in a zip archive");
+        let found: Vec<&str> = contents.parts.iter().filter_map(|part| part.name.as_deref()).collect();
+        assert_eq!(found, names[..2]);
+        assert_eq!(contents.parts[0].written, contents.parts[1].written);
+        let skipped: Vec<String> =
+            contents.skipped.iter().map(|part| format!("{}: {}", part.name, part.reason)).collect();
+        assert!(skipped[0].starts_with("map/notes.txt: "), "{skipped:?}");
+        assert_eq!(skipped[1], "map/c.csv.gz: expected a record, found a compressed file");
+        let alone = super::contents("b.csv", TABLE.as_bytes()).expect("a table");
+        let mut reported = Vec::new();
+        for part in 0..2 {
+            let read = contents
+                .read(part, &[3, 1], &mut |done, total| {
+                    reported.push((done, total));
+                    Ok(())
+                })
+                .expect("columns");
+            let expected = alone.read(0, &[3, 1], &mut |_, _| Ok(())).expect("columns");
+            assert_eq!((&read.values, read.line_of(1)), (&expected.values, expected.line_of(1)));
+        }
+        assert!(reported.iter().all(|(done, total)| done <= total && *total == contents.input.size), "{reported:?}");
+        let error = contents.read(1, &[9], &mut |_, _| Ok(())).expect_err("no such column");
+        assert!(matches!(error.problem, FileProblem::NoSuchColumn { column: 9, .. }), "{error}");
+    }
+}
+
+#[test]
+fn parts_of_a_file_of_a_zip_have_its_name() {
+    let tests = "test_id,Time (s),Force (N)\na,0,1\na,1,2\na,2,1\nb,0,3\nb,1,4\nb,2,3\n";
+    let inner = zip(&[("xl/workbook.xml", b"<a/>".as_slice())], CompressionMethod::Stored);
+    let members = [("one.csv", TABLE.as_bytes()), ("book.xlsx", &inner), ("press.csv", tests.as_bytes())];
+    let contents = contents("all.zip", zip(&members, CompressionMethod::Deflated)).expect("tests");
+    let found: Vec<&str> = contents.parts.iter().filter_map(|part| part.name.as_deref()).collect();
+    assert_eq!(found.first(), Some(&"one.csv"));
+    assert!(contents.skipped.iter().any(|part| part.name == "book.xlsx"), "{:?}", contents.skipped);
+    // An error names the file, not the archive alone.
+    let bad = format!("{TABLE}x,y,z\n1,2,3\n").replace(',', ";");
+    let members = [("one.csv", TABLE.as_bytes()), ("bad.csv", bad.as_bytes())];
+    let contents = super::contents("all.zip", zip(&members, CompressionMethod::Deflated)).expect("tests");
+    let error = contents.read(1, &[1], &mut |_, _| Ok(())).expect_err("text in numbers");
+    assert!(error.to_string().starts_with("all.zip/bad.csv, line "), "{error}");
+}
+
+#[test]
+fn a_zip_without_tests_says_what_is_in_it() {
+    let members = [("a.txt", b"words\n".as_slice()), ("b.txt", b"more words\n".as_slice())];
+    let error = refused("none.zip", zip(&members, CompressionMethod::Deflated));
+    assert!(error.to_string().starts_with("none.zip: expected a test, found none: a.txt: "), "{error}");
     let error = refused("none.zip", zip(&[("folder/", b"")], CompressionMethod::Stored));
-    assert_eq!(error.to_string(), "none.zip: expected a zip archive of one file, found none");
+    assert_eq!(error.to_string(), "none.zip: expected a zip archive with a record, found one without files");
+}
+
+#[test]
+fn files_that_share_bytes_are_refused() {
+    let members = ["a.csv", "b.csv"].map(|name| (name, TABLE.as_bytes()));
+    let mut archive = zip(&members, CompressionMethod::Stored);
+    // The second entry of the directory points to the first file.
+    let entry = archive.windows(4).rposition(|four| four == b"PK\x01\x02").expect("an entry");
+    archive[entry + 42..entry + 46].fill(0);
+    let error = refused("bomb.zip", archive);
+    assert!(error.to_string().contains("found files that share bytes"), "{error}");
 }
 
 #[test]

@@ -1,7 +1,9 @@
 //! Columns from a header or a description, and what is made of them.
 
+use std::path::Path;
+
 use palpate::record::{Clock, Correction};
-use palpate_files::{naming::Quantity, record::Role};
+use palpate_files::{description::parse_test, naming::Quantity, record::Role};
 
 use super::read;
 
@@ -30,6 +32,49 @@ fn the_description_goes_before_the_header() {
     assert_eq!(file.record.force(), [0.0, -5000.0, -5000.0]);
     assert!(file.record.force()[0].is_sign_positive());
     assert_eq!(file.columns[2].sign, -1.0);
+}
+
+/// A cantilever of 0.04 N/m: by Hooke's law the force is 0.04 nN for each nm.
+#[test]
+fn a_deflection_times_the_spring_constant_is_the_force() {
+    let table = "Time (s),Cantilever (nm),Piezo (nm)\n0,0,100\n1,50,200\n2,25,200\n";
+    let height = "displacement = { column = \"Piezo\" }\n";
+    let deflection = "deflection = { column = \"Cantilever\", spring_constant = \"0.04 N/m\" }\n";
+    let file = read(table, &format!("[columns]\n{height}{deflection}")).unwrap();
+    let same = |found: &[f64], expected: [f64; 3]| {
+        assert!(found.iter().zip(expected).all(|(found, expected)| (found - expected).abs() < 1e-21), "{found:?}");
+    };
+    same(file.record.force(), [0.0, 2e-9, 1e-9]);
+    same(file.record.displacement().unwrap(), [1e-7, 1.5e-7, 1.75e-7]);
+    let roles: Vec<Role> = file.columns.iter().map(|column| column.role).collect();
+    assert_eq!(roles[1..], [Role::Values(Quantity::Displacement), Role::Deflection, Role::Values(Quantity::Force)]);
+    for more in ["unit = \"nm\", ", "sign = -1, "] {
+        let deflection = deflection.replace("spring", &format!("{more}spring"));
+        let other = read(table, &format!("[columns]\n{height}{deflection}")).unwrap();
+        assert_eq!(other.record.force()[1].abs(), file.record.force()[1]);
+    }
+    // The file may have it, with its unit.
+    let bare = "deflection = { column = \"Cantilever\" }\n";
+    let stated = format!("k (N/m),0.04\n\n{table}");
+    let file = read(&stated, &format!("[columns]\n{height}{bare}")).unwrap();
+    same(file.record.force(), [0.0, 2e-9, 1e-9]);
+    let error = read(table, &format!("[columns]\n{height}{bare}")).unwrap_err();
+    assert!(error.to_string().contains("expected a column of force"), "{error}");
+    // A column of force goes before it.
+    let forces = "k (N/m),0.04\n\nTime (s),Cantilever (nm),Piezo (nm),Load (nN)\n0,0,100,0\n1,50,200,7\n2,25,200,6\n";
+    let file = read(forces, &format!("[columns]\n{height}{bare}")).unwrap();
+    same(file.record.force(), [0.0, 7e-9, 6e-9]);
+}
+
+#[test]
+fn a_spring_constant_beside_a_force_is_refused() {
+    let columns = "[columns]\nforce = { column = 2 }\ndisplacement = { column = 3 }\n\
+        deflection = { column = 2, spring_constant = \"0.04 N/m\" }";
+    let error = parse_test(columns, Path::new("test.toml")).unwrap_err().to_string();
+    assert!(error.contains("columns.deflection.spring_constant") && error.contains("columns.force"), "{error}");
+    let columns = columns.replace("force = { column = 2 }\n", "").replace("0.04 N/m", "-1 N/m");
+    let error = parse_test(&columns, Path::new("test.toml")).unwrap_err().to_string();
+    assert!(error.contains("expected a stiffness above 0 N/m"), "{error}");
 }
 
 #[test]

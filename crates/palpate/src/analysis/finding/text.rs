@@ -87,6 +87,12 @@ impl Finding {
                 "first touch and the loading are unknown; the laws describe the force from the first sample on",
                 "give the limits of the hold with [[phases.hold]] in the test description if they differ",
             ),
+            Self::NoHold { reason } => warning(
+                "no_hold",
+                reason.clone(),
+                "nothing relaxes or creeps in the record that a law could be fitted to; the modulus of the first loading ramp needs no hold",
+                "hold the displacement or the force after the ramp, or give the limits of a hold with [[phases.hold]] in the test description",
+            ),
             Self::RateAtBound { exponent } => warning(
                 "rate_at_bound",
                 format!("in the fit with n = {exponent:.3} the relative rate is at its bound"),

@@ -1,5 +1,6 @@
 //! The requested corrections, in order.
 
+use super::ramps_alone::{is_without_hold, ramps_alone};
 use super::skew::skew_watched;
 use crate::analysis::{AnalysisError, AnalysisOptions, ClockSkew, Finding};
 use crate::contact::{Shape, Specimen, SpecimenError};
@@ -169,16 +170,31 @@ pub struct Prepared {
 /// # Errors
 /// [`AnalysisError`] for a correction that cannot be made, a record without holds, and a body that the jaw would go through.
 pub fn prepared(record: &Record, options: &AnalysisOptions) -> Result<Prepared, AnalysisError> {
-    corrected(record, options)?.prepared(options)
+    corrected(record, options)?.prepared(options, options.touch)
 }
 
 impl Corrected {
-    /// The same set to zero at first touch.
-    pub(in crate::analysis) fn prepared(&self, options: &AnalysisOptions) -> Result<Prepared, AnalysisError> {
+    /// The same, with its ramps where it has no hold; then also why not.
+    pub(in crate::analysis) fn or_ramps_alone(self, options: &AnalysisOptions) -> (Self, Option<SegmentError>) {
+        match self.segmentation {
+            Err(error) if is_without_hold(&error) => {
+                let segmentation = Ok(ramps_alone(&self.record, &error, options));
+                (Self { segmentation, ..self }, Some(error))
+            }
+            _ => (self, None),
+        }
+    }
+
+    /// The same set to zero at first touch, which `touch` says how to find.
+    pub(in crate::analysis) fn prepared(
+        &self,
+        options: &AnalysisOptions,
+        touch: ContactChoice,
+    ) -> Result<Prepared, AnalysisError> {
         let segmentation = self.segmentation.clone()?;
         // First touch is one of geometry, and so is the limit below; any modulus will do.
         let body = options.geometry.as_ref().map(|geometry| geometry.specimen(1.0)).transpose()?;
-        let contact = find_contact_of(&self.record, &segmentation, body.as_ref(), options.touch);
+        let contact = find_contact_of(&self.record, &segmentation, body.as_ref(), touch);
         let record = self.record.tared(contact.tare);
         beyond_body(&record, body.as_ref(), options.separation)?;
         Ok(Prepared {

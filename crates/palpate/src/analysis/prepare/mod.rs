@@ -7,11 +7,13 @@
 //! | `corrected.rs` | the requested corrections, in order, then zero at first touch |
 //! | `skew.rs`, `kink.rs` | how much later the force is stamped than the displacement |
 //! | `motion.rs` | the motion of the jaw, its noise taken out |
+//! | `ramps_alone.rs` | the ramps of a record without a hold |
 //! | `signals.rs` | what the columns, and what was done to them, give cause to say |
 
 mod corrected;
 mod kink;
 mod motion;
+mod ramps_alone;
 mod signals;
 mod skew;
 

@@ -22,9 +22,11 @@ pub struct LoadingModulus {
 
 /// Fewest samples of a ramp from which a modulus is taken.
 const FEWEST: usize = 8;
+/// How many times its standard error by the residuals a modulus must be: the force of a ramp that loads nothing drifts.
+const OBSERVED: f64 = 3.0;
 
 /// E from the first loading ramp by least squares of F = E g(u₁), with g the equilibrium force of the body at 1 Pa and first touch where it was
-/// found: E = Σ g F/Σ g². `None` without a body or such a ramp.
+/// found: E = Σ g F/Σ g². `None` without a body or such a ramp, and where the force does not rise beyond its scatter.
 pub(in crate::analysis) fn loading_modulus(
     record: &Record,
     segmentation: &Segmentation,
@@ -55,14 +57,16 @@ pub(in crate::analysis) fn loading_modulus(
     let independent = effective_count(residuals.len(), lag_one_correlation(&residuals));
     let left = residuals.iter().map(|residual| residual * residual).sum::<f64>();
     let by_touch = contact.displacement_error.map_or(0.0, |error| modulus(&units(error)).0 - value);
-    let standard_error = (left / (independent - 1.0) / square).sqrt().hypot(by_touch);
+    let by_residuals = (left / (independent - 1.0) / square).sqrt();
+    let standard_error = by_residuals.hypot(by_touch);
     let largest = force.iter().fold(0.0, |most: f64, force| most.max(*force));
     let found = LoadingModulus {
         value,
         standard_error,
         relative_rmse: (left / residuals.len() as f64).sqrt() / largest,
     };
-    let is_sound =
-        residuals.len() >= FEWEST && value > 0.0 && (value + standard_error + found.relative_rmse).is_finite();
+    let is_sound = residuals.len() >= FEWEST
+        && value > OBSERVED * by_residuals
+        && (value + standard_error + found.relative_rmse).is_finite();
     is_sound.then_some(found)
 }

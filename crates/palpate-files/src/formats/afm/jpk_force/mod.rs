@@ -84,7 +84,7 @@ pub(crate) fn look_into(input: &Input, _options: &ReadOptions) -> Result<Found, 
                     places.push(place);
                 }
             }
-            Err(error) if several => skipped.push(SkippedPart::new(name, without_path(&error))),
+            Err(error) if several => skipped.push(SkippedPart::new(name, error.without_path())),
             Err(error) => return Err(error),
         }
     }
@@ -98,12 +98,6 @@ pub(crate) fn look_into(input: &Input, _options: &ReadOptions) -> Result<Found, 
             places,
         }),
     })
-}
-
-/// The message of an error less the file it is about.
-fn without_path(error: &FileError) -> String {
-    let problem = error.problem.to_string();
-    problem.strip_prefix(": ").map_or_else(|| error.to_string(), str::to_owned)
 }
 
 /// Where the channels of each segment are stored.
@@ -142,16 +136,29 @@ fn curve(
     Ok((curve.map(|curve| (curve, members)), skipped))
 }
 
-/// The entries of the header of a curve.
+/// The entries of the header of a curve, of one in a map first its number there and where it was measured.
 fn of_header(archive: &mut Archive, place: &Place) -> Result<Vec<Metadata>, FileError> {
     let member = format!("{}{HEADER}", place.folder);
     if !archive.has(&member) {
         return Ok(Vec::new());
     }
     let list = archive.list(&member)?;
+    let number = place.folder.strip_prefix("index/").map(|number| metadata("index", number.trim_end_matches('/')));
+    let at = |(name, end): (&str, &str)| {
+        let (_, value) = list.iter().find(|(key, value)| key.ends_with(end) && !value.is_empty())?;
+        Some(metadata(name, value))
+    };
     let entry = |(key, value): (&String, &String)| metadata(key, value);
-    Ok(list.iter().filter(|(_, value)| !value.is_empty()).map(entry).collect())
+    let all = list.iter().filter(|(_, value)| !value.is_empty()).map(entry);
+    Ok(number.into_iter().chain(POSITION.into_iter().filter_map(at)).chain(all).collect())
 }
+
+/// What the position of a curve in a map is called, and the ends of the keys that have it.
+const POSITION: [(&str, &str); 3] = [
+    ("position index", ".header.position-index"),
+    ("position x", ".header.position.x"),
+    ("position y", ".header.position.y"),
+];
 
 /// What the channels of a segment hold in the first row; `None` where one holds nothing.
 fn first_row(archive: &mut Archive, segment: &StoredSegment) -> Result<Option<Vec<f64>>, FileError> {

@@ -112,7 +112,7 @@ fn add_row(input: &Input, block: &mut Block, line: &[u8], number: usize) -> Resu
         block.layout = Rows {
             first_line: number,
             columns,
-            delimiter: None,
+            ..Rows::default()
         };
         block.first = line.to_vec();
     }

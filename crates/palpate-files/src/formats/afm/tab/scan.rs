@@ -3,12 +3,9 @@
 use super::header::Header;
 use crate::{
     error::FileError,
-    formats::afm::rows::is_row,
+    formats::afm::{afmformats::MOST_SEGMENTS, rows::is_row},
     input::{Encoding, Idle, Input, LineReader},
 };
-
-/// Most segments that are distinguished; more are no segments.
-pub(super) const MOST_SEGMENTS: usize = 4096;
 
 /// Rows, and where the number of the segment changes.
 #[derive(Default)]
@@ -24,17 +21,7 @@ pub(super) fn scan(input: &Input, Header { rows, .. }: &Header) -> Result<Scan, 
     let mut channels: Vec<usize> = (0..rows.columns.len()).collect();
     let mut stored = vec![0.0; rows.columns.len()];
     let mut scan = Scan::default();
-    let mut idle = Idle::of(input);
-    let mut lines = LineReader::open(input, Encoding::Utf8)?;
-    loop {
-        let number = lines.line() + 1;
-        let Some(line) = lines.next_line()? else {
-            return Ok(scan);
-        };
-        if !is_row(line) {
-            idle.pass(line.len(), number, scan.rows)?;
-            continue;
-        }
+    let mut take = |scan: &mut Scan, line: &[u8], number: usize| -> Result<(), FileError> {
         rows.read(input, (line, number), &channels, &mut stored)?;
         if scan.rows == 0 {
             scan.first = Some(stored.clone());
@@ -47,5 +34,21 @@ pub(super) fn scan(input: &Input, Header { rows, .. }: &Header) -> Result<Scan, 
             }
         }
         scan.rows += 1;
+        Ok(())
+    };
+    if let Some((line, number)) = &rows.behind_names {
+        take(&mut scan, line, *number)?;
+    }
+    let mut idle = Idle::of(input);
+    let mut lines = LineReader::open(input, Encoding::Utf8)?;
+    loop {
+        let number = lines.line() + 1;
+        let Some(line) = lines.next_line()? else {
+            return Ok(scan);
+        };
+        match is_row(line) {
+            true => take(&mut scan, line, number)?,
+            false => idle.pass(line.len(), number, scan.rows)?,
+        }
     }
 }

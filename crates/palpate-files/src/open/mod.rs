@@ -3,7 +3,10 @@
 //! Every format answers in the same terms. [`Contents::open`] looks into a file and says what it found: its
 //! [`Format`], its tests ([`Part`]s) with their columns, and what was passed over and why. [`Contents::read`] then
 //! reads chosen columns of one test as `f64`, as they are written; units and signs are matters of
-//! [`record`](super::record). A format is recognised by content and never by the name of the file.
+//! [`record`](super::record). A format is recognised by content and never by the name of the file. The files of a zip archive
+//! are opened one by one, and their tests are those of the archive (`archive.rs`).
+
+mod archive;
 
 use std::{fmt, path::Path};
 
@@ -13,7 +16,8 @@ use serde::Serialize;
 use crate::{
     error::{FileError, FileProblem},
     formats::{
-        afm::{jpk_force, jpk_text, tab},
+        afm::{self, igor, jpk_force, jpk_text, tab},
+        arrays::{hdf5, matlab},
         arrow::{self, Kind},
         robot_log,
         spreadsheet::{self, Make},
@@ -33,6 +37,14 @@ pub enum Format {
     JpkText,
     /// A force curve in the text format of afmformats.
     AfmTab,
+    /// An Igor binary wave: a force curve of Asylum Research, or a table.
+    Igor,
+    /// A force curve, or several, in the HDF5 format of afmformats.
+    AfmHdf5,
+    /// HDF5.
+    Hdf5,
+    /// A MATLAB file of level 5.
+    Matlab,
     /// Delimited text.
     Text,
     /// A workbook of Office Open XML (`.xlsx`).
@@ -45,6 +57,8 @@ pub enum Format {
     ArrowIpc,
     /// A log of a robot: MCAP, as ROS 2 writes it.
     RobotLog,
+    /// A zip archive of several files, each of any other format.
+    Archive,
 }
 
 /// A format, how a file of it is recognised, and what looks into one.
@@ -52,16 +66,29 @@ type Known = (Format, fn(&Input) -> bool, LookInto);
 type LookInto = fn(&Input, &ReadOptions) -> Result<Found, FileError>;
 
 /// The formats in the order in which they are tried. What is none of them is text, which says itself if it is not.
-const KNOWN: [Known; 8] = [
+const KNOWN: &[Known] = &[
+    (Format::Archive, archive::recognise, archive::look_into),
     (Format::RobotLog, robot_log::recognise, robot_log::look_into),
     (Format::JpkForce, jpk_force::recognise, jpk_force::look_into),
     (Format::Xlsx, |input| spreadsheet::recognise(input) == Some(Make::Xlsx), spreadsheet::look_into),
     (Format::Xls, |input| spreadsheet::recognise(input) == Some(Make::Xls), spreadsheet::look_into),
     (Format::Parquet, |input| arrow::recognise(input) == Some(Kind::Parquet), arrow::look_into),
     (Format::ArrowIpc, |input| arrow::recognise(input).is_some(), arrow::look_into),
+    (Format::Matlab, matlab::recognise, matlab::look_into),
+    #[cfg(feature = "hdf5")]
+    (Format::AfmHdf5, afm::h5::recognise, afm::h5::look_into),
+    (Format::Hdf5, hdf5::recognise, hdf5::look_into),
     (Format::JpkText, jpk_text::recognise, jpk_text::look_into),
     (Format::AfmTab, tab::recognise, tab::look_into),
+    (Format::Igor, igor::recognise, igor::look_into),
 ];
+
+/// The format of a file, and what it finds there.
+fn look_into(input: &Input, options: &ReadOptions) -> Result<(Format, Found), FileError> {
+    let known = KNOWN.iter().find(|(_, is_so, _)| is_so(input));
+    let (format, look_into) = known.map_or((Format::Text, text::look_into as LookInto), |known| (known.0, known.2));
+    Ok((format, look_into(input, options)?))
+}
 
 impl fmt::Display for Format {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
@@ -69,12 +96,17 @@ impl fmt::Display for Format {
             Self::JpkForce => "JPK force curves",
             Self::JpkText => "JPK text export",
             Self::AfmTab => "text of afmformats",
+            Self::AfmHdf5 => "HDF5 of afmformats",
+            Self::Hdf5 => "HDF5",
+            Self::Matlab => "MATLAB file (.mat)",
+            Self::Igor => "Igor binary wave",
             Self::Text => "delimited text",
             Self::Xlsx => "Excel workbook (.xlsx)",
             Self::Parquet => "Parquet",
             Self::ArrowIpc => "Arrow IPC",
             Self::Xls => "Excel 97 workbook (.xls)",
             Self::RobotLog => "robot log (MCAP)",
+            Self::Archive => "zip archive",
         })
     }
 }
@@ -122,13 +154,12 @@ impl Contents {
     /// # Errors
     /// As for [`open`](Self::open).
     pub fn of(input: Input, options: &ReadOptions) -> Result<Self, FileError> {
-        let known = KNOWN.into_iter().find(|(_, is_so, _)| is_so(&input));
-        let (format, look_into) = known.map_or((Format::Text, text::look_into as LookInto), |known| (known.0, known.2));
+        let (format, found) = look_into(&input, options)?;
         let Found {
             mut parts,
             mut skipped,
             reader,
-        } = look_into(&input, options)?;
+        } = found;
         parts.iter_mut().for_each(Part::make_plain);
         skipped.iter_mut().for_each(SkippedPart::make_plain);
         if parts.is_empty() {
