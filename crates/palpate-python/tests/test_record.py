@@ -200,3 +200,21 @@ def test_columns_are_named_by_a_keyword_as_on_the_command_line(tmp_path: Path) -
     assert palpate.read_all(path, columns="time=Zeit:s,displacement=Weg:mm,force=Kraft:N") == [by_text]
     with pytest.raises(palpate.OptionError, match="force=Kraft:N"):
         palpate.read(path, columns="Kraft")
+
+
+def test_a_test_goes_on_in_a_second_file(tmp_path: Path) -> None:
+    """A ramp in one file and its hold in another were two records, one without a hold and one without a loading."""
+    ramp = tmp_path / "ramp.csv"
+    rows = "".join(f"{0.1 * i:.1f},{0.1 * i:.1f},{0.1 * i:.1f}\n" for i in range(100))
+    ramp.write_text("time (s),displacement (mm),force (N)\n" + rows)
+    hold = tmp_path / "hold.csv"
+    rows = "".join(f"{0.1 * i:.1f},9.9,{6 + 4 / (1 + 0.01 * i):.5f}\n" for i in range(600))
+    hold.write_text("time (s),displacement (mm),force (N)\n" + rows)
+    with pytest.raises(palpate.RecordError, match="no hold found"):
+        palpate.read(ramp).analyze(compare=False)
+    record = palpate.read(ramp, then=hold)
+    assert len(record.time_s) == 700
+    assert record.time_s[100] == pytest.approx(10.0)
+    holds = palpate.read(ramp, then=hold).analyze(compare=False).holds
+    assert list(holds["after"]) == ["loading"]
+    assert list(holds["fit_start_rule"]) == ["hold_start"]

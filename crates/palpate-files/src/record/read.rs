@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use palpate::{
-    record::{Correction, RawColumns, Record, RecordError, SignalReport},
+    record::{Correction, LabelledSegment, RawColumns, Record, RecordError, SignalReport},
     units,
 };
 
@@ -145,7 +145,8 @@ pub fn read_part(
     let bent = bent.map(|largest| Correction::DeflectionRemoved { largest });
     let done = left_out.into_iter().chain(of_stress).chain(averaged).chain(bent);
     progress(read.bytes, read.bytes).map_err(FileError::from)?;
-    let record = raw.into_record().map(|record| record.corrected_before(done));
+    let labels = if lacking.rows > 0 { Vec::new() } else { labelled(about, &raw.time, read.averaged) };
+    let record = raw.into_record().map(|record| record.corrected_before(done).labelled(labels));
     let record = record.map_err(|source| refused(contents, about, &read, (has_displacement, source)))?;
     Ok(RecordFile {
         path: path.to_owned(),
@@ -162,6 +163,15 @@ pub fn read_part(
         per_unit_area: plan.per_unit_area,
         bytes: read.bytes,
     })
+}
+
+/// The phases that a part labels, on the clock of the record; none unless all of its labels name one.
+fn labelled(part: &Part, time: &[f64], averaged: usize) -> Vec<LabelledSegment> {
+    let labels = part.labels.iter().map(|label| {
+        let last = label.end.div_ceil(averaged).min(time.len()).checked_sub(1)?;
+        LabelledSegment::new(&label.name, *time.get(label.start / averaged)?, time[last])
+    });
+    labels.collect::<Option<_>>().unwrap_or_default()
 }
 
 /// Why numbers make no record, with the line, or with the strain that would be a displacement.

@@ -70,6 +70,10 @@ impl NamedRecords {
         }
         let mut observed = HashSet::new();
         paths.retain(|path| observed.insert(path.canonicalize().unwrap_or_else(|_| path.clone())));
+        if let (Some(then), [_, _, ..]) = (&described.then, &paths[..]) {
+            let message = format!("{} continues one record, found {} of them", then.display(), paths.len());
+            return Err(JobError::option(message, "name the one record that it continues"));
+        }
         Ok(Self { paths, described })
     }
 

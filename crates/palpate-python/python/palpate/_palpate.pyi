@@ -539,7 +539,12 @@ class ContactStates(_Moved):
     def __len__(self) -> int: ...
 
 def read(
-    path: _Path, *, test: _Described | None = None, part: str | int | None = None, columns: _Columns | None = None
+    path: _Path,
+    *,
+    test: _Described | None = None,
+    part: str | int | None = None,
+    columns: _Columns | None = None,
+    then: _Path | None = None,
 ) -> Record: ...
 def read_all(path: _Path, *, test: _Described | None = None, columns: _Columns | None = None) -> list[Record]: ...
 def fit_hold(

@@ -23,6 +23,10 @@ use crate::work::job;
 ///     Columns with their units, before what ``test`` says of them: "force=Kraft:N,displacement=Weg:mm,time=Zeit:s", or a mapping
 ///     ``{"force": "Kraft:N", ...}``.
 ///
+/// then
+///     A second file in which the test goes on, such as the hold after a ramp. A clock that restarts there continues one sample
+///     interval after the first file; times that already follow stay as they are.
+///
 /// Returns
 /// -------
 /// Record
@@ -38,15 +42,17 @@ use crate::work::job;
 /// OSError
 ///     The operating system does not hand the file out.
 #[pyfunction]
-#[pyo3(signature = (path, *, test=None, part=None, columns=None))]
+#[pyo3(signature = (path, *, test=None, part=None, columns=None, then=None))]
 pub(crate) fn read(
     py: Python<'_>,
     path: PathBuf,
     test: Given<'_, '_>,
     part: Given<'_, '_>,
     columns: Given<'_, '_>,
+    then: Option<PathBuf>,
 ) -> PyResult<Record> {
-    Ok(read_parts(py, path, &described_with(test, part, columns)?, true)?.remove(0))
+    let described = described_with(test, part, columns)?.with_then(then.as_deref());
+    Ok(read_parts(py, path, &described, true)?.remove(0))
 }
 
 /// Read all tests in a file: the sheets of a workbook, the curves of a map, the ``test_id`` of a table.

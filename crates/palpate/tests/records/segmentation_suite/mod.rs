@@ -5,6 +5,7 @@
 
 mod others;
 mod protocols;
+mod quirks;
 mod record;
 mod score;
 mod suite;
@@ -38,6 +39,16 @@ fn holds_of_constant_displacement_are_found() {
     println!("{}", reported(&score));
     assert!(score.found_share() >= 0.99, "{}", reported(&score));
     assert_eq!(score.extra, 0, "{}", reported(&score));
+}
+
+/// The crosshead of one hold was cut into nine, ripples and free air were holds.
+#[test]
+fn machines_with_quirks_are_read_as_what_they_do() {
+    let mut sum = Score::default();
+    (0..records()).for_each(|number| sum.add(&scored(&quirks::quirky(number), false).score));
+    println!("{}", reported(&sum));
+    assert!(sum.found_share() >= 0.99, "{}", reported(&sum));
+    assert_eq!(sum.extra, 0, "{}", reported(&sum));
 }
 
 #[test]
