@@ -217,4 +217,4 @@ def test_a_test_goes_on_in_a_second_file(tmp_path: Path) -> None:
     assert record.time_s[100] == pytest.approx(10.0)
     holds = palpate.read(ramp, then=hold).analyze(compare=False).holds
     assert list(holds["after"]) == ["loading"]
-    assert list(holds["fit_start_rule"]) == ["hold_start"]
+    assert list(holds["fit_start_rule"]) == ["extreme"]

@@ -295,7 +295,7 @@ fn a_test_goes_on_in_a_second_file() {
     let reported = done(folder, &["inspect", "ramp.csv", "--then", "later.csv"]);
     assert!(reported.contains("on the same clock and unchanged"), "{reported}");
     let document = done(folder, &["analyze", "ramp.csv", "--then", "hold.csv", "--no-compare", "--format", "json"]);
-    assert!(document.contains("\"then_sha256\": \"") && document.contains("\"fit_start_rule\": \"hold_start\""));
+    assert!(document.contains("\"then_sha256\": \"") && document.contains("\"fit_start_rule\": \"extreme\""));
     let refused = refused(folder, &["analyze", "ramp.csv", "hold.csv", "--then", "later.csv"]);
     assert!(refused.contains("later.csv continues one record, found 2 of them"), "{refused}");
 }

@@ -56,7 +56,7 @@ pub(super) fn relaxes_throughout(record: &Record, found: &Segmentation) -> bool 
     record.displacement().is_some()
         && found.holds().next().is_some()
         && (while_moving <= ANSWERS * beside || shows_few_steps(record))
-        && extremes(force, turn).len() == 2
+        && !extremes(force, turn).iter().any(|at| (force.len() / 20 + 1..last).contains(at))
         && falls_to_a_rest(record.time(), force)
 }
 

@@ -15,7 +15,7 @@ const RIPPLES: f64 = 12.0;
 ///
 /// A standstill of L samples in a ramp changes the difference of the ways of L samples before and after its corners by all the way
 /// that it lacks; in a ramp that ripples such differences are found everywhere. Differences of white noise of deviation `noise` are √6
-/// of it. A ramp that stands still in every wave is not told from stairs.
+/// of it. A ramp that stands still in every wave looks like stairs, and is read as such.
 pub(super) fn without_ripples(values: &[f64], noise: f64, found: &[Standstill]) -> Vec<Standstill> {
     let stands = |index: &usize| stands_out(values, noise, found, *index);
     (0..found.len()).filter(stands).map(|index| found[index]).collect()

@@ -27,8 +27,12 @@ pub fn quirky(number: u64) -> Labelled {
         let (low, high) = values.iter().fold((f64::MAX, f64::MIN), |(low, high), v| (low.min(*v), high.max(*v)));
         values.iter().map(|value| value + share * (high - low) * random.normal()).collect::<Vec<f64>>()
     };
-    // The encoder of the crosshead has noise of its own; a ripple is smooth.
-    let of_jaw = if kind == Kind::NoisyCrosshead { 0.0 } else { noise.min(1e-3) };
+    // The encoder of the crosshead has noise of its own; a ripple stands far above that of its sensor.
+    let of_jaw = match kind {
+        Kind::NoisyCrosshead => 0.0,
+        Kind::Ripple => noise.min(2e-5),
+        _ => noise.min(1e-3),
+    };
     let displacement = noisy(displacement, of_jaw, &mut random);
     let force = noisy(force, noise, &mut random);
     Labelled {
