@@ -18,6 +18,9 @@ A hold is found if it shares more than half of itself with a true one, else it i
 samples, over the edges that noise lets one tell to two samples nineteen times of twenty (limit of Cramér and Rao up to
 0.75 samples); *blunt edges* are the others, their errors in units of that limit.
 
+*Machines with quirks* are crossheads whose encoder shows one of three steps while they stand, jaws that swing as they arrive, ramps that
+vibrate, and force curves of an AFM (air, a hard sample, adhesion), each with forces that relax as a power of time.
+
 TEXT
 cargo run --release -q -p palpate --example segmentation_suite --manifest-path "$root/Cargo.toml" -- "$records" >>"$page"
 mv "$page" "$root/validation/results/segmentation.md"

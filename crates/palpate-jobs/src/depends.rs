@@ -52,6 +52,7 @@ impl<'a, S: Serialize> Dependencies<'a, S> {
             .text("part", part)
             .file("test", input.test_sha256.as_deref())
             .file("air run", input.air_run_sha256.as_deref())
+            .file("then", input.then_sha256.as_deref())
     }
 
     /// The digest of all that, hexadecimal.

@@ -217,3 +217,21 @@ def test_quantities_of_rheometers_become_force_and_displacement(tmp_path: Path) 
     record = palpate.read(path, test=sample)
     assert list(record.force_n) == pytest.approx([0.0, 0.15, 0.075])
     assert record.displacement_m is not None and list(record.displacement_m) == pytest.approx([0.0, 2e-3, 2e-3])
+
+
+def test_a_test_goes_on_in_a_second_file(tmp_path: Path) -> None:
+    """A ramp in one file and its hold in another were two records, one without a hold and one without a loading."""
+    ramp = tmp_path / "ramp.csv"
+    rows = "".join(f"{0.1 * i:.1f},{0.1 * i:.1f},{0.1 * i:.1f}\n" for i in range(100))
+    ramp.write_text("time (s),displacement (mm),force (N)\n" + rows)
+    hold = tmp_path / "hold.csv"
+    rows = "".join(f"{0.1 * i:.1f},9.9,{6 + 4 / (1 + 0.01 * i):.5f}\n" for i in range(600))
+    hold.write_text("time (s),displacement (mm),force (N)\n" + rows)
+    with pytest.raises(palpate.RecordError, match="no hold found"):
+        palpate.read(ramp).analyze(compare=False)
+    record = palpate.read(ramp, then=hold)
+    assert len(record.time_s) == 700
+    assert record.time_s[100] == pytest.approx(10.0)
+    holds = palpate.read(ramp, then=hold).analyze(compare=False).holds
+    assert list(holds["after"]) == ["loading"]
+    assert list(holds["fit_start_rule"]) == ["extreme"]

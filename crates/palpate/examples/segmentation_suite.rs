@@ -9,6 +9,8 @@
 mod others;
 #[path = "../tests/records/segmentation_suite/protocols.rs"]
 mod protocols;
+#[path = "../tests/records/segmentation_suite/quirks.rs"]
+mod quirks;
 #[path = "../tests/records/segmentation_suite/record.rs"]
 mod record;
 #[path = "../tests/records/segmentation_suite/score.rs"]
@@ -36,6 +38,9 @@ fn one(labelled: &suite::Labelled) {
     }
 }
 
+/// Records by number.
+type Source = fn(u64) -> suite::Labelled;
+
 fn main() {
     let argument = |place: usize, usual: u64| -> u64 {
         std::env::args().nth(place).and_then(|text| text.parse().ok()).unwrap_or(usual)
@@ -43,12 +48,17 @@ fn main() {
     let (count, first) = (argument(1, 1000), argument(2, 0));
     let each = std::env::args().nth(3).is_some();
     if count == 1 {
-        return one(&suite::labelled(first));
+        return one(&if each { quirks::quirky(first) } else { suite::labelled(first) });
     }
-    for (force_only, title) in [(false, "Displacement and force"), (true, "Force alone")] {
+    let suites: [(Source, bool, &str); 3] = [
+        (suite::labelled, false, "Displacement and force"),
+        (quirks::quirky, false, "Machines with quirks"),
+        (suite::labelled, true, "Force alone"),
+    ];
+    for (source, force_only, title) in suites {
         let mut all: Vec<Scored> = Vec::new();
         for parameter in first..first + count {
-            let labelled = suite::labelled(parameter);
+            let labelled = source(parameter);
             let scored = scored(&labelled, force_only);
             let (score, worst) = (&scored.score, |errors: &[f64]| score::quantile(errors, 1.0).unwrap_or(0.0));
             let off = worst(&score.sharp[0]).max(worst(&score.sharp[1]));

@@ -26,6 +26,9 @@ pub(crate) struct DescribedArguments {
     /// Test of a file with several tests: its name (a sheet, a curve, a `test_id`), or its number from 1
     #[arg(long, value_name = "NAME")]
     pub(crate) part: Option<String>,
+    /// File in which the test goes on, such as the hold after a ramp; its times follow those of the record
+    #[arg(long, value_name = "RECORD")]
+    pub(crate) then: Option<PathBuf>,
 }
 
 impl DescribedArguments {
@@ -34,7 +37,8 @@ impl DescribedArguments {
     /// # Errors
     /// [`JobError`] where it cannot be read, or is none of a test.
     pub(crate) fn read(&self) -> Result<Described, JobError> {
-        Ok(Described::read(self.test.as_deref(), self.part.as_deref())?.with_columns(self.columns.as_ref()))
+        let described = Described::read(self.test.as_deref(), self.part.as_deref())?;
+        Ok(described.with_columns(self.columns.as_ref()).with_then(self.then.as_deref()))
     }
 }
 
@@ -52,7 +56,7 @@ pub(crate) struct InspectArguments {
     #[arg(value_name = "RECORD", required_unless_present = "machines")]
     pub(crate) record: Option<PathBuf>,
     /// List the machines and grippers that a test description can name, and exit
-    #[arg(long, conflicts_with_all = ["record", "test", "columns", "part", "figure", "write_test"])]
+    #[arg(long, conflicts_with_all = ["record", "test", "columns", "part", "then", "figure", "write_test"])]
     pub(crate) machines: bool,
     #[command(flatten)]
     pub(crate) described: DescribedArguments,

@@ -16,7 +16,8 @@ pub(crate) fn run(arguments: &AnalyzeArguments) -> Result<Verdict, JobError> {
     arguments.out.as_deref().map_or(Ok(()), check_folder)?;
     let described = arguments.described.read()?;
     let records = NamedRecords::find(arguments.records.clone(), described)?;
-    let air = arguments.air_run.as_ref().map(|air| OpenedFile::open(air, &records.described)).transpose()?;
+    let alone = records.described.clone().with_then(None);
+    let air = arguments.air_run.as_ref().map(|air| OpenedFile::open(air, &alone)).transpose()?;
     let air = air.map(|air| air.measurement(air.only()?, &mut Bars::default())).transpose()?;
     let (mut tests, mut failed) = (0, 0);
     let job = Analyze {

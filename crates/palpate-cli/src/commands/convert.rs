@@ -10,7 +10,8 @@ use crate::terminal::{note, notes};
 
 pub(crate) fn run(requested: &ConvertArguments) -> Result<Verdict, JobError> {
     let (record, out) = (&requested.record, &requested.out);
-    keep_apart([record].into_iter().chain(&requested.described.test), [out])?;
+    let read = [record].into_iter().chain(&requested.described.test).chain(&requested.described.then);
+    keep_apart(read, [out])?;
     Converted::check_name(out)?;
     let described = requested.described.read()?;
     let opened = OpenedFile::open(record, &described)?;

@@ -15,7 +15,8 @@ pub(crate) fn run(requested: &InspectArguments) -> Result<Verdict, JobError> {
         print(&machines_text())?;
         return Ok(Verdict::Positive);
     };
-    keep_apart([record].into_iter().chain(test), figure.iter().chain(write_test))?;
+    let read = [record].into_iter().chain(test).chain(&requested.described.then);
+    keep_apart(read, figure.iter().chain(write_test))?;
     figure.as_deref().map_or(Ok(()), check_figure)?;
     write_test.as_deref().map_or(Ok(()), check_new)?;
     let described = requested.described.read()?;

@@ -269,6 +269,37 @@ fn a_column_is_named_as_in_the_header_with_or_without_its_unit() {
     assert!(error.contains("columns.force.column") && error.contains("found \"Load\""), "{error}");
 }
 
+/// The ramp of a test in one file and its hold in another: neither shows both.
+#[test]
+fn a_test_goes_on_in_a_second_file() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    let header = "time_s,displacement_mm,force_n\n";
+    let ramp: String = (0..100).map(|i| 0.1 * f64::from(i)).map(|t| format!("{t:.1},{t:.1},{t:.1}\n")).collect();
+    let relaxed = |t: f64| 6.0 + 4.0 / (1.0 + 0.1 * t);
+    let hold = |from: f64| -> String {
+        (0..600)
+            .map(|i| 0.1 * f64::from(i))
+            .map(|t| format!("{:.1},9.9,{:.5}\n", from + t, relaxed(t)))
+            .collect()
+    };
+    file(folder, "ramp.csv", format!("{header}{ramp}"));
+    file(folder, "hold.csv", format!("{header}{}", hold(0.0)));
+    file(folder, "later.csv", format!("{header}{}", hold(12.0)));
+    assert!(done(folder, &["inspect", "ramp.csv"]).contains("no hold found"));
+    let reported = done(folder, &["inspect", "ramp.csv", "--then", "hold.csv"]);
+    assert!(
+        reported.contains("700 rows over 69.9") && reported.contains("10.0000 s were added to its times"),
+        "{reported}"
+    );
+    let reported = done(folder, &["inspect", "ramp.csv", "--then", "later.csv"]);
+    assert!(reported.contains("on the same clock and unchanged"), "{reported}");
+    let document = done(folder, &["analyze", "ramp.csv", "--then", "hold.csv", "--no-compare", "--format", "json"]);
+    assert!(document.contains("\"then_sha256\": \"") && document.contains("\"fit_start_rule\": \"extreme\""));
+    let refused = refused(folder, &["analyze", "ramp.csv", "hold.csv", "--then", "later.csv"]);
+    assert!(refused.contains("later.csv continues one record, found 2 of them"), "{refused}");
+}
+
 #[test]
 fn clocks_that_differ_are_reported_in_the_terminal() {
     let folder = tempfile::tempdir().unwrap();
@@ -280,12 +311,15 @@ fn clocks_that_differ_are_reported_in_the_terminal() {
     };
     let rows: String = (0..750)
         .map(|i| 0.02 * f64::from(i))
-        .map(|t| format!("{t:.3},{:.5},{:.5}\n", at(t), 3.0 * at((t - 0.06).max(0.0))))
+        .map(|t| format!("{t:.3},{:.5},{:.3},{:.5}\n", at(t), t + 0.001, 3.0 * at((t - 0.06).max(0.0))))
         .collect();
-    let record = file(folder, "stairs.csv", format!("time_s,displacement_mm,force_n\n{rows}"));
-    let reported = done(folder, &["inspect", &record]);
+    let record = file(folder, "stairs.csv", format!("time_s,displacement_mm,stamp_s,force_n\n{rows}"));
+    let clocks = "[columns.displacement]\ncolumn = 2\nclock = { column = 1, unit = \"s\" }\n\
+                  [columns.force]\ncolumn = 4\nclock = { column = 3, unit = \"s\" }\n";
+    file(folder, "two.toml", clocks);
+    let reported = done(folder, &["inspect", &record, "--test", "two.toml"]);
     assert!(reported.contains("ms later than the displacement; set skew = \"auto\" in [clock]"), "{reported}");
-    file(folder, "auto.toml", "[clock]\nskew = \"auto\"\n");
+    file(folder, "auto.toml", format!("{clocks}[clock]\nskew = \"auto\"\n"));
     let reported = done(folder, &["inspect", &record, "--test", "auto.toml"]);
     assert!(
         !reported.contains("later than the displacement") && reported.contains("done: force shifted by "),
@@ -358,7 +392,7 @@ fn a_plain_table_is_corrected_as_described() {
 fn clocks_that_differ_are_no_saturation_and_signs_are_reported() {
     let folder = tempfile::tempdir().unwrap();
     let folder = folder.path();
-    let mut text = "Time (s),Displacement (mm),Force (N)\n".to_owned();
+    let mut text = "Time (s),Displacement (mm),Stamp (s),Force (N)\n".to_owned();
     let travel = |t: f64| if t < 40.0 { t.clamp(0.0, 5.0) } else { (45.0 - t).clamp(2.0, 5.0) };
     for i in 0..3500 {
         let t = 0.02 * f64::from(i) - 2.0;
@@ -367,18 +401,22 @@ fn clocks_that_differ_are_no_saturation_and_signs_are_reported() {
         let rising = if late < 5.0 { 4.0 * late.max(0.0) } else { 0.0 };
         let rest = if late < 40.0 { relaxing + rising } else { 0.0 };
         let ripple = 0.01 * (f64::from(i) * 7.3).sin() + 0.01 * (f64::from(i) * 3.1).cos();
-        text.push_str(&format!("{t:.2},{:.6},{:.6}\n", travel(t), 10.0 * travel(late) + rest + ripple));
+        let stamp = t + 0.001;
+        text.push_str(&format!("{t:.2},{:.6},{stamp:.3},{:.6}\n", travel(t), 10.0 * travel(late) + rest + ripple));
     }
     file(folder, "press.csv", &text);
-    let reported = done(folder, &["inspect", "press.csv"]);
+    let clocks = "[columns.displacement]\ncolumn = 2\nclock = { column = 1, unit = \"s\" }\n\
+                  [columns.force]\ncolumn = 4\nclock = { column = 3, unit = \"s\" }\n";
+    file(folder, "two.toml", clocks);
+    let reported = done(folder, &["inspect", "press.csv", "--test", "two.toml"]);
     assert!(reported.contains("later than the displacement") && !reported.contains("clipped"), "{reported}");
-    let document = done(folder, &["analyze", "press.csv", "--no-compare", "--format", "json"]);
+    let document = done(folder, &["analyze", "press.csv", "--test", "two.toml", "--no-compare", "--format", "json"]);
     assert!(document.contains("clocks_skewed") && !document.contains("\"saturated\""));
     let turned = text.lines().map(|line| match line.rsplit_once(',') {
         Some((before, force)) if !force.contains('F') => format!("{before},{}\n", -force.parse::<f64>().unwrap()),
         _ => format!("{line}\n"),
     });
     file(folder, "turned.csv", turned.collect::<String>());
-    let reported = done(folder, &["inspect", "turned.csv"]);
+    let reported = done(folder, &["inspect", "turned.csv", "--test", "two.toml"]);
     assert!(reported.contains("sign"), "{reported}");
 }

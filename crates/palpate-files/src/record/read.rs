@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use palpate::{
-    record::{Correction, RawColumns, Record, RecordError, SignalReport},
+    record::{Correction, LabelledSegment, RawColumns, Record, RecordError, SignalReport},
     units,
 };
 
@@ -159,7 +159,8 @@ pub fn read_part(
     let bent = bent.map(|largest| Correction::DeflectionRemoved { largest });
     let done = left_out.into_iter().chain(counted).chain(conversion.done).chain(averaged).chain(bent);
     progress(read.bytes, read.bytes).map_err(FileError::from)?;
-    let record = raw.into_record().map(|record| record.corrected_before(done));
+    let labels = if lacking.rows > 0 { Vec::new() } else { labelled(about, &raw.time, read.averaged) };
+    let record = raw.into_record().map(|record| record.corrected_before(done).labelled(labels));
     let record = record.map_err(|source| refused(contents, about, &read, (has_displacement, source)))?;
     Ok(RecordFile {
         path: path.to_owned(),
@@ -187,6 +188,15 @@ fn time_of(read: &Columns, row: usize, rate: f64) -> f64 {
         _ => (row * read.averaged) as f64,
     };
     rows / rate
+}
+
+/// The phases that a part labels, on the clock of the record; none unless all of its labels name one.
+fn labelled(part: &Part, time: &[f64], averaged: usize) -> Vec<LabelledSegment> {
+    let labels = part.labels.iter().map(|label| {
+        let last = label.end.div_ceil(averaged).min(time.len()).checked_sub(1)?;
+        LabelledSegment::new(&label.name, *time.get(label.start / averaged)?, time[last])
+    });
+    labels.collect::<Option<_>>().unwrap_or_default()
 }
 
 /// Why numbers make no record, with the line, or with the strain that would be a displacement.

@@ -17,6 +17,8 @@ pub struct Described {
     pub path: Option<PathBuf>,
     /// Its text.
     pub text: Option<String>,
+    /// A second file, in which the test goes on.
+    pub then: Option<PathBuf>,
 }
 
 impl Described {
@@ -33,6 +35,7 @@ impl Described {
             test: Some(parse_test(&text, path)?),
             path: Some(path.to_owned()),
             text: Some(text),
+            then: None,
         }
         .with_part(part))
     }
@@ -46,8 +49,16 @@ impl Described {
             test: Some(parse_test(&text, Path::new("test"))?),
             path: None,
             text: Some(text),
+            then: None,
         }
         .with_part(part))
+    }
+
+    /// The same of a test that goes on in a second file: its ramp in one, its hold in the other.
+    #[must_use]
+    pub fn with_then(mut self, then: Option<&Path>) -> Self {
+        self.then = then.map(Path::to_owned);
+        self
     }
 
     fn with_part(mut self, part: Option<&str>) -> Self {

@@ -78,6 +78,10 @@ impl NamedRecords {
         let mut observed = HashSet::new();
         let place = |path: &Path| path.canonicalize().unwrap_or_else(|_| path.to_owned());
         files.retain(|file| file.path().is_none_or(|path| observed.insert(place(path))));
+        if let (Some(then), [_, _, ..]) = (&described.then, &files[..]) {
+            let message = format!("{} continues one record, found {} of them", then.display(), files.len());
+            return Err(JobError::option(message, "name the one record that it continues"));
+        }
         Ok(Self { files, described })
     }
 

@@ -1,6 +1,6 @@
 //! A file of records that was looked into.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use palpate::analysis::AnalysisOptions;
 use palpate::record::Record;
@@ -38,6 +38,8 @@ pub struct OpenedFile<'d> {
     /// What is stated about its tests.
     pub described: &'d Described,
     digest: FileDigest,
+    /// The file in which the test goes on.
+    then: Option<Box<Self>>,
 }
 
 impl<'d> OpenedFile<'d> {
@@ -59,6 +61,15 @@ impl<'d> OpenedFile<'d> {
 
     /// Looks into a file whose bytes are there.
     pub(crate) fn of(source: Source, described: &'d Described) -> Result<Self, JobError> {
+        let next = |path: &PathBuf| Self::alone(Source::open(&NamedFile::Path(path.clone()))?, described);
+        let then = described.then.as_ref().map(next).transpose()?;
+        let mut opened = Self::alone(source, described)?;
+        opened.then = then.map(Box::new);
+        Ok(opened)
+    }
+
+    /// Looks into one file, without any in which the test goes on.
+    fn alone(source: Source, described: &'d Described) -> Result<Self, JobError> {
         let stated = described.test.clone().unwrap_or_default();
         let contents = Contents::of(source.input, &stated.reading).map_err(ReadError::File)?;
         let tests = tests(&contents, &stated)?;
@@ -67,6 +78,7 @@ impl<'d> OpenedFile<'d> {
             tests,
             described,
             digest: source.digest,
+            then: None,
         })
     }
 
@@ -99,11 +111,30 @@ impl<'d> OpenedFile<'d> {
         }
     }
 
-    /// Reads the record in a part; the watch hears of the bytes.
+    /// Reads the record in a part, with that of the file in which the test goes on; the watch hears of the bytes.
     ///
     /// # Errors
     /// [`JobError`] where it cannot be read, or the watch ends it.
     pub fn read(&self, part: usize, watch: &mut dyn Watch) -> Result<RecordFile, JobError> {
+        let mut file = self.read_alone(part, watch)?;
+        let Some(then) = &self.then else {
+            return Ok(file);
+        };
+        let next = then.read_alone(then.only()?, watch)?;
+        // Clocks that count from 1970 say how far the two are apart.
+        let start = file.start.zip(next.start).map(|(first, second)| second - first);
+        file.record = file.record.then(&next.record, start).map_err(|source| ReadError::Record {
+            path: next.path.clone(),
+            part: next.part.name.clone(),
+            line: None,
+            source,
+        })?;
+        file.signals = file.record.signals();
+        (file.rows, file.bytes) = (file.rows + next.rows, file.bytes + next.bytes);
+        Ok(file)
+    }
+
+    fn read_alone(&self, part: usize, watch: &mut dyn Watch) -> Result<RecordFile, JobError> {
         let path = &self.contents.input.name;
         let name = path.file_name().unwrap_or(path.as_os_str()).to_string_lossy();
         let task = format!("reading {name}");
@@ -151,6 +182,7 @@ impl<'d> OpenedFile<'d> {
             sha256: self.digest.get(watch)?,
             test_sha256: self.described.sha256(),
             air_run_sha256: None,
+            then_sha256: self.then.as_ref().map(|then| then.digest.get(watch)).transpose()?,
             depends_on_sha256: None,
             rows: file.rows,
             rows_averaged: file.averaged,

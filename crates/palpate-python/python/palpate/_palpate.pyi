@@ -553,6 +553,7 @@ def read(
     test: _Described | None = None,
     part: str | int | None = None,
     columns: _Columns | None = None,
+    then: _Path | None = None,
 ) -> Record: ...
 def read_all(
     path: _File, *, name: str | None = None, test: _Described | None = None, columns: _Columns | None = None

@@ -2,7 +2,7 @@
 
 use std::borrow::Cow;
 
-use palpate::record::{Correction, Record};
+use palpate::record::{Correction, LabelledSegment, Record};
 use pyo3::prelude::*;
 use serde::{Deserialize, Serialize};
 
@@ -15,6 +15,7 @@ pub(crate) struct Kept<'a> {
     displacement: Option<Cow<'a, [f64]>>,
     force: Cow<'a, [f64]>,
     corrections: Cow<'a, [Correction]>,
+    labels: Cow<'a, [LabelledSegment]>,
 }
 
 impl<'a> Kept<'a> {
@@ -24,6 +25,7 @@ impl<'a> Kept<'a> {
             displacement: record.displacement().map(Cow::from),
             force: record.force().into(),
             corrections: record.corrections().into(),
+            labels: record.labels().into(),
         }
     }
 
@@ -31,6 +33,6 @@ impl<'a> Kept<'a> {
         let displacement = self.displacement.map(Cow::into_owned);
         let record = Record::new(self.time.into_owned(), displacement, self.force.into_owned());
         let record = record.map_err(|error| refused::<RecordError>(&error, Some(error.hint())))?;
-        Ok(record.corrected_before(self.corrections.into_owned()))
+        Ok(record.corrected_before(self.corrections.into_owned()).labelled(self.labels.into_owned()))
     }
 }

@@ -1,5 +1,7 @@
 //! Records read from files.
 
+use std::path::PathBuf;
+
 use palpate_jobs::input::{Described, Measurement, NamedFile, OpenedFile};
 use pyo3::prelude::*;
 
@@ -24,6 +26,9 @@ use crate::work::job;
 /// columns
 ///     Columns with their units, before what ``test`` says of them: "force=Kraft:N,displacement=Weg:mm,time=Zeit:s", or a mapping
 ///     ``{"force": "Kraft:N", ...}``.
+/// then
+///     A second file in which the test goes on, such as the hold after a ramp. A clock that restarts there continues one sample
+///     interval after the first file; times that already follow stay as they are.
 ///
 /// Returns
 /// -------
@@ -40,7 +45,7 @@ use crate::work::job;
 /// OSError
 ///     The operating system does not hand the file out.
 #[pyfunction]
-#[pyo3(signature = (path, *, name=None, test=None, part=None, columns=None))]
+#[pyo3(signature = (path, *, name=None, test=None, part=None, columns=None, then=None))]
 pub(crate) fn read(
     py: Python<'_>,
     path: &Bound<'_, PyAny>,
@@ -48,8 +53,10 @@ pub(crate) fn read(
     test: Given<'_, '_>,
     part: Given<'_, '_>,
     columns: Given<'_, '_>,
+    then: Option<PathBuf>,
 ) -> PyResult<Record> {
-    Ok(read_parts(py, record_file(path, name)?, &described_with(test, part, columns)?, true)?.remove(0))
+    let described = described_with(test, part, columns)?.with_then(then.as_deref());
+    Ok(read_parts(py, record_file(path, name)?, &described, true)?.remove(0))
 }
 
 /// Read all tests in a file: the sheets of a workbook, the curves of a map, the ``test_id`` of a table, the files of a zip archive.

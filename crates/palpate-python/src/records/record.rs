@@ -133,6 +133,7 @@ impl Record {
             sha256: sha256.map_err(refused_plainly::<PalpateError>)?,
             test_sha256: None,
             air_run_sha256: None,
+            then_sha256: None,
             depends_on_sha256: None,
             rows: record.len(),
             rows_averaged: 1,

@@ -26,6 +26,8 @@ documents! {
         displacement: Option<ValuesDocument> = signals.displacement.as_ref().map(ValuesDocument::new),
         /// The force, N.
         force: ValuesDocument = ValuesDocument::new(&signals.force),
+        /// Clocks that stamped the columns: 2 where displacement and force have stamps of their own.
+        clocks: usize = analysis.record.clocks(),
         /// Delay of the force stamps after those of the displacement; `null` where the ramps do not determine it.
         clock_skew: Option<SkewDocument> = analysis.skew.map(SkewDocument::new),
     }
@@ -102,6 +104,9 @@ fn with_unit<'a>(code: &str, name: &'a str) -> &'a str {
         "force" => "force_n",
         "displacement" => "displacement_m",
         "skew" => "skew_s",
+        "from" => "from_s",
+        "gap" => "gap_s",
+        "shift" => "shift_s",
         "standard_error" => "standard_error_s",
         "rate" => "rate_hz",
         "interval" => "interval_before_s",

@@ -205,7 +205,27 @@ fn sentence(law: Option<Law>, agreeing: usize, judged: &[&Comparison]) -> String
         (agreeing, compared) if agreeing == compared => format!("On all {compared} holds"),
         (agreeing, compared) => format!("On {agreeing} of {compared} holds"),
     };
-    format!("{what}: {law}, {name}. {which} it is the best law or not distinguishable from the best.")
+    format!(
+        "{}{what}: {law}, {name}. {which} it is the best law or not distinguishable from the best.",
+        by_fit_alone(judged)
+    )
+}
+
+/// What the choice rests on where no hold could be held out in part; it stands before the choice.
+fn by_fit_alone(judged: &[&Comparison]) -> &'static str {
+    let forward = |found: &&Comparison| found.ranking == Ranking::Forward;
+    match judged {
+        [] => "",
+        judged if judged.iter().any(forward) => "",
+        [_] => {
+            "No part of the hold can be held out (30 samples before the cut and 10 after it, with a change above the noise): the choice \
+             rests on how closely laws fit for their parameters (BIC), and nothing shows what they predict. "
+        }
+        _ => {
+            "No part of any hold can be held out (30 samples before the cut and 10 after it, with a change above the noise): the choice \
+             rests on how closely laws fit for their parameters (BIC), and nothing shows what they predict. "
+        }
+    }
 }
 
 /// Which other laws all holds together do not distinguish from the best.

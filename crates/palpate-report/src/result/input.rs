@@ -22,6 +22,8 @@ pub struct Input {
     pub test_sha256: Option<String>,
     /// SHA-256 of the record without a body whose force was subtracted, if one was.
     pub air_run_sha256: Option<String>,
+    /// SHA-256 of the file in which the test goes on, if there is one.
+    pub then_sha256: Option<String>,
     /// SHA-256 over everything that the result depends on: these files, every setting, and the build of palpate. Equal digests stand for
     /// equal results.
     pub depends_on_sha256: Option<String>,

@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 use crate::fit::TrendVerdict;
 use crate::laws::Law;
 use crate::record::Column;
-use crate::segment::{Ripple, Rupture, TouchMethod};
+use crate::segment::{LabelCheck, Ripple, Rupture, TouchMethod};
 
 /// Severity of a finding.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
@@ -273,9 +273,11 @@ pub enum Finding {
     ClocksOpen {
         /// Skew from the edges of ramps with its standard error, s; `None` where too few appear in both columns.
         skew: Option<(f64, f64)>,
-        /// One clock stamps both columns, and they seem to differ by more than any delay in front of it.
+        /// One clock stamps both columns: there is no skew.
         one_clock: bool,
     },
+    /// The labels of the file and a search of its columns disagree on the holds.
+    LabelsDisagree(LabelCheck),
     /// The jaw oscillates about the positions it holds.
     JawHunts(Ripple),
     /// First touch of the loading curve is far from that of all other rules.

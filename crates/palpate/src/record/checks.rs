@@ -117,6 +117,12 @@ pub enum RecordError {
         /// Way of the jaw of the air run, m.
         found: f64,
     },
+    /// Of two records of one test, one has a displacement.
+    #[error("the {without} of the two records has no displacement, the other has one")]
+    ContinuedWithout {
+        /// `first` or `second`.
+        without: &'static str,
+    },
     /// An air run that ends too early.
     #[error("the air run lasts {found} s, the motion of the record {needed} s")]
     AirRunShort {
@@ -198,6 +204,7 @@ impl RecordError {
             Self::AirRunDiffers { .. } | Self::AirRunShort { .. } => {
                 "record the air run with the complete program of the test"
             }
+            Self::ContinuedWithout { .. } => "name the displacement of both files, which must have the same columns",
             Self::NoBaseline { .. } => "give a time window without contact (baseline_window), or omit the baseline",
             Self::ConstantForce { .. } => {
                 "check the force column and that the load cell was connected; creep under constant force needs a \

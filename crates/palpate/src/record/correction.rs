@@ -156,6 +156,15 @@ pub enum Correction {
         /// Rows at the ends for which no force is left.
         left_out: usize,
     },
+    /// A second record of the same test was put behind the first.
+    Continued {
+        /// When the second begins, s, as the record counts time.
+        from: f64,
+        /// How long after the last sample of the first, s.
+        gap: f64,
+        /// What was added to the times of the second, s; 0 where both have one clock.
+        shift: f64,
+    },
     /// Sample times were made even.
     Resampled {
         /// Samples a second, Hz.
@@ -261,6 +270,15 @@ impl fmt::Display for Correction {
             Self::Tared(tare) => {
                 let (displacement, force) = (significant(1e3 * tare.displacement, 4), significant(tare.force, 4));
                 write!(f, "measured from first touch at {displacement} mm and {force} N")
+            }
+            Self::Continued { from, gap, shift } => {
+                let (from, gap) = (significant(*from, 6), significant(*gap, 3));
+                write!(f, "a second record follows from {from} s, {gap} s after the first ends; ")?;
+                if *shift == 0.0 {
+                    f.write_str("its times are on the same clock and unchanged")
+                } else {
+                    write!(f, "{} s were added to its times", significant(*shift, 6))
+                }
             }
             Self::AirRunSubtracted => f.write_str("force of the air run subtracted"),
             Self::SkewRemoved { skew, left_out, .. } => {

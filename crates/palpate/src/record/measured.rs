@@ -1,7 +1,7 @@
 //! The record itself.
 
 use super::checks::{self, RecordError};
-use super::{Correction, SignalReport};
+use super::{Correction, LabelledSegment, SignalReport};
 use crate::statistics::median;
 
 /// A force record of a squeeze-and-hold test; SI units, the direction of loading is positive.
@@ -14,6 +14,7 @@ pub struct Record {
     pub(super) displacement: Option<Vec<f64>>,
     pub(super) force: Vec<f64>,
     pub(super) corrections: Vec<Correction>,
+    pub(super) labels: Vec<LabelledSegment>,
 }
 
 impl Record {
@@ -44,6 +45,7 @@ impl Record {
             displacement,
             force,
             corrections: Vec::new(),
+            labels: Vec::new(),
         })
     }
 
@@ -70,6 +72,26 @@ impl Record {
     pub(super) fn followed_by(mut self, done: Correction) -> Self {
         self.corrections.push(done);
         self
+    }
+
+    /// Phases that the file itself names, in order; they take precedence over any that are found. Empty where it names none.
+    #[must_use]
+    pub fn labels(&self) -> &[LabelledSegment] {
+        &self.labels
+    }
+
+    /// The record with phases that its file names.
+    #[must_use]
+    pub fn labelled(mut self, labels: Vec<LabelledSegment>) -> Self {
+        self.labels = labels;
+        self
+    }
+
+    /// How many clocks stamped its columns: two where displacement and force had time stamps of their own, else one.
+    #[must_use]
+    pub fn clocks(&self) -> usize {
+        let joined = |done: &Correction| matches!(done, Correction::ClocksJoined { .. });
+        if self.corrections.iter().any(joined) { 2 } else { 1 }
     }
 
     /// Number of samples.
@@ -124,6 +146,7 @@ impl Record {
         done: Correction,
     ) -> Result<Self, RecordError> {
         let record = Self::new(time, displacement, force)?;
+        let record = record.labelled(self.labels.clone());
         Ok(record.corrected_before(self.corrections.iter().cloned()).followed_by(done))
     }
 

@@ -9,6 +9,7 @@
 //! | `repair.rs` | time stamps that repeat or step back |
 //! | `checks.rs` | what every record must be: finite, of equal lengths, time rising |
 //! | `measured.rs` | the record itself |
+//! | `label.rs` | phases that the file itself names |
 //! | `correct/` | corrections that make a new record |
 //! | `options.rs` | options of the corrections |
 //! | `correction.rs` | what was done, as a list that goes with the record |
@@ -16,6 +17,7 @@
 mod checks;
 mod correct;
 mod correction;
+mod label;
 mod measured;
 mod options;
 mod raw;
@@ -25,6 +27,7 @@ mod signals;
 pub use checks::RecordError;
 pub use correct::{Compliance, ComplianceError, ComplianceTable};
 pub use correction::{Baseline, Clock, Column, Correction, SourceQuantity, Tare};
+pub use label::LabelledSegment;
 pub use measured::Record;
 pub use options::{CorrectionOptions, SkewChoice};
 pub use raw::RawColumns;

@@ -36,8 +36,10 @@ pub enum SegmentError {
         unit: &'static str,
     },
     /// It moves all the time.
-    #[error("no hold found: {}", no_hold((*longest, *samples), (*minimum_hold, *minimum_samples)))]
+    #[error("no hold found: {}", no_hold(*rest, (*longest, *samples), (*minimum_hold, *minimum_samples)))]
     NoHold {
+        /// How long the record stands still before anything moves, s; 0 if it begins with a motion.
+        rest: f64,
         /// Longest stretch after a ramp in which it moves slowest, s; 0 if there is none.
         longest: f64,
         /// Its samples.
@@ -46,6 +48,12 @@ pub enum SegmentError {
         minimum_hold: f64,
         /// Least number of samples of a hold.
         minimum_samples: usize,
+    },
+    /// The file labels its phases, and none is a hold after a ramp.
+    #[error("no hold found: the file labels its segments {}; none of them holds a body", names.join(", "))]
+    NoneLabelled {
+        /// The labels.
+        names: Vec<String>,
     },
     /// The jaw stands still only after the body broke.
     #[error(
@@ -116,6 +124,9 @@ impl SegmentError {
             }
             Self::GivenShort { .. } => "give an end several samples after the start",
             Self::GivenOverlap { .. } => "end the earlier hold before the later one starts",
+            Self::NoneLabelled { .. } => {
+                "the labels of a file take precedence; give the limits of a hold by hand ([[phases.hold]] in the test description) if there is one"
+            }
             Self::TooShort { .. } => "check that the whole test was exported",
             Self::NoMotion { .. } => {
                 "check the displacement column and its unit; if the record is one hold, give it by hand ([[phases.hold]] with from and to in the test description)"
@@ -129,8 +140,12 @@ impl SegmentError {
                 minimum_samples,
                 longest,
                 minimum_hold,
+                ..
             } if samples < minimum_samples && longest >= minimum_hold => {
                 "the hold has too few samples: sample faster, or set the shortest hold (⟨minimum_hold⟩), which then needs 3 samples"
+            }
+            Self::NoHold { rest, longest: 0.0, .. } if *rest > 0.0 => {
+                "if the standstill before the ramp is the hold, give its limits by hand ([[phases.hold]] in the test description)"
             }
             Self::NoHold { longest: 0.0, .. } => {
                 "a cyclic test has no hold; a tolerance (⟨tolerance⟩) above the range of the test hides every ramp: reduce it"
@@ -144,11 +159,14 @@ impl SegmentError {
 }
 
 /// What is missing for a hold: time or samples, or else that the column stands still.
-fn no_hold((longest, samples): (f64, usize), (minimum, minimum_samples): (f64, usize)) -> String {
+fn no_hold(rest: f64, (longest, samples): (f64, usize), (minimum, minimum_samples): (f64, usize)) -> String {
     let slowest = format!("{} ({samples} samples)", reported(longest, "s"));
-    if longest == 0.0 {
-        "the jaw always moves, or is at rest from the start".to_owned()
-    } else if longest >= minimum && samples >= minimum_samples {
+    let is_slow_motion = longest >= minimum && samples >= minimum_samples;
+    if rest > 0.0 && (longest == 0.0 || is_slow_motion) {
+        format!("{} of standstill, then motion to the end", reported(rest, "s"))
+    } else if longest == 0.0 {
+        "the jaw moves from the first sample to the last".to_owned()
+    } else if is_slow_motion {
         format!("at its slowest, for {slowest}, the jaw drifts or reverses without a stop")
     } else {
         let needed = reported(minimum, "s");

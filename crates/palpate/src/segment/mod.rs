@@ -22,6 +22,11 @@ mod segmentation;
 mod standstill;
 mod touch;
 
+/// Share of its range by which a jaw wanders about what it holds.
+const SERVO: f64 = 0.002;
+/// Share of its range by which a force wanders that a controller holds.
+const CONTROLLER: f64 = 0.02;
+
 pub use error::SegmentError;
 pub(crate) use mode::{OBSERVED, PARTS, change, error_of_mean, mode as held_in};
 use mode::{mode, mode_at_large};
@@ -29,7 +34,8 @@ pub use phases::{GivenHold, find_phases, phases_watched, phases_with};
 pub use relaxation::{Relaxation, RelaxationType, classify_relaxation};
 pub(crate) use segmentation::ramps_before;
 pub use segmentation::{
-    After, HoldMode, HoldStart, Phase, Ripple, Rupture, Segment, SegmentOptions, SegmentSettings, Segmentation,
+    After, FitStartRule, HoldMode, HoldStart, LabelCheck, Phase, Ripple, Rupture, Segment, SegmentOptions,
+    SegmentSettings, Segmentation,
 };
 use standstill::{Held, Level, Levels, levels};
 pub use touch::{ContactChoice, ContactPoint, TouchEstimate, TouchMethod, find_contact_of, free_samples};

@@ -27,7 +27,7 @@ pub(crate) struct Change {
 /// to tell.
 pub(crate) fn change(record: &Record, from: usize, until: usize) -> Option<Change> {
     let displacement = record.displacement()?;
-    if until < from + 3 * PARTS {
+    if until < from + PARTS {
         return None;
     }
     // What both do in the hold is measured by what they do as they come to it.
@@ -55,7 +55,7 @@ pub(crate) fn change(record: &Record, from: usize, until: usize) -> Option<Chang
 /// What is held in samples `from..until` where it is not known yet whether they are a hold: by what both do in all the record.
 pub(super) fn mode_at_large(record: &Record, from: usize, until: usize) -> HoldMode {
     match record.displacement() {
-        Some(displacement) if until >= from + 3 * PARTS => judged(
+        Some(displacement) if until >= from + PARTS => judged(
             [&displacement[from..until], &record.force()[from..until]],
             [range(displacement), range(record.force())],
         ),
@@ -63,11 +63,16 @@ pub(super) fn mode_at_large(record: &Record, from: usize, until: usize) -> HoldM
     }
 }
 
+/// How many times steadier than the jaw a force is that a controller holds, both as shares of what they do as they come to the hold.
+const STEADIER: f64 = 10.0;
+
 /// What is held, from jaw and force in the hold, and how far both go as they come to it.
 fn judged([jaw, force]: [&[f64]; 2], [way, rise]: [f64; 2]) -> HoldMode {
     let (travelled, changed) = (moved(jaw).abs() / way, moved(force).abs() / rise);
-    let observed = moved(jaw).abs() > OBSERVED * error_of_mean(jaw) && travelled > LEAST_SHARE;
     let uncertain = OBSERVED * error_of_mean(force) / rise;
+    // A force that stays ten times as steady as the jaw is held, however little the body creeps.
+    let least = LEAST_SHARE.min(STEADIER * changed.max(uncertain));
+    let observed = moved(jaw).abs() > OBSERVED * error_of_mean(jaw) && travelled > least;
     if observed && travelled > FARTHER * changed.max(uncertain) {
         HoldMode::ForceHeld
     } else if observed && travelled > DRIFTS && changed > uncertain {

@@ -6,15 +6,44 @@ use serde::{Deserialize, Serialize};
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum HoldStart {
-    /// From the extreme of the force near the start of the hold: its maximum after loading, its minimum after unloading.
-    /// The force may lag behind the jaw by a sample or, where a servo settles, by up to a second; where a servo overshoots
-    /// the extreme lies before the jaw is at rest.
+    /// From where the signal begins to relax: its last extreme in the first tenth of the hold (its maximum after loading, its
+    /// minimum after unloading), after the machine has settled on what it holds.
     #[default]
     Peak,
     /// From the first sample of the hold.
     Settled,
     /// This long after the extreme, s.
     AfterPeak(f64),
+}
+
+/// How the sample was chosen from which laws are fitted to a hold.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum FitStartRule {
+    /// The first sample of the hold.
+    HoldStart,
+    /// The first sample from which on the machine stays at the level that it holds.
+    DriveSettled,
+    /// The last extreme of the signal early in the hold.
+    Extreme,
+    /// The requested time after that.
+    AfterExtreme,
+    /// The first sample at which the body meets the jaw again.
+    ContactClosed,
+}
+
+impl FitStartRule {
+    /// The rule in words.
+    #[must_use]
+    pub fn words(self) -> &'static str {
+        match self {
+            Self::HoldStart => "start of the hold",
+            Self::DriveSettled => "machine settled",
+            Self::Extreme => "last extreme",
+            Self::AfterExtreme => "requested delay",
+            Self::ContactClosed => "contact closed",
+        }
+    }
 }
 
 /// What may be set about the search for phases; `None` means: derive it from the record.
@@ -103,9 +132,11 @@ pub struct Segment {
     pub after: Option<After>,
     /// For a hold: what is held in it.
     pub mode: Option<HoldMode>,
-    /// For a hold: the sample from which laws are fitted, see [`HoldStart`](crate::segment::HoldStart). It lies before `start` where the force peaked
-    /// while the jaw was still settling.
+    /// For a hold: the sample from which laws are fitted, see [`HoldStart`](crate::segment::HoldStart).
     pub fit_start: usize,
+    /// For a hold: how that sample was chosen.
+    #[serde(default)]
+    pub fit_start_rule: Option<FitStartRule>,
 }
 
 impl Segment {
@@ -146,6 +177,18 @@ pub struct Rupture {
     pub after: f64,
 }
 
+/// Where the labels of a file and a search of its columns disagree.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[non_exhaustive]
+pub struct LabelCheck {
+    /// Labelled holds.
+    pub labelled: usize,
+    /// Those of them that a search does not find.
+    pub missed: usize,
+    /// Holds that a search finds where the file labels none.
+    pub extra: usize,
+}
+
 /// A regular ripple on a column.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[non_exhaustive]
@@ -167,6 +210,9 @@ pub struct Segmentation {
     /// Ripple of a jaw that oscillates about the positions it holds, if any.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub ripple: Option<Ripple>,
+    /// Where holds come from the labels of the file, and a search finds others.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub labels: Option<LabelCheck>,
     /// The thresholds used.
     pub settings: SegmentSettings,
 }

@@ -37,9 +37,14 @@ fn stairs(rate: f64, noise: f64, skew: f64, seed: u64) -> Record {
     let true_times: Vec<f64> = time.iter().map(|t| t - skew).collect();
     let force = simulate_force(&motion, &strip(), &true_times).unwrap();
     let largest = force.iter().fold(0.0f64, |most, f| most.max(f.abs()));
-    let force = force.iter().map(|f| f + noise * largest * random.normal()).collect();
-    let displacement = time.iter().map(|t| motion.displacement_at(*t)).collect();
-    Record::new(time, Some(displacement), force).unwrap()
+    let force: Vec<f64> = force.iter().map(|f| f + noise * largest * random.normal()).collect();
+    let displacement: Vec<f64> = time.iter().map(|t| motion.displacement_at(*t)).collect();
+    Record::from_two_clocks(&time, &displacement, &time, &force).unwrap()
+}
+
+/// The same record with one clock.
+fn of_one_clock(record: &Record) -> Record {
+    Record::new(record.time().to_vec(), record.displacement().map(<[f64]>::to_vec), record.force().to_vec()).unwrap()
 }
 
 fn skew_of(record: &Record) -> Option<ClockSkew> {
@@ -76,7 +81,7 @@ fn a_skew_is_reported_and_removed_when_requested() {
     let record = stairs(200.0, 0.001, 0.035, 1);
     let analysis = analyze(&record, &AnalysisOptions::default()).unwrap();
     assert!(analysis.findings.iter().any(|finding| matches!(finding, Finding::ClocksSkewed { .. })));
-    assert!(analysis.record.corrections().is_empty());
+    assert!(matches!(analysis.record.corrections(), [Correction::ClocksJoined { .. }]));
     for choice in [SkewChoice::Auto, SkewChoice::Given(0.035)] {
         let options = AnalysisOptions {
             corrections: CorrectionOptions {
@@ -86,7 +91,9 @@ fn a_skew_is_reported_and_removed_when_requested() {
             ..AnalysisOptions::default()
         };
         let analysis = analyze(&record, &options).unwrap();
-        let [Correction::SkewRemoved { skew, left_out, .. }] = analysis.record.corrections() else {
+        let [Correction::ClocksJoined { .. }, Correction::SkewRemoved { skew, left_out, .. }] =
+            analysis.record.corrections()
+        else {
             panic!("{:?}", analysis.record.corrections())
         };
         assert!((skew - 0.035).abs() < 3e-3 && *left_out > 0, "{skew}");
@@ -104,25 +111,30 @@ fn a_skew_is_reported_and_removed_when_requested() {
     );
 }
 
-/// What only looked like a skew moved the force of a record with one clock by seconds.
+/// What only looked like a skew moved the force of a record with one clock by seconds, or was a finding.
 #[test]
-fn one_clock_is_not_moved_by_more_than_a_filter_delays() {
-    let record = stairs(50.0, 0.002, 0.6, 3);
-    let with = |skew: SkewChoice| AnalysisOptions {
-        corrections: CorrectionOptions {
-            skew,
-            ..CorrectionOptions::default()
-        },
-        ..AnalysisOptions::default()
-    };
-    let analysis = analyze(&record, &with(SkewChoice::Auto)).unwrap();
-    assert!(analysis.record.corrections().is_empty(), "{:?}", analysis.record.corrections());
-    let stated = |finding: &Finding| matches!(finding, Finding::ClocksOpen { one_clock: true, .. });
-    assert!(analysis.findings.iter().any(stated), "{:?}", analysis.findings);
-    // Who knows it says so.
-    let analysis = analyze(&record, &with(SkewChoice::Given(0.6))).unwrap();
-    assert!(matches!(analysis.record.corrections(), [Correction::SkewRemoved { .. }]));
-    assert!(!analysis.findings.iter().any(stated), "{:?}", analysis.findings);
+fn one_clock_has_no_skew() {
+    for skew in [0.035, 0.6] {
+        let record = of_one_clock(&stairs(200.0, 0.001, skew, 3));
+        let with = |skew: SkewChoice| AnalysisOptions {
+            corrections: CorrectionOptions {
+                skew,
+                ..CorrectionOptions::default()
+            },
+            ..AnalysisOptions::default()
+        };
+        let analysis = analyze(&record, &with(SkewChoice::Auto)).unwrap();
+        assert!(analysis.record.corrections().is_empty(), "{:?}", analysis.record.corrections());
+        let stated = |finding: &Finding| matches!(finding, Finding::ClocksOpen { one_clock: true, .. });
+        assert!(analysis.findings.iter().any(stated), "{:?}", analysis.findings);
+        let analysis = analyze(&record, &with(SkewChoice::Report)).unwrap();
+        let clocks = |finding: &Finding| finding.code().starts_with("clocks");
+        assert!(!analysis.findings.iter().any(clocks) && analysis.skew.is_none(), "{:?}", analysis.findings);
+        // Who knows of a delay says so.
+        let analysis = analyze(&record, &with(SkewChoice::Given(skew))).unwrap();
+        assert!(matches!(analysis.record.corrections(), [Correction::SkewRemoved { .. }]));
+        assert!(!analysis.findings.iter().any(clocks), "{:?}", analysis.findings);
+    }
 }
 
 #[test]
@@ -182,7 +194,7 @@ fn a_record_of_averaged_rows_says_so() {
         rows: 40_000_000,
         averaged: 4,
     };
-    let record = stairs(50.0, 0.001, 0.0, 1).corrected_before([averaged.clone()]);
+    let record = of_one_clock(&stairs(50.0, 0.001, 0.0, 1)).corrected_before([averaged.clone()]);
     assert_eq!(record.corrections(), [averaged]);
     let analysis = analyze(&record, &AnalysisOptions::default()).unwrap();
     let finding = analysis.findings.iter().find(|finding| finding.code() == "rows_averaged").unwrap();

@@ -2,8 +2,8 @@
 #![expect(clippy::unwrap_used, reason = "a test that cannot run has failed")]
 
 use palpate::analysis::{AnalysisOptions, Finding, analyze};
-use palpate::record::Record;
-use palpate::segment::{After, HoldMode, Phase, SegmentError, SegmentOptions, Segmentation, find_phases};
+use palpate::record::{Correction, LabelledSegment, Record};
+use palpate::segment::{After, FitStartRule, HoldMode, Phase, SegmentError, SegmentOptions, Segmentation, find_phases};
 use palpate::test_problems::Rng;
 
 /// A step: to mm, at mm/s, hold s.
@@ -124,15 +124,71 @@ fn a_fast_ramp_is_no_rest() {
     assert!(found.segments[1..].iter().all(|segment| segment.phase != Phase::Rest), "{found:?}");
 }
 
+/// The fit began at the peak of a jaw that swung, before the hold; and seconds before it where a controller fell short.
 #[test]
-fn the_force_may_peak_before_the_jaw_rests() {
-    let (shape, _) = path(&[(10.0, 10.0, 10.0)]);
+fn the_fit_starts_in_the_hold_after_the_swing() {
     let time: Vec<f64> = (0..=1100).map(|i| 0.01 * f64::from(i)).collect();
-    let displacement: Vec<f64> =
-        time.iter().map(|t| 1e-3 * (shape(*t) - 0.05 * (-(t - 1.0).abs() / 0.2).exp())).collect();
-    let force = time.iter().map(|t| if *t < 1.0 { *t } else { 0.5 + 0.5 * (1.0 - t).exp() }).collect();
-    let found = phases(&Record::new(time, Some(displacement), force).unwrap()).unwrap();
-    assert_eq!(found.holds().next().unwrap().fit_start, 100, "{found:?}");
+    let swing = |t: f64| if t < 1.0 { 0.0 } else { 0.3 * (-(t - 1.0) / 0.15).exp() * (40.0 * (t - 1.0)).sin() };
+    let jaw: Vec<f64> = time.iter().map(|t| 1e-3 * (10.0 * t.min(1.0) + swing(*t))).collect();
+    let relaxed = |t: f64| 0.6 + 0.4 * (1.0 + (t - 1.0).max(0.0)).powf(-1.0);
+    let force = time.iter().zip(&jaw).map(|(t, d)| 1e3 * d * relaxed(*t)).collect();
+    let found = phases(&Record::new(time.clone(), Some(jaw), force).unwrap()).unwrap();
+    let hold = found.holds().next().unwrap();
+    assert!(hold.fit_start >= hold.start && time[hold.fit_start] > 1.2 && time[hold.fit_start] < 2.0, "{hold:?}");
+    assert!(matches!(hold.fit_start_rule, Some(FitStartRule::DriveSettled | FitStartRule::Extreme)), "{hold:?}");
+}
+
+/// A crosshead that stood for 150 s and then moved had "no hold, or is at rest from the start".
+#[test]
+fn the_reason_for_no_hold_names_what_is_there() {
+    let moves = record(|t| (t - 150.0).max(0.0), 200.0, 10.0, 1.0, 0.0);
+    let error = phases(&moves).unwrap_err().to_string();
+    assert_eq!(error, "no hold found: 150 s of standstill, then motion to the end");
+    let always = record(|t| t, 20.0, 10.0, 1.0, 0.0);
+    assert_eq!(
+        phases(&always).unwrap_err().to_string(),
+        "no hold found: the jaw moves from the first sample to the last"
+    );
+}
+
+/// Labels of the file go before what is found: extend and retract hold nothing, a pause does.
+#[test]
+fn labels_of_a_file_go_before_what_is_found() {
+    let (shape, _) = path(&[(10.0, 10.0, 5.0), (0.0, 10.0, 5.0)]);
+    let press = record(shape, 12.0, 100.0, 0.3, 0.0);
+    assert_eq!(phases(&press).unwrap().holds().count(), 2);
+    let label = |name, from, to| LabelledSegment::new(name, from, to).unwrap();
+    let none = press.clone().labelled(vec![label("extend", 0.0, 5.9), label("retract", 6.0, 12.0)]);
+    let error = phases(&none).unwrap_err();
+    assert!(matches!(&error, SegmentError::NoneLabelled { names } if names == &["extend", "retract"]), "{error}");
+    let one = press.labelled(vec![label("extend", 0.0, 0.99), label("pause", 1.0, 5.9), label("retract", 6.0, 12.0)]);
+    let found = phases(&one).unwrap();
+    let holds: Vec<_> = found.holds().map(|hold| (hold.start, hold.end)).collect();
+    assert_eq!(holds, [(100, 591)]);
+    let check = found.labels.unwrap();
+    assert_eq!((check.labelled, check.missed, check.extra), (1, 0, 1));
+}
+
+/// A ramp alone has no hold, and a hold alone no loading.
+#[test]
+fn a_ramp_and_its_hold_are_one_test() {
+    let time = |count: u32| (0..count).map(|i| 0.1 * f64::from(i)).collect::<Vec<f64>>();
+    let jaw = time(100).iter().map(|t| 1e-3 * t).collect();
+    let ramp = Record::new(time(100), Some(jaw), time(100)).unwrap();
+    let force = time(600).iter().map(|t| 6.0 + 4.0 * (-t / 15.0).exp()).collect();
+    let hold = Record::new(time(600), Some(vec![9.9e-3; 600]), force).unwrap();
+    assert!(phases(&ramp).is_err());
+    let test = ramp.then(&hold, None).unwrap();
+    assert!((test.time()[100] - 10.0).abs() < 1e-9);
+    let found = phases(&test).unwrap();
+    let kinds: Vec<Phase> = found.segments.iter().map(|segment| segment.phase).collect();
+    assert_eq!(kinds, [Phase::Loading, Phase::Hold]);
+    assert!(found.segments[1].start.abs_diff(100) <= 1, "{found:?}");
+    assert_eq!(found.segments[1].mode, Some(HoldMode::DisplacementHeld));
+    let Some(Correction::Continued { gap, shift, .. }) = test.corrections().last() else {
+        panic!("{test:?}")
+    };
+    assert!((gap - 0.1).abs() < 1e-9 && (shift - 10.0).abs() < 1e-9);
 }
 
 /// A record that begins with its hold was "nothing moves", a creep under a force that never varies "no hold".

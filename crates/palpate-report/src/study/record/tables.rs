@@ -3,7 +3,7 @@
 use palpate::analysis::{Analysis, HoldAnalysis, HoldoutError, JointAnalysis, JointHolds, Signal};
 use palpate::fit::{Domain, ExponentChoice, LatencyFit, ParameterKind, SharedTrend};
 use palpate::record::Correction;
-use palpate::segment::{After, RelaxationType};
+use palpate::segment::{After, FitStartRule, RelaxationType};
 
 use crate::number::significant;
 use crate::result::{ComparedRecord, Input, budgets_of_analysis, mode_word, percent, word};
@@ -48,6 +48,9 @@ pub(super) fn holds(analysis: &Analysis) -> Table {
         .column("From", "start_s", "s", |hold| Cell::Number(hold.start, 5))
         .column("To", "end_s", "s", |hold| Cell::Number(hold.end, 5))
         .column("Fit from", "fit_start_s", "s", |hold| Cell::Number(hold.fit_start, 5))
+        .column("Chosen by", "fit_start_rule", "", |hold| {
+            Cell::text(hold.segment.fit_start_rule.map(FitStartRule::words).unwrap_or_default())
+        })
         .column("Displacement", "displacement_mm", "mm", displacement)
         .column("Force at start", "force_start_n", "N", |hold| Cell::Number(hold.force_start, 4))
         .column("Force at end", "force_end_n", "N", |hold| Cell::Number(hold.force_end, 4))

@@ -10,7 +10,7 @@ use crate::fit::{ExponentChoice, LatencyFit, OrderSelection, Samples, Terminatio
 use crate::forecast::{Comparison, KnownFit, RampChoice, compare_laws_watched};
 use crate::laws::Loading;
 use crate::record::Record;
-use crate::segment::{After, HoldMode, Relaxation, RelaxationType, Segment, classify_relaxation};
+use crate::segment::{After, FitStartRule, HoldMode, Relaxation, RelaxationType, Segment, classify_relaxation};
 use crate::simulate::Separation;
 use crate::statistics::{mean, median, noise};
 use crate::strain::{StrainRates, contact_strain, strain_rates};
@@ -38,7 +38,7 @@ pub struct HoldAnalysis {
     pub start: f64,
     /// Time of its last sample, s.
     pub end: f64,
-    /// Time from which the laws are fitted, s.
+    /// Time from which the laws are fitted, s; [`Segment::fit_start_rule`] says how it was chosen.
     pub fit_start: f64,
     /// Displacement of the jaw (median), m, if recorded.
     pub displacement: Option<f64>,
@@ -120,7 +120,9 @@ pub(in crate::analysis) fn prepare_hold(
 ) -> HoldAnalysis {
     let mut segment = *segment;
     let reopened = specimen.and_then(|_| open_until(record, &segment, options));
-    segment.fit_start = reopened.unwrap_or(segment.fit_start);
+    if let Some(closed) = reopened.filter(|closed| *closed > segment.fit_start) {
+        (segment.fit_start, segment.fit_start_rule) = (closed, Some(FitStartRule::ContactClosed));
+    }
     let range = segment.fit_start..segment.end;
     let force = &record.force()[range];
     let displacement = record.displacement().map(|d| median(&mut d[segment.start..segment.end].to_vec()));

@@ -35,23 +35,22 @@ impl Corrected {
         Some((aligned, signals))
     }
 
-    /// [`Finding::ClocksSkewed`] if the clocks differ and no correction was requested, [`Finding::ClocksOpen`] if it was requested and is
-    /// not determined.
+    /// [`Finding::ClocksSkewed`] if two clocks differ and no correction was requested, [`Finding::ClocksOpen`] if it was requested and is
+    /// not determined, or there is one clock.
     ///
-    /// They differ if the skew exceeds its error and a sample interval: one clock that stamps both columns at the same rows can seem to be
-    /// off by a part of an interval, since the signal between two samples is unknown. The skew is not determined if its error exceeds
-    /// the sample interval, or too few edges appear in both columns.
+    /// They differ if the skew exceeds its error and a sample interval, since the signal between two samples is unknown. The skew
+    /// is not determined if its error exceeds the sample interval, or too few edges appear in both columns.
     #[must_use]
     pub fn skew_finding(&self) -> Option<Finding> {
+        if self.record.clocks() == 1 {
+            return self.skew_requested.then_some(Finding::ClocksOpen {
+                skew: None,
+                one_clock: true,
+            });
+        }
         let skew = self.skew.map(|skew| (skew, skew.interval.max(self.record.sample_interval())));
         let removed = |done: &Correction| matches!(done, Correction::SkewRemoved { .. });
         match skew {
-            Some((skew, interval)) if skew.is_resolved(interval) && is_beyond_one_clock(&self.record, &skew) => {
-                Some(Finding::ClocksOpen {
-                    skew: Some((skew.skew, skew.standard_error)),
-                    one_clock: true,
-                })
-            }
             Some((skew, interval)) if skew.is_resolved(interval) && !self.record.corrections().iter().any(removed) => {
                 Some(Finding::ClocksSkewed {
                     skew: skew.skew,
@@ -97,14 +96,14 @@ pub fn corrected_watched(
     };
     let segmentation = phases(&record, watch)?;
     let skew = match &segmentation {
-        Ok(segmentation) => skew_watched(&record, segmentation, watch)?,
-        Err(_) => None,
+        // What one clock stamps cannot differ in time: a bend of the force is then one of the body.
+        Ok(segmentation) if record.clocks() > 1 => skew_watched(&record, segmentation, watch)?,
+        _ => None,
     };
     let mut next = record;
     let before = next.corrections().len();
     match (requested.skew, skew.filter(ClockSkew::is_observed)) {
         (SkewChoice::Given(given), _) => next = next.without_skew(given, None)?,
-        (SkewChoice::Auto, Some(observed)) if is_beyond_one_clock(&next, &observed) => {}
         (SkewChoice::Auto, Some(observed)) => next = next.without_skew(observed.skew, Some(observed.standard_error))?,
         (SkewChoice::Auto, None) | (SkewChoice::Report, _) => {}
     }
@@ -132,15 +131,6 @@ pub fn corrected_watched(
         skew,
         skew_requested: requested.skew == SkewChoice::Auto,
     })
-}
-
-/// The longest delay, s, that a filter or a driver makes between columns that one clock stamps.
-const ONE_CLOCK: f64 = 0.25;
-
-/// Whether one clock stamps both columns, and they seem to differ by more than any delay in front of it.
-fn is_beyond_one_clock(record: &Record, skew: &ClockSkew) -> bool {
-    let own = |done: &Correction| matches!(done, Correction::ClocksJoined { .. } | Correction::SkewRemoved { .. });
-    !record.corrections().iter().any(own) && skew.is_observed() && skew.skew.abs() > ONE_CLOCK
 }
 
 /// Refuses a first touch that the jaw does not reach.

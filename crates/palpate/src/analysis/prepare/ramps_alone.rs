@@ -45,6 +45,7 @@ pub(super) fn ramps_alone(record: &Record, error: &SegmentError, options: &Analy
                 after: None,
                 mode: None,
                 fit_start: start,
+                fit_start_rule: None,
             }
         })
         .collect();
@@ -65,6 +66,7 @@ pub(super) fn ramps_alone(record: &Record, error: &SegmentError, options: &Analy
         segments,
         ruptures: if let SegmentError::Ruptured(rupture) = error { vec![*rupture] } else { Vec::new() },
         ripple: None,
+        labels: None,
         settings: SegmentSettings {
             from_displacement: record.displacement().is_some(),
             noise,

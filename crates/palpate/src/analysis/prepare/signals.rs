@@ -2,7 +2,7 @@
 
 use crate::analysis::{Corrected, Finding, Prepared};
 use crate::record::{Column, Correction, Record, SignalReport, Values, stray_rows};
-use crate::segment::{ContactChoice, ContactPoint, SegmentOptions, Segmentation, find_phases};
+use crate::segment::{ContactChoice, ContactPoint, HoldMode, SegmentOptions, Segmentation, find_phases};
 use crate::statistics::{median, noise};
 
 /// Levels between the smallest and the largest value below which rounding is worth a word.
@@ -26,7 +26,7 @@ pub(in crate::analysis) fn signal_findings(
     // Of clocks that differ the force goes on while the jaw stands already: that is no saturation.
     let aligned = corrected.aligned(measured.0);
     let aligned = aligned.as_ref().map_or(measured, |(record, signals)| (record, signals));
-    findings.extend(column_findings(aligned, &held(record, segmentation)));
+    findings.extend(column_findings(aligned, segmentation, record));
     findings.extend(rows_astray(&corrected.record));
     findings.extend(corrected.skew_finding());
     if !segmentation.settings.from_displacement {
@@ -35,6 +35,7 @@ pub(in crate::analysis) fn signal_findings(
     if segmentation.is_one_hold() {
         findings.push(Finding::OneHold);
     }
+    findings.extend(segmentation.labels.map(Finding::LabelsDisagree));
     findings.extend(segmentation.ripple.map(Finding::JawHunts));
     findings.extend(segmentation.ruptures.iter().copied().map(Finding::Ruptured));
     findings.extend(suspicious_signs(&corrected.record));
@@ -47,14 +48,17 @@ pub(in crate::analysis) fn signal_findings(
     findings
 }
 
-/// From when to when each hold lasts.
-fn held(record: &Record, segmentation: &Segmentation) -> Vec<(f64, f64)> {
-    let time = record.time();
-    segmentation.holds().map(|hold| (time[hold.start], time[hold.end - 1])).collect()
-}
+/// A hold: from when to when it lasts, and what is held in it.
+type Held = (f64, f64, Option<HoldMode>);
 
-/// Findings on the columns of a record as they are, of which `holds` are the holds in time.
-fn column_findings((record, signals): (&Record, &SignalReport), holds: &[(f64, f64)]) -> Vec<Finding> {
+/// Findings on the columns of a record as they are, of which `segmentation` gives the holds on the times of `cut`.
+fn column_findings(
+    (record, signals): (&Record, &SignalReport),
+    segmentation: &Segmentation,
+    cut: &Record,
+) -> Vec<Finding> {
+    let time = cut.time();
+    let holds: Vec<Held> = segmentation.holds().map(|hold| (time[hold.start], time[hold.end - 1], hold.mode)).collect();
     let mut findings = Vec::new();
     let gaps = signals.stamps.gaps;
     if let Some(from) = gaps.from {
@@ -66,28 +70,33 @@ fn column_findings((record, signals): (&Record, &SignalReport), holds: &[(f64, f
     }
     let displacement = signals.displacement.as_ref().map(|values| (Column::Displacement, values));
     for (column, values) in displacement.into_iter().chain([(Column::Force, &signals.force)]) {
-        findings.extend(clipped(record, column, values, holds));
+        findings.extend(clipped(record, column, values, &holds));
         findings.extend(rounded(column, values));
     }
     findings
 }
 
-fn clipped(record: &Record, column: Column, values: &Values, holds: &[(f64, f64)]) -> Option<Finding> {
+fn clipped(record: &Record, column: Column, values: &Values, holds: &[Held]) -> Option<Finding> {
     let saturation = values.saturation.filter(|saturation| saturation.clipped)?;
     let measured = match column {
         Column::Displacement => record.displacement()?,
         Column::Force => record.force(),
     };
     let time = record.time();
-    let reached = |(from, until): &(f64, f64)| {
+    let at_level = |(from, until, _): &Held| {
         let rows = time.partition_point(|t| t < from)..time.partition_point(|t| t <= until);
-        measured[rows].contains(&saturation.level)
+        measured[rows].iter().filter(|value| **value == saturation.level).count()
     };
+    // A force that the machine holds is commanded.
+    let pressed = holds.iter().filter(|(_, _, mode)| column == Column::Force && *mode == Some(HoldMode::ForceHeld));
+    if pressed.map(at_level).sum::<usize>() >= saturation.rows {
+        return None;
+    }
     Some(Finding::Saturated {
         column,
         level: saturation.level,
         rows: saturation.rows,
-        holds: (1..).zip(holds).filter(|(_, hold)| reached(hold)).map(|(number, _)| number).collect(),
+        holds: (1..).zip(holds).filter(|(_, hold)| at_level(hold) > 0).map(|(number, _)| number).collect(),
     })
 }
 
@@ -112,10 +121,10 @@ pub fn suspicious_signs(record: &Record) -> Vec<Finding> {
         let most = values.iter().fold(0.0, |most: f64, value| most.max((value - start).abs()));
         let first = values.iter().find(|value| (**value - start).abs() >= 0.5 * most)?;
         let fall = start - values.iter().copied().fold(f64::MAX, f64::min);
-        // A force relaxes from the first sample of a record that is one hold.
+        // A force relaxes from the first sample of a record that is one hold, in which nothing else moves.
         let relaxes = || {
             let found = find_phases(record, &SegmentOptions::default());
-            column == "force" && start > 0.0 && found.is_ok_and(|found| found.is_one_hold())
+            (column != "force" || start > 0.0) && found.is_ok_and(|found| found.is_one_hold())
         };
         (*first < start && fall > least && !relaxes()).then(|| Finding::SignSuspicious {
             column: column.to_owned(),

@@ -6,7 +6,7 @@ use super::joint::{JointAnalysis, joint};
 use crate::analysis::{AnalysisOptions, HoldAnalysis};
 use crate::fit::LatencyFit;
 use crate::segment::After;
-use crate::statistics::coverage_factor;
+use crate::statistics::{coverage_factor, range};
 use crate::watch::{Cancelled, Watch};
 
 /// Trend of ln v with the equilibrium strain over the holds after loading (Table I).
@@ -69,13 +69,22 @@ pub(in crate::analysis) fn across(
     let fit = |hold: &HoldAnalysis| {
         common_exponent.and_then(|n| hold.fit_with(n).cloned()).filter(|fit| fit.termination.is_good())
     };
+    // Holds at one level show no trend: between them v has nothing to go with.
+    let levels_differ = levels_differ(holds, displacement_tolerance);
     Ok(Across {
-        trend: trend(holds, fit),
-        joint: joint(holds, common_exponent, options, watch)?,
+        trend: if levels_differ { trend(holds, fit) } else { None },
+        joint: joint(holds, common_exponent, levels_differ, options, watch)?,
         agreements: agreements(holds, fit, displacement_tolerance),
         common_exponent,
         evidence,
     })
+}
+
+/// Whether the jaw held more than one displacement after loading; true where it was not recorded.
+fn levels_differ(holds: &[HoldAnalysis], tolerance: f64) -> bool {
+    let loading = holds.iter().filter(|hold| hold.after == Some(After::Loading));
+    let levels: Option<Vec<f64>> = loading.map(|hold| hold.displacement).collect();
+    levels.is_none_or(|levels| range(&levels) > tolerance)
 }
 
 fn summed_evidence(holds: &[HoldAnalysis], exponents: &[f64]) -> Vec<(f64, f64)> {

@@ -44,6 +44,7 @@ pub struct JointAnalysis {
 pub(super) fn joint(
     holds: &[HoldAnalysis],
     common: Option<f64>,
+    levels_differ: bool,
     options: &AnalysisOptions,
     watch: &mut dyn Watch,
 ) -> Result<Vec<JointAnalysis>, Cancelled> {
@@ -59,7 +60,11 @@ pub(super) fn joint(
     let mut found = Vec::new();
     for (which, holds) in groups.into_iter().flatten().filter(|(_, holds)| holds.len() > 1) {
         for choice in choices.into_iter().flatten() {
-            found.extend(together(which, &holds, choice, options, watch)?);
+            let mut analysis = together(which, &holds, choice, options, watch)?;
+            if let Some(analysis) = analysis.as_mut().filter(|_| !levels_differ && which == JointHolds::Loading) {
+                analysis.comparison.without_trend();
+            }
+            found.extend(analysis);
         }
     }
     Ok(found)

@@ -128,6 +128,13 @@ pub fn compare_joint_watched(
     })
 }
 
+impl JointComparison {
+    /// The same for holds at one level, over which a trend has no meaning.
+    pub(crate) fn without_trend(&mut self) {
+        (self.trend, self.verdict) = (None, TrendVerdict::Undecided);
+    }
+}
+
 fn verdict(trend: Option<&SharedTrend>, p: Option<f64>, level: f64) -> TrendVerdict {
     match trend {
         Some(trend) if trend.most_change() < NEGLIGIBLE => TrendVerdict::Constant,

@@ -19,6 +19,7 @@ impl Record {
             displacement: self.displacement().map(|values| shifted(values, tare.displacement)),
             force: shifted(&self.force, tare.force),
             corrections: self.corrections.clone(),
+            labels: self.labels.clone(),
         };
         if tare.force == 0.0 && (tare.displacement == 0.0 || self.displacement.is_none()) {
             return record;

@@ -7,6 +7,7 @@
 //! | `resample.rs` | other sample times, and values between samples |
 //! | `baseline.rs` | the force without contact |
 //! | `compliance.rs` | what the machine gives way, the deflection of a cantilever |
+//! | `then.rs` | a test that goes on in a second record |
 //! | `air_run.rs` | tare, and the same motion without a body |
 
 mod air_run;
@@ -15,5 +16,6 @@ mod clocks;
 mod compliance;
 mod dropouts;
 mod resample;
+mod then;
 
 pub use compliance::{Compliance, ComplianceError, ComplianceTable};

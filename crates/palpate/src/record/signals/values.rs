@@ -169,7 +169,7 @@ fn saturation(column: Column, values: &[f64], other: Option<&[f64]>) -> Option<S
     let (first_row, longest) = *runs.iter().max_by_key(|(start, length)| (*length, usize::MAX - start))?;
     // A jaw that is held may stand without noise, a force that is measured does not.
     let without_noise = column == Column::Force && noise_vanishes(values, level, longest);
-    let clipped = without_noise || runs.iter().any(|run| goes_on(values, other, *run));
+    let clipped = without_noise || runs.iter().any(|run| goes_on(column, values, other, *run));
     Some(Saturation {
         level,
         rows: runs.iter().map(|(_, length)| length).sum(),
@@ -192,9 +192,10 @@ fn runs(values: &[f64]) -> impl Iterator<Item = (usize, usize)> + '_ {
 
 /// Whether the other column goes on as before where this one begins to stand still: it then stopped measuring.
 ///
-/// A jaw that stops, or a force that is held, stops the other column too, or turns it. Where values are rounded, one that
+/// A jaw that stops, or a force that is held, stops the other column too, or turns it; a force that only goes on to relax has
+/// not been loaded further by a jaw whose encoder ended. Where values are rounded, one that
 /// rises slowly repeats itself as well: the run must be five times as long as the three before it.
-fn goes_on(values: &[f64], other: Option<&[f64]>, (start, length): (usize, usize)) -> bool {
+fn goes_on(column: Column, values: &[f64], other: Option<&[f64]>, (start, length): (usize, usize)) -> bool {
     let Some(other) = other else { return false };
     let mut longest = 1;
     let mut at = start;
@@ -213,6 +214,10 @@ fn goes_on(values: &[f64], other: Option<&[f64]>, (start, length): (usize, usize
     let (low, high) = bounds(other);
     let before = other[start] - other[start - window];
     let after = other[start + window] - other[start];
+    let arrives = values[start] - values[start - window];
+    if column == Column::Displacement && before * arrives <= 0.0 {
+        return false;
+    }
     before.abs() > (0.01 * (high - low)).max(5.0 * noise(other)) && after / before > 0.5
 }
 

@@ -1,73 +1,113 @@
 //! From where in a hold the laws are fitted.
 
+use super::turning::extremes;
 use crate::record::Record;
-use crate::segment::{After, HoldMode, HoldStart, Phase, Segment, SegmentOptions, ramps_before};
-use crate::statistics::noise;
+use crate::segment::{
+    After, CONTROLLER, FitStartRule, HoldMode, HoldStart, Phase, SERVO, Segment, SegmentOptions, ramps_before,
+};
+use crate::statistics::{mean, median, noise, quantum, range};
+
+/// Share of a hold in which a controller settles, at most; what takes longer is part of what the hold shows.
+const EARLY: f64 = 0.1;
+/// Samples that are early in the shortest holds.
+const FEWEST: usize = 12;
+/// Range of a dozen samples of noise, in its standard deviations, which it exceeds once in some ten thousand times.
+const SWINGS: f64 = 6.0;
+/// How far the signal turns back, in standard deviations of its noise, where it turns.
+const TURNS: f64 = 6.0;
+/// The same as a share of the change over the hold: less does not matter to a fit.
+const MATTERS: f64 = 0.01;
 
 /// Sets from where laws are fitted to each hold.
 pub(super) fn place_fits(record: &Record, options: &SegmentOptions, segments: &mut [Segment]) {
-    // A hold of constant force is fitted from where the displacement peaks.
+    // In a hold of constant force the force is what the machine drives, and the displacement answers.
     let exchanged = record.exchanged().and_then(Result::ok);
     for index in 0..segments.len() {
+        if segments[index].phase != Phase::Hold {
+            continue;
+        }
         let answers = exchanged.as_ref().filter(|_| segments[index].mode == Some(HoldMode::ForceHeld));
-        segments[index].fit_start = options.hold_start.sample(answers.unwrap_or(record), segments, index);
+        let wander = if answers.is_some() { CONTROLLER } else { SERVO };
+        let (sample, rule) = options.hold_start.sample(answers.unwrap_or(record), wander, segments, index);
+        (segments[index].fit_start, segments[index].fit_start_rule) = (sample, Some(rule));
     }
 }
 
 impl HoldStart {
-    /// The sample from which to fit segment `index`.
-    fn sample(self, record: &Record, segments: &[Segment], index: usize) -> usize {
+    /// The sample from which to fit segment `index`, and how it was chosen.
+    fn sample(self, record: &Record, wander: f64, segments: &[Segment], index: usize) -> (usize, FitStartRule) {
         let segment = &segments[index];
-        if segment.phase != Phase::Hold {
-            return segment.start;
-        }
         match self {
-            Self::Settled => segment.start,
-            Self::Peak => peak(record, segments, index),
+            Self::Settled => (segment.start, FitStartRule::HoldStart),
+            Self::Peak => peak(record, wander, segments, index),
             Self::AfterPeak(delay) => {
-                let from = record.time()[peak(record, segments, index)] + delay;
+                let from = record.time()[peak(record, wander, segments, index).0] + delay;
                 let sample = record.time().partition_point(|time| *time < from);
-                sample.clamp(segment.start, segment.end - 1)
+                (sample.clamp(segment.start, segment.end - 1), FitStartRule::AfterExtreme)
             }
         }
     }
 }
 
-/// The extreme of the force about the start of a hold, or the start of the hold where there is none.
+/// Where the signal begins to relax: its last extreme early in the hold, from where the drive has settled on.
 ///
-/// It is sought in the first twentieth of the hold (its first 12 samples at least); if the force still runs at the end of
-/// that stretch it is no peak but a trend. A jaw that overshoots, or that stops a moment before it counts as standing
-/// still, leaves the peak before the hold: it counts if it stands out from all that follows by more than noise.
-fn peak(record: &Record, segments: &[Segment], index: usize) -> usize {
+/// A machine that swings, overshoots or falls short at first moves the signal itself; the laws describe what follows.
+fn peak(record: &Record, wander: f64, segments: &[Segment], index: usize) -> (usize, FitStartRule) {
     let segment = &segments[index];
-    let force = record.force();
-    let times = &record.time()[..segment.end];
-    let twentieth = times[segment.start] + 0.05 * (times[segment.end - 1] - times[segment.start]);
-    let until = times.partition_point(|time| *time <= twentieth).max(segment.start + 12).min(segment.end);
-    let sign = if segment.after == Some(After::Unloading) { -1.0 } else { 1.0 };
-    let height = |index: &usize| sign * force[*index];
-    let highest = |from: usize, until: usize| (from..until).max_by(|a, b| height(a).total_cmp(&height(b)));
-    let inside = match highest(segment.start, until) {
-        Some(index) if index + 1 < until => index,
-        _ => segment.start,
+    let early = early(record.time(), segment);
+    let settled = settled(record, wander, segments, index, early);
+    // A row that strays alone is no extreme.
+    let signal = running_median(&record.force()[settled..segment.end]);
+    let signal = signal.as_slice();
+    let (first, last) = (mean(&signal[..signal.len().min(3)]), mean(&signal[signal.len() - signal.len() / 20 - 1..]));
+    let sign = match segment.after {
+        Some(After::Unloading) => -1.0,
+        None if last > first => -1.0,
+        _ => 1.0,
     };
-    let from = settling(record, segments, index);
-    match highest(from, segment.start) {
-        // The first of the stretch is no peak: the force came down to it already.
-        Some(early) if early > from && height(&early) > height(&inside) + 3.0 * noise(&force[from..until]) => early,
-        _ => inside,
+    let measured = &record.force()[settled..segment.end];
+    let turn = (TURNS * noise(measured)).max(1.5 * quantum(measured)).max(MATTERS * range(signal));
+    let turns = extremes(signal, turn);
+    let is_high = |pair: &&[usize]| sign * signal[pair[0]] > sign * signal[pair[1]] && settled + pair[0] < early;
+    match turns.windows(2).rfind(is_high) {
+        Some(&[at, _]) if at > 0 => (settled + at, FitStartRule::Extreme),
+        _ if settled > segment.start => (settled, FitStartRule::DriveSettled),
+        _ => (settled, FitStartRule::HoldStart),
     }
 }
 
-/// From where before a hold its peak may lie: 12 samples, or as long as the jaw has been within a fiftieth of its ramp.
-fn settling(record: &Record, segments: &[Segment], index: usize) -> usize {
-    const FEWEST: usize = 12;
-    let start = segments[index].start;
-    let ramp = ramps_before(segments, index).last().map_or(start, |segment| segment.start);
-    let near = record.displacement().map_or(start, |displacement| {
-        let level = displacement[start];
-        let band = 0.02 * (level - displacement[ramp.saturating_sub(1)]).abs();
-        (ramp..start).rev().take_while(|i| (displacement[*i] - level).abs() <= band).last().unwrap_or(start)
-    });
-    near.min(start.saturating_sub(FEWEST)).max(ramp)
+/// Medians of five neighbours; the two values at either end as they are.
+fn running_median(values: &[f64]) -> Vec<f64> {
+    let mut medians = values.to_vec();
+    for (middle, five) in medians.iter_mut().skip(2).zip(values.windows(5)) {
+        *middle = median(&mut five.to_vec());
+    }
+    medians
+}
+
+/// The sample after the early part of a hold.
+fn early(time: &[f64], segment: &Segment) -> usize {
+    let (from, until) = (time[segment.start], time[segment.end - 1]);
+    let share = time[..segment.end].partition_point(|t| *t <= from + EARLY * (until - from));
+    // Of very few samples most must be left to fit.
+    share.max(segment.start + FEWEST.min(segment.len() / 4)).min(segment.end)
+}
+
+/// The first sample of the hold from which on the drive does not swing: for a while it keeps within its noise, or the share of its way
+/// by which such machines wander.
+fn settled(record: &Record, wander: f64, segments: &[Segment], index: usize, early: usize) -> usize {
+    let segment = &segments[index];
+    let Some(drive) = record.displacement() else {
+        return segment.start;
+    };
+    let hold = &drive[segment.start..segment.end];
+    let ramp = ramps_before(segments, index).last().map_or(segment.start, |ramp| ramp.start);
+    let level = median(&mut hold.to_vec());
+    let way = (level - drive[ramp.saturating_sub(1)]).abs();
+    // Of a force the zero is known: what a controller holds it to is a share of the force.
+    let way = if segment.mode == Some(HoldMode::ForceHeld) { way.min(level.abs()) } else { way };
+    let band = (SWINGS * noise(hold)).max(2.0 * wander * way);
+    let window = FEWEST.max((early - segment.start) / 10).min(hold.len());
+    let swings = |i: &usize| range(&drive[*i..(*i + window).min(segment.end)]) > band;
+    (segment.start..early).find(|i| !swings(i)).unwrap_or(segment.start)
 }

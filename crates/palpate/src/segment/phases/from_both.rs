@@ -1,22 +1,21 @@
 //! Phases of a record with displacement and force: what stands still, and which of the two is held.
 
+use super::nothing_held::Contact;
 use super::ramps::fill_gaps;
 use super::ripple::{of_jaw, without_ripple};
 use super::rupture::ruptures;
+use super::turning::turns;
+use super::whole::begins_in_hold;
 use crate::record::Record;
 use crate::segment::{
-    After, Held, HoldMode, Level, Levels, Phase, Segment, SegmentError, SegmentOptions, SegmentSettings, Segmentation,
-    hear, levels, mode, mode_at_large,
+    After, CONTROLLER, Held, HoldMode, Level, Levels, Phase, SERVO, Segment, SegmentError, SegmentOptions,
+    SegmentSettings, Segmentation, hear, levels, mode, mode_at_large,
 };
 use crate::statistics::{median, range};
 use crate::watch::{Cancelled, Watch};
 
-/// Share of its range by which a jaw wanders about what it holds.
-const SERVO: f64 = 0.002;
 /// How far a jaw wanders that hunts, in heights of its ripple.
 const RIPPLES: f64 = 1.5;
-/// Share of its range by which a force wanders that a controller holds.
-const CONTROLLER: f64 = 0.02;
 
 pub(super) fn phases(
     record: &Record,
@@ -29,9 +28,19 @@ pub(super) fn phases(
     let servo = ripple.map_or(0.0, |ripple| RIPPLES * ripple.height).max(SERVO * range(displacement));
     let held = Held::new(("displacement", "m"), displacement, options.tolerance.unwrap_or(servo), false);
     let found = levels(record.time(), &held, options, watch)?;
-    let pressed = force_held(record, &found, options, watch)?;
-    let together = together(record, &found.levels, &pressed);
+    let contact = Contact::of(record, displacement);
+    let pressed = force_held((record, &contact), &found, options, watch)?;
+    let mut together = together(record, &found.levels, &pressed);
+    // Who sets the shortest hold, or how far it may stray, means what stands that long.
+    let is_set = options.minimum_hold.is_some();
+    together.retain(|level| is_set || is_one_of(level, &pressed) || !contact.is_none(level));
     let mut segments = fill_gaps(&found.values, &together, 2.0 * found.settings.tolerance);
+    if let Some(first) = segments.first_mut()
+        && first.phase == Phase::Rest
+        && begins_in_hold(record, first.end, range(record.force()))
+    {
+        (first.phase, first.mode) = (Phase::Hold, Some(HoldMode::DisplacementHeld));
+    }
     if !segments.iter().any(|segment| segment.phase == Phase::Hold) {
         return Err(found.none());
     }
@@ -41,7 +50,7 @@ pub(super) fn phases(
         }
         hear(watch)?;
         let Segment { start, end, .. } = segments[index];
-        let is_pressed = pressed.iter().any(|level| level.start == start && level.end == end);
+        let is_pressed = is_one_of(&Level::of(displacement, start, end), &pressed);
         segments[index].mode = Some(if is_pressed && mode_at_large(record, start, end) == HoldMode::ForceHeld {
             HoldMode::ForceHeld
         } else {
@@ -60,6 +69,7 @@ pub(super) fn phases(
             segments,
             ruptures,
             ripple,
+            labels: None,
             settings: found.settings,
         }),
     }
@@ -68,26 +78,26 @@ pub(super) fn phases(
 /// Levels of the force over which the displacement creeps; where none is observed, perhaps because its controller hunts, those
 /// of the force less its ripple, with the corners of the jaw.
 fn force_held(
-    record: &Record,
+    (record, contact): (&Record, &Contact<'_>),
     jaw: &Levels,
     options: &SegmentOptions,
     watch: &mut dyn Watch,
 ) -> Result<Vec<Level>, Cancelled> {
-    let found = creeps(record, jaw, options, watch)?;
+    let found = creeps((record, contact), jaw, options, watch)?;
     if !found.is_empty() {
         return Ok(found);
     }
     let Some(calm) = without_ripple(record) else {
         return Ok(found);
     };
-    let mut found = creeps(&calm, jaw, options, watch)?;
+    let mut found = creeps((&calm, contact), jaw, options, watch)?;
     found.retain(|level| mode_at_large(&calm, level.start, level.end) == HoldMode::ForceHeld);
     Ok(found.iter().map(|level| jaw.edges_of(record.time(), level)).collect())
 }
 
 /// Levels of the force over which the displacement creeps.
 fn creeps(
-    record: &Record,
+    (record, contact): (&Record, &Contact<'_>),
     jaw: &Levels,
     options: &SegmentOptions,
     watch: &mut dyn Watch,
@@ -99,14 +109,23 @@ fn creeps(
     };
     let (low, range) = (least(record.force()), range(record.force()));
     // A contact that is open shows no force, and nobody holds that.
-    let open = |level: &Level| level.value.abs().min(level.value - low) <= OPEN * range + 3.0 * found.settings.noise;
+    let open = |level: &Level| {
+        let from_air = contact.air_force().map_or(f64::MAX, |air| (level.value - air).abs());
+        level.value.abs().min(level.value - low).min(from_air) <= OPEN * range + 3.0 * found.settings.noise
+    };
     let (mut pressed, mut likely, mut unseen) = (Vec::new(), Vec::new(), Vec::new());
     // A body that recovers does so ever more slowly, and nowhere stands; a jaw that is clear of it goes at its speed, then stands.
     let recovers = |level: &Level| {
         slows_down(record, level, FIRST_HALF_TO_REST) && !still.iter().any(|still| overlap(still, level))
     };
-    for level in found
+    let settled: Vec<Level> = found
         .levels
+        .iter()
+        .map(|level| settled(record, level, found.settings.noise, found.settings.minimum_samples))
+        .collect();
+    // The top of a wave is slow, too.
+    let smooth = |level: &Level| turns(record.time(), record.force(), *level, ASTRAY * found.settings.noise, 0.5);
+    for level in settled
         .iter()
         .filter(|level| arrives(record, level, &jaw.settings) && (!open(level) || recovers(level)))
     {
@@ -116,6 +135,9 @@ fn creeps(
         match mode_at_large(record, level.start, level.end) {
             _ if turns_back(record, &inside, level) => pressed.push(*level),
             HoldMode::ForceHeld if slows_down(record, level, FIRST_HALF) && rests() => pressed.push(*level),
+            HoldMode::ForceHeld if crawls(record, level, &jaw.settings) && !smooth(level) && rests() => {
+                pressed.push(*level);
+            }
             HoldMode::ForceHeld => likely.push(*level),
             // Of a jaw that went much farther elsewhere this creep is a small part.
             HoldMode::DisplacementHeld
@@ -130,7 +152,7 @@ fn creeps(
     }
     // Of a force that stays from a relaxation on, the part after the jaw stood is held.
     let taken = pressed.clone();
-    for level in found.levels.iter().filter(|level| !taken.iter().any(|other| overlap(other, level))) {
+    for level in settled.iter().filter(|level| !taken.iter().any(|other| overlap(other, level))) {
         hear(watch)?;
         let stood = |still: &&Level| still.start <= level.start && (level.start..level.end).contains(&still.end);
         let Some(start) = still.iter().find(stood).map(|still| still.end) else {
@@ -155,6 +177,23 @@ fn creeps(
     pressed.append(&mut unseen);
     pressed.sort_by_key(|level| level.start);
     Ok(pressed)
+}
+
+/// How far from its level a force is that a controller has not reached yet, in standard deviations of its noise.
+const ASTRAY: f64 = 6.0;
+
+/// A level of the force from where its controller has reached it; as it is where the force is held from its start, or never.
+fn settled(record: &Record, level: &Level, noise: f64, fewest: usize) -> Level {
+    if mode_at_large(record, level.start, level.end) == HoldMode::ForceHeld {
+        return *level;
+    }
+    let force = record.force();
+    let half = level.start.midpoint(level.end);
+    let held = Level::of(force, half, level.end);
+    let astray = |i: &usize| (force[*i] - held.value).abs() > ASTRAY * noise;
+    let start = (level.start..half).rev().find(astray).map_or(level.start, |last| last + 1);
+    let is_held = mode_at_large(record, start, level.end) == HoldMode::ForceHeld && start + fewest <= level.end;
+    if is_held { Level { start, ..held } } else { *level }
 }
 
 /// Share of its range up to which a force may be that of an open contact.
@@ -182,6 +221,22 @@ fn slows_down(record: &Record, level: &Level, share: f64) -> bool {
     let at = |from: usize| median(&mut displacement[from..from + few].to_vec());
     let (first, middle, last) = (at(level.start), at(half.min(level.end - few)), at(level.end - few));
     (middle - first) / (last - first) > share
+}
+
+/// Share of the speed of its ramps, and of its way, at which no machine ramps, but a body creeps.
+const CRAWLS: f64 = 0.1;
+
+/// Its noise makes that way so many standard deviations long, at least.
+const NOISES: f64 = 10.0;
+
+/// Whether the jaw goes so slowly, and so little of the way it came, that the body moves it and not the machine.
+fn crawls(record: &Record, level: &Level, jaw: &SegmentSettings) -> bool {
+    let (time, Some(displacement)) = (record.time(), record.displacement()) else {
+        return false;
+    };
+    let way = (displacement[level.end - 1] - displacement[level.start]).abs();
+    way < CRAWLS * jaw.ramp_speed * (time[level.end - 1] - time[level.start])
+        && way.max(NOISES * jaw.noise) < CRAWLS * range(&displacement[..level.start])
 }
 
 /// How far the jaw comes, in standard deviations of its noise.
@@ -234,8 +289,12 @@ fn turns_back(record: &Record, inside: &[&Level], level: &Level) -> bool {
         return false;
     };
     let slack = (level.end - level.start) / 20;
-    let at_first = still.start.abs_diff(level.start) <= slack;
-    at_first && still.end + 2 * slack < level.end && mode_at_large(record, still.end, level.end) == HoldMode::ForceHeld
+    let is_early = still.start + slack >= level.start && still.end <= level.start.midpoint(level.end);
+    is_early && mode_at_large(record, still.end, level.end) == HoldMode::ForceHeld
+}
+
+fn is_one_of(level: &Level, levels: &[Level]) -> bool {
+    levels.iter().any(|other| (other.start, other.end) == (level.start, level.end))
 }
 
 fn overlap(a: &Level, b: &Level) -> bool {

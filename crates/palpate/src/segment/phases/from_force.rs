@@ -78,6 +78,7 @@ pub(super) fn phases(
         segments,
         ruptures: Vec::new(),
         ripple: None,
+        labels: None,
         settings,
     })
 }

@@ -4,11 +4,12 @@ use serde::{Deserialize, Serialize};
 
 use super::fit_start::place_fits;
 use super::ramps::fill_gaps;
-use super::whole::whole;
+use super::whole::{begins_in_hold, relaxes_throughout, whole};
 use super::{from_both, from_force};
 use crate::record::Record;
 use crate::segment::{
-    Held, HoldMode, Level, Phase, SegmentError, SegmentOptions, SegmentSettings, Segmentation, hear, levels, mode,
+    Held, HoldMode, LabelCheck, Level, Phase, SegmentError, SegmentOptions, SegmentSettings, Segmentation, hear,
+    levels, mode, ramps_before,
 };
 use crate::statistics::{noise_in_time, range};
 use crate::watch::{Cancelled, Unwatched, Watch};
@@ -18,6 +19,7 @@ const NEEDED: usize = 8;
 
 /// Finds the phases of a record: from its displacement and its force, or from its force alone where the displacement is missing.
 ///
+/// Where the file labels its phases ([`Record::labels`]) these are the phases, and [`Segmentation::labels`] says where a search disagrees.
 /// Every hold says what is held in it ([`HoldMode`](crate::segment::HoldMode)). Where the machine holds the force, the hold lasts as long as the force
 /// stays, however far the jaw creeps. A record in which only the force relaxes, or only the jaw creeps, is one hold from its first sample on.
 ///
@@ -34,26 +36,88 @@ fn found(record: &Record, options: &SegmentOptions, watch: &mut dyn Watch) -> Re
             found: record.len(),
         });
     }
+    if !record.labels().is_empty() {
+        return labelled(record, options, watch);
+    }
+    searched_alone(record, options, watch)
+}
+
+/// The phases by the columns alone.
+fn searched_alone(
+    record: &Record,
+    options: &SegmentOptions,
+    watch: &mut dyn Watch,
+) -> Result<Segmentation, SegmentError> {
     let found = match record.displacement() {
         Some(displacement) => from_both::phases(record, displacement, options, watch),
         None => from_force::phases(record.time(), record.force(), options, watch),
     };
-    match found {
-        Ok(mut segmentation) => {
-            hear(watch)?;
-            place_fits(record, options, &mut segmentation.segments);
-            Ok(segmentation)
-        }
-        Err(SegmentError::Cancelled(cancelled)) => Err(cancelled.into()),
-        Err(error) => match whole(record, &error) {
-            Some(mode) => {
-                let (from, to) = (record.time()[0], record.time()[record.len() - 1]);
-                let mode = Some(mode);
-                with_given(record, options, &[GivenHold { from, to, mode }], watch)
-            }
-            None => Err(error),
-        },
+    let mode = match &found {
+        Err(SegmentError::Cancelled(cancelled)) => return Err((*cancelled).into()),
+        Ok(segmentation) if relaxes_throughout(record, segmentation) => Some(HoldMode::DisplacementHeld),
+        Ok(_) => None,
+        Err(error) => whole(record, error),
+    };
+    if let Some(mode) = mode {
+        let (from, to) = (record.time()[0], record.time()[record.len() - 1]);
+        let mode = Some(mode);
+        return with_given(record, options, &[GivenHold { from, to, mode }], watch);
     }
+    let mut segmentation = found?;
+    hear(watch)?;
+    place_fits(record, options, &mut segmentation.segments);
+    Ok(segmentation)
+}
+
+/// The phases that the file labels, and where a search disagrees with them.
+fn labelled(record: &Record, options: &SegmentOptions, watch: &mut dyn Watch) -> Result<Segmentation, SegmentError> {
+    let labels = record.labels();
+    let holds = labels.iter().filter(|label| label.holds);
+    let given: Vec<GivenHold> = holds
+        .map(|label| GivenHold {
+            from: label.from,
+            to: label.to,
+            mode: None,
+        })
+        .collect();
+    let none = || SegmentError::NoneLabelled {
+        names: labels.iter().map(|label| label.name.clone()).collect(),
+    };
+    if given.is_empty() {
+        return Err(none());
+    }
+    let mut segmentation = with_given(record, options, &given, watch)?;
+    let force = range(record.force());
+    // A pause before anything is touched holds nothing.
+    for index in 0..segmentation.segments.len() {
+        let nothing_before = ramps_before(&segmentation.segments, index).next().is_none();
+        let segment = &mut segmentation.segments[index];
+        let is_first = segment.phase == Phase::Hold && segment.start == 0 && nothing_before;
+        if is_first && !begins_in_hold(record, segment.end, force) {
+            (segment.phase, segment.mode, segment.fit_start_rule) = (Phase::Rest, None, None);
+        }
+    }
+    if segmentation.holds().next().is_none() {
+        return Err(none());
+    }
+    let found = SegmentError::unless_cancelled(searched_alone(record, options, watch))?;
+    let found: Vec<(usize, usize)> =
+        found.iter().flat_map(Segmentation::holds).map(|hold| (hold.start, hold.end)).collect();
+    let holds: Vec<(usize, usize)> = segmentation.holds().map(|hold| (hold.start, hold.end)).collect();
+    let check = LabelCheck {
+        labelled: holds.len(),
+        missed: without_partner(&holds, &found),
+        extra: without_partner(&found, &holds),
+    };
+    segmentation.labels = (check.missed + check.extra > 0).then_some(check);
+    Ok(segmentation)
+}
+
+/// How many stretches share less than half of themselves with any of the others.
+fn without_partner(stretches: &[(usize, usize)], others: &[(usize, usize)]) -> usize {
+    let shared = |a: &(usize, usize), b: &(usize, usize)| a.1.min(b.1).saturating_sub(a.0.max(b.0));
+    let alone = |a: &&(usize, usize)| others.iter().all(|b| 2 * shared(a, b) < a.1 - a.0);
+    stretches.iter().filter(alone).count()
 }
 
 /// A hold with limits that are given and not sought.
@@ -145,14 +209,11 @@ fn with_given(
         }
     }
     place_fits(record, options, &mut segments);
-    // Who gives a start means it: no law is fitted to anything before.
-    for segment in segments.iter_mut().filter(|segment| segment.phase == Phase::Hold) {
-        segment.fit_start = segment.fit_start.max(segment.start);
-    }
     Ok(Segmentation {
         segments,
         ruptures: Vec::new(),
         ripple: None,
+        labels: None,
         settings,
     })
 }

@@ -8,6 +8,7 @@
 //! | `from_both.rs` | phases where displacement and force were recorded |
 //! | `from_force.rs` | phases where only the force was |
 //! | `after_peaks.rs` | holds of a force that relaxes slowly all along |
+//! | `nothing_held.rs` | standstills in which no body is held in place |
 //! | `ramps.rs` | what lies between the holds: loading and unloading |
 //! | `rupture.rs` | where the body broke |
 //! | `ripple.rs` | the ripple of a controller that hunts |
@@ -20,6 +21,7 @@ mod fit_start;
 mod from_both;
 mod from_force;
 mod given;
+mod nothing_held;
 mod ramps;
 mod ripple;
 mod rupture;

@@ -22,6 +22,7 @@ pub(super) fn fill_gaps(values: &[f64], levels: &[Level], hysteresis: f64) -> Ve
             after,
             mode: after.map(|_| HoldMode::DisplacementHeld),
             fit_start: level.start,
+            fit_start_rule: None,
         });
         (from, before) = (level.end, Some(level.value));
     }
@@ -45,6 +46,7 @@ fn ramps(values: &[f64], from: usize, until: usize, hysteresis: f64, segments: &
             after: None,
             mode: None,
             fit_start: start,
+            fit_start_rule: None,
         });
     };
     for i in from..until {

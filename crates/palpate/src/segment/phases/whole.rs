@@ -1,7 +1,8 @@
 //! A record that is one hold from its first sample to its last.
 
+use super::turning::extremes;
 use crate::record::Record;
-use crate::segment::{HoldMode, RelaxationType, SegmentError, classify_relaxation};
+use crate::segment::{HoldMode, RelaxationType, SegmentError, Segmentation, classify_relaxation};
 use crate::statistics::{mean, median, noise, range};
 
 /// Share of itself by which a force may vary that is held throughout.
@@ -22,16 +23,71 @@ pub(super) fn whole(record: &Record, error: &SegmentError) -> Option<HoldMode> {
         (Some(displacement), _) if is_steady(force) && slows(time, displacement, FIRST_HALF) => {
             Some(HoldMode::ForceHeld)
         }
+        (Some(_), SegmentError::NoHold { .. }) if shows_few_steps(record) && falls_to_a_rest(time, force) => {
+            Some(HoldMode::DisplacementHeld)
+        }
         (None, SegmentError::NoHold { .. }) if falls_to_a_rest(time, force) => Some(HoldMode::DisplacementHeld),
         _ => None,
     }
 }
+
+/// How many times faster a force may change while the jaw seems to move than just before and after, if it does not answer.
+const ANSWERS: f64 = 2.0;
+/// Share of a relaxation by which its force may turn back.
+const TURNS: f64 = 0.05;
+/// Share of the force's range by which a record that begins with its hold relaxes in it, at least.
+const BEGINS: f64 = 0.1;
+
+/// Whether the force of a record is one relaxation from its first sample to its last, and does not answer to what the jaw seems to do:
+/// that is noise of its encoder.
+pub(super) fn relaxes_throughout(record: &Record, found: &Segmentation) -> bool {
+    let force = record.force();
+    let last = force.len() - 1;
+    let change = |from: usize, until: usize| (force[until.min(last)] - force[from]).abs();
+    let (mut while_moving, mut beside) = (0.0, 0.0);
+    for ramp in found.segments.iter().filter(|segment| segment.is_ramp() && segment.start > 0) {
+        let length = ramp.end - ramp.start;
+        while_moving += change(ramp.start, ramp.end) / length as f64;
+        let near =
+            change(ramp.start.saturating_sub(length), ramp.start).max(change(ramp.end.min(last), ramp.end + length));
+        beside += near.max(noise(force)) / length as f64;
+    }
+    let turn = (10.0 * noise(force)).max(TURNS * range(force));
+    record.displacement().is_some()
+        && found.holds().next().is_some()
+        && (while_moving <= ANSWERS * beside || shows_few_steps(record))
+        && !extremes(force, turn).iter().any(|at| (force.len() / 20 + 1..last).contains(at))
+        && falls_to_a_rest(record.time(), force)
+}
+
+/// Most values that the encoder of a crosshead shows that stands, and trembles between two of its steps.
+const FEW_STEPS: usize = 6;
+
+/// Whether the displacement takes no more than a few values.
+fn shows_few_steps(record: &Record) -> bool {
+    let mut values: Vec<f64> = record.displacement().unwrap_or_default().to_vec();
+    values.sort_unstable_by(f64::total_cmp);
+    values.dedup();
+    values.len() <= FEW_STEPS
+}
+
+/// Whether the force of a record that stands still up to sample `end` relaxes there as in a hold whose ramp was not recorded.
+pub(super) fn begins_in_hold(record: &Record, end: usize, force_range: f64) -> bool {
+    let (time, force) = (&record.time()[..end], &record.force()[..end]);
+    end >= FEWEST && range(force) > BEGINS * force_range && falls_to_a_rest(time, force)
+}
+
+/// Fewest samples of a hold that begins a record.
+const FEWEST: usize = 20;
 
 /// Whether a force is pressed throughout, and stays.
 fn is_steady(force: &[f64]) -> bool {
     let level = median(&mut force.to_vec()).abs();
     level > 0.0 && range(force) <= STEADY * level
 }
+
+/// Change over a hold, in standard deviations of the noise, from which on it shows that it slows down.
+const SHOWS: f64 = 6.0;
 
 /// Whether values go one way, ever more slowly, by more than their noise.
 fn slows(time: &[f64], values: &[f64], first_half: f64) -> bool {
@@ -44,7 +100,8 @@ fn slows(time: &[f64], values: &[f64], first_half: f64) -> bool {
     let (first, last) = (mean(&values[..3]), mean(&values[values.len() - part..]));
     let (whole, half) = (last - first, mean(middle) - first);
     let turns = range(values) > 1.2 * whole.abs() + 10.0 * noise(values);
-    found.kind != RelaxationType::None && !turns && half / whole > first_half
+    let shows = whole.abs() > SHOWS * noise(values);
+    found.kind != RelaxationType::None && shows && !turns && half / whole > first_half
 }
 
 /// Whether a force falls from its first samples on, ever more slowly, and not to nothing.

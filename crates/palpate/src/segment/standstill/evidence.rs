@@ -16,6 +16,8 @@ pub(super) struct Stillness {
     pub(super) drift: f64,
     /// How far the column would have gone on, at least, on its faster and on its slower side.
     pub(super) goes_on: [f64; 2],
+    /// Whether a level may be reached without a corner, as a controller reaches it.
+    pub(super) smooth: bool,
     /// Fewest samples.
     pub(super) samples: usize,
     /// Shortest duration, where one is requested; then `goes_on` does not count.

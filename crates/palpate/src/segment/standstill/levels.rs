@@ -8,6 +8,7 @@
 use super::edges::sharpened;
 use super::evidence::Stillness;
 use super::pieces::{Piece, Roughness, pieces};
+use super::ripples::without_ripples;
 use super::standstills::{Refused, Standstill, joined, standstills};
 use crate::segment::{SegmentError, SegmentOptions, SegmentSettings, hear};
 use crate::statistics::{median, noise_in_time, quantum, range};
@@ -62,6 +63,8 @@ pub(in crate::segment) struct Levels {
     pub(in crate::segment) levels: Vec<Level>,
     pub(in crate::segment) settings: SegmentSettings,
     refused: Refused,
+    /// How long the record stands still before anything moves, s.
+    rest: f64,
     pieces: Vec<Piece>,
     /// How near to a level its samples are where a ramp has no line.
     near: f64,
@@ -87,6 +90,7 @@ impl Levels {
     /// Why there is no hold.
     pub(in crate::segment) fn none(&self) -> SegmentError {
         SegmentError::NoHold {
+            rest: self.rest,
             longest: self.refused.duration,
             samples: self.refused.samples,
             minimum_hold: self.settings.minimum_hold,
@@ -134,6 +138,7 @@ pub(in crate::segment) fn levels(
         share: options.still_below.unwrap_or(STILL_BELOW),
         drift: DRIFT * range,
         goes_on: [0, 1].map(|side| (GOES_ON[side] * noise).max(GOES_ON_TOLERANCES[side] * held.wander)),
+        smooth: held.hunts,
         samples: if options.minimum_hold.is_some() { 3 } else { MINIMUM_SAMPLES },
         duration: options.minimum_hold,
     };
@@ -145,6 +150,8 @@ pub(in crate::segment) fn levels(
     let mut found = joined(&values, &found, &stillness);
     // What is left of a standstill between its ramps may be too little for one.
     found.retain(|found| found.end - found.start >= stillness.samples);
+    // A force that relaxes bends everywhere.
+    let found = if held.name.0 == "displacement" { without_ripples(&values, noise, &found) } else { found };
     let ramp_speed = ramp_speed(time, &pieces, &found);
     let settings = SegmentSettings {
         from_displacement: true,
@@ -156,12 +163,14 @@ pub(in crate::segment) fn levels(
         minimum_hold: options.minimum_hold.unwrap_or(stillness.goes_on[0] / ramp_speed),
         minimum_samples: stillness.samples,
     };
+    let rest = found.first().filter(|first| first.start == 0).map_or(0.0, |first| time[first.end - 1] - time[0]);
     let levels = found.iter().map(|found| Level::of(&values, found.start, found.end)).collect();
     Ok(Levels {
         values,
         levels,
         settings,
         refused,
+        rest,
         pieces,
         near,
     })

@@ -10,6 +10,7 @@
 //! | `standstills.rs` | which parts of the polygon are standstills |
 //! | `evidence.rs` | what counts as standing still, and what speaks for it |
 //! | `smooth.rs` | a standstill has corners, a turning point has none |
+//! | `ripples.rs` | standstills that are waves of a ripple on a ramp |
 //! | `edges.rs` | where exactly a standstill begins and ends |
 
 mod edges;
@@ -17,6 +18,7 @@ mod evidence;
 mod levels;
 mod moves;
 mod pieces;
+mod ripples;
 mod smooth;
 mod standstills;
 

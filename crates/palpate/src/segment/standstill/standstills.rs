@@ -81,7 +81,8 @@ pub(super) fn standstills(
     }
     let observed = together(&found);
     found.retain(|(first, last, gain)| {
-        let stands = *gain >= OBSERVED || (observed && *gain > -LEAST);
+        let stands = *gain >= OBSERVED
+            || ((observed || (stillness.smooth && moves[*last].end - moves[*first].start >= LONG)) && *gain > -LEAST);
         if !stands {
             refused.note(&moves, *first, *last);
         }
@@ -125,6 +126,9 @@ pub(super) fn joined(values: &[f64], found: &[Standstill], stillness: &Stillness
     }
     joined
 }
+
+/// Samples of a level that a controller reached without a corner; of fewer the corners must tell.
+const LONG: usize = 100;
 
 /// A standstill among others may do without, if its corners are not worse by this.
 const LEAST: f64 = 6.0;

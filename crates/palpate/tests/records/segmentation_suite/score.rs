@@ -106,7 +106,7 @@ fn score(time: &[f64], holds: &[TrueHold], found: &[Segment]) -> Score {
             continue;
         };
         score.found += 1;
-        score.turned += usize::from(segment.after != Some(hold.after));
+        score.turned += usize::from(segment.after.is_some_and(|after| after != hold.after));
         for (index, (at, truth)) in [(segment.start, start), (segment.end, end)].into_iter().enumerate() {
             let error = at as f64 - truth as f64;
             if hold.limits[index] <= SHARP {

@@ -49,6 +49,14 @@ pub enum Kind {
     Still,
     /// No hold: slower and slower, but never still.
     Creeping,
+    /// One hold of a crosshead whose encoder is noisy.
+    NoisyCrosshead,
+    /// A jaw that swings as it arrives.
+    Chatter,
+    /// Ramps that vibrate.
+    Ripple,
+    /// No hold: approach and retraction of an AFM.
+    AfmCurve,
 }
 
 impl Kind {
@@ -68,6 +76,10 @@ impl Kind {
             Self::Ramps => "none: ramps",
             Self::Still => "none: noise",
             Self::Creeping => "none: creep",
+            Self::NoisyCrosshead => "noisy crosshead, one hold",
+            Self::Chatter => "jaw swings as it arrives",
+            Self::Ripple => "ramps that ripple",
+            Self::AfmCurve => "none: AFM approach and retraction",
         }
     }
 }

@@ -1,0 +1,67 @@
+//! Standstills that are waves of a ripple on a ramp.
+
+use super::standstills::Standstill;
+use crate::statistics::median;
+
+/// Samples of ramp on one side, in lengths of the standstill, that show how the column ripples; and most that are looked at.
+const BESIDE: [usize; 2] = [4, 16];
+/// How many times more a standstill bends the column than it bends all along.
+const STANDS_OUT: f64 = 2.5;
+/// A median of magnitudes as a standard deviation.
+const DEVIATION: f64 = 1.482_6;
+/// How many times more than white noise a ripple bends a column: what bends it less is judged as noise, with the corners.
+const RIPPLES: f64 = 12.0;
+/// Standstills without those that are waves of a ripple on a ramp.
+///
+/// A standstill of L samples in a ramp changes the difference of the ways of L samples before and after its corners by all the way
+/// that it lacks; in a ramp that ripples such differences are found everywhere. Differences of white noise of deviation `noise` are √6
+/// of it. A ramp that stands still in every wave looks like stairs, and is read as such.
+pub(super) fn without_ripples(values: &[f64], noise: f64, found: &[Standstill]) -> Vec<Standstill> {
+    let stands = |index: &usize| stands_out(values, noise, found, *index);
+    (0..found.len()).filter(stands).map(|index| found[index]).collect()
+}
+
+/// Whether a standstill bends the column by more than the ramps beside it bend.
+fn stands_out(values: &[f64], noise: f64, found: &[Standstill], index: usize) -> bool {
+    let Standstill { start, end } = found[index];
+    let length = end - start;
+    let before = index.checked_sub(1).map_or(0, |before| found[before].end);
+    let after = found.get(index + 1).map_or(values.len(), |after| after.start);
+    let far = BESIDE[1] * length;
+    let sides = [before.max(start.saturating_sub(far))..start, end..after.min(end + far)];
+    let mut usual: Vec<f64> = sides
+        .iter()
+        .filter(|side| side.len() >= BESIDE[0] * length)
+        .flat_map(|side| side.start + length..side.end - length)
+        .map(|at| bend(values, at, length))
+        .collect();
+    let usual = if usual.is_empty() { 0.0 } else { DEVIATION * median(&mut usual) };
+    let inside = length..values.len().saturating_sub(length);
+    let corner = |at: usize| if inside.contains(&at) { bend(values, at, length) } else { f64::MAX };
+    usual <= RIPPLES * 6f64.sqrt() * noise || corner(start).max(corner(end - 1)) > STANDS_OUT * usual
+}
+
+/// Difference of the ways of `length` samples after and before a sample.
+fn bend(values: &[f64], at: usize, length: usize) -> f64 {
+    (values[at + length] - 2.0 * values[at] + values[at - length]).abs()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A ramp that vibrates stood still for 8 ms in every wave.
+    #[test]
+    fn waves_of_a_ramp_are_no_standstills() {
+        let wave = |i: u32| 0.06 * f64::from(i) + 0.2 * (f64::from(i) * std::f64::consts::TAU / 15.0).sin();
+        let mut values: Vec<f64> = (0..600).map(wave).collect();
+        let still = |start: usize| Standstill { start, end: start + 8 };
+        assert!(without_ripples(&values, 0.001, &[still(300)]).is_empty());
+        // A true standstill of 40 samples stays.
+        let last = values[599];
+        values.extend([last; 40]);
+        values.extend((0..600).map(|i| last + wave(i)));
+        let hold = Standstill { start: 600, end: 640 };
+        assert_eq!(without_ripples(&values, 0.001, &[hold]).len(), 1);
+    }
+}
