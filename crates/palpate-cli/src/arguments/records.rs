@@ -38,7 +38,7 @@ impl DescribedArguments {
     /// [`JobError`] where it cannot be read, or is none of a test.
     pub(crate) fn read(&self) -> Result<Described, JobError> {
         let described = Described::read(self.test.as_deref(), self.part.as_deref())?;
-        Ok(described.with_columns(self.columns.as_ref()).with_then(self.then.as_deref()))
+        Ok(described.with_columns(self.columns.as_ref()).with_then(self.then.clone()))
     }
 }
 

@@ -56,8 +56,8 @@ impl Described {
 
     /// The same of a test that goes on in a second file: its ramp in one, its hold in the other.
     #[must_use]
-    pub fn with_then(mut self, then: Option<&Path>) -> Self {
-        self.then = then.map(Path::to_owned);
+    pub fn with_then(mut self, then: Option<PathBuf>) -> Self {
+        self.then = then;
         self
     }
 

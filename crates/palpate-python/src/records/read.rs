@@ -55,7 +55,7 @@ pub(crate) fn read(
     columns: Given<'_, '_>,
     then: Option<PathBuf>,
 ) -> PyResult<Record> {
-    let described = described_with(test, part, columns)?.with_then(then.as_deref());
+    let described = described_with(test, part, columns)?.with_then(then);
     Ok(read_parts(py, record_file(path, name)?, &described, true)?.remove(0))
 }
 
