@@ -81,11 +81,13 @@ impl<'a> Contact<'a> {
             && classify_relaxation(force).kind == RelaxationType::None
     }
 
-    /// The force goes up and down again, or down and up, by more than half of all that it does: the machine moves.
+    /// The force goes up and down again, or down and up, by more than half of all that it does, and turns well inside: the machine
+    /// moves. Where a ramp ends in a hold it turns at the edge.
     fn turns(&self, level: &Level) -> bool {
         let force = &self.force[level.start..level.end];
         let (first, last) = (force[0], force[force.len() - 1]);
-        let (low, high) = bounds(force);
+        let edge = force.len() / 4;
+        let (low, high) = bounds(&force[edge..force.len() - edge]);
         let (up, down) = (high - first.max(last), first.min(last) - low);
         up.max(down) > TURNS * self.force_range
     }
@@ -115,7 +117,8 @@ fn air(displacement: &[f64], force: &[f64]) -> Option<(f64, f64)> {
     let leaves = TOUCHED * range(force) + 5.0 * noise(force);
     let touch = force.iter().position(|value| (value - start).abs() > leaves)?;
     let before = touch / 2;
-    let open = median(&mut displacement[..displacement.len().min(FEWEST)].to_vec());
+    // The jaw may move from the first row on.
+    let (open, _) = bounds(&displacement[..displacement.len().min(FEWEST)]);
     let open = open + (SERVO * range(displacement)).max(3.0 * noise(displacement));
     (before >= FEWEST).then(|| (median(&mut force[..before].to_vec()), open))
 }
