@@ -16,7 +16,7 @@ use serde::Serialize;
 use crate::{
     error::{FileError, FileProblem},
     formats::{
-        afm::{self, igor, jpk_force, jpk_text, tab},
+        afm::{igor, jpk_force, jpk_text, tab},
         arrays::{hdf5, matlab},
         arrow::{self, Kind},
         robot_log,
@@ -76,7 +76,7 @@ const KNOWN: &[Known] = &[
     (Format::ArrowIpc, |input| arrow::recognise(input).is_some(), arrow::look_into),
     (Format::Matlab, matlab::recognise, matlab::look_into),
     #[cfg(feature = "hdf5")]
-    (Format::AfmHdf5, afm::h5::recognise, afm::h5::look_into),
+    (Format::AfmHdf5, crate::formats::afm::h5::recognise, crate::formats::afm::h5::look_into),
     (Format::Hdf5, hdf5::recognise, hdf5::look_into),
     (Format::JpkText, jpk_text::recognise, jpk_text::look_into),
     (Format::AfmTab, tab::recognise, tab::look_into),

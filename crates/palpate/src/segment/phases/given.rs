@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use super::fit_start::place_fits;
 use super::ramps::fill_gaps;
-use super::whole::{begins_in_hold, relaxes_throughout, whole};
+use super::whole::{begins_in_hold, relaxes_throughout, stated, whole};
 use super::{from_both, from_force};
 use crate::record::Record;
 use crate::segment::{
@@ -48,6 +48,14 @@ fn searched_alone(
     options: &SegmentOptions,
     watch: &mut dyn Watch,
 ) -> Result<Segmentation, SegmentError> {
+    let throughout = |mode: HoldMode, watch: &mut dyn Watch| {
+        let (from, to) = (record.time()[0], record.time()[record.len() - 1]);
+        let mode = Some(mode);
+        with_given(record, options, &[GivenHold { from, to, mode }], watch)
+    };
+    if let Some(mode) = stated(record) {
+        return throughout(mode, watch);
+    }
     let found = match record.displacement() {
         Some(displacement) => from_both::phases(record, displacement, options, watch),
         None => from_force::phases(record.time(), record.force(), options, watch),
@@ -59,9 +67,7 @@ fn searched_alone(
         Err(error) => whole(record, error),
     };
     if let Some(mode) = mode {
-        let (from, to) = (record.time()[0], record.time()[record.len() - 1]);
-        let mode = Some(mode);
-        return with_given(record, options, &[GivenHold { from, to, mode }], watch);
+        return throughout(mode, watch);
     }
     let mut segmentation = found?;
     hear(watch)?;

@@ -1,7 +1,7 @@
 //! A record that is one hold from its first sample to its last.
 
 use super::turning::extremes;
-use crate::record::Record;
+use crate::record::{Correction, Record, SourceQuantity};
 use crate::segment::{HoldMode, RelaxationType, SegmentError, Segmentation, classify_relaxation};
 use crate::statistics::{mean, median, noise, range};
 
@@ -13,6 +13,43 @@ const FIRST_HALF: f64 = 0.6;
 const FIRST_HALF_ALONE: f64 = 0.7;
 /// Share of the largest force that is left at the end of a relaxation, at least.
 const LEFT: f64 = 0.1;
+
+/// What is held in a record whose quantities say that it is one hold: a relaxation modulus is a force at a strain that stays, a creep
+/// compliance a displacement at a stress that stays. So is a force of one value throughout, or one that is not given, while the
+/// displacement goes one way.
+pub(super) fn stated(record: &Record) -> Option<HoldMode> {
+    let gives = |wanted: SourceQuantity| {
+        let is_wanted = |done: &Correction| matches!(done, Correction::ReadAs { quantity, .. } if *quantity == wanted);
+        record.corrections().iter().any(is_wanted)
+    };
+    let force = record.force();
+    let is_constant = || force[0] != 0.0 && range(force) == 0.0;
+    match record.displacement() {
+        None if gives(SourceQuantity::Modulus) => Some(HoldMode::DisplacementHeld),
+        Some(_) if gives(SourceQuantity::Compliance) => Some(HoldMode::ForceHeld),
+        Some(displacement) if gives(SourceQuantity::CreepStrain) && goes_one_way(displacement) => {
+            Some(HoldMode::ForceHeld)
+        }
+        // A machine that moves in air goes straight.
+        Some(displacement)
+            if is_constant() && goes_one_way(displacement) && slows(record.time(), displacement, STRAIGHT) =>
+        {
+            Some(HoldMode::ForceHeld)
+        }
+        _ => None,
+    }
+}
+
+/// Share of its way that a body under a constant force has gone in half of the time, at least: one that flows goes on all but straight.
+const STRAIGHT: f64 = 0.51;
+
+/// Whether values go from their first to their last by more than their noise, and do not turn back.
+fn goes_one_way(values: &[f64]) -> bool {
+    let (last, noise) = (values.len() - 1, noise(values));
+    let turn = (10.0 * noise).max(TURNS * range(values));
+    (values[last] - values[0]).abs() > SHOWS * noise
+        && !extremes(values, turn).iter().any(|at| (values.len() / 20 + 1..last).contains(at))
+}
 
 /// What is held in a record that is one hold, where a search that ended in `error` missed it since nothing comes before: the jaw stands while the force
 /// relaxes, the force stays while the jaw creeps, or a force without a displacement falls ever more slowly.
@@ -111,4 +148,47 @@ fn falls_to_a_rest(time: &[f64], force: &[f64]) -> bool {
     let last = mean(&force[force.len() - force.len() / 20 - 1..]);
     let falls = classify_relaxation(force).kind == RelaxationType::TypeI;
     falls && peak <= force.len() / 20 && last > LEFT * largest && slows(time, force, FIRST_HALF_ALONE)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::segment::{Phase, SegmentOptions, find_phases};
+
+    /// The one hold of a record, if it is one throughout.
+    fn held(record: &Record) -> Option<HoldMode> {
+        let found = find_phases(record, &SegmentOptions::default()).unwrap();
+        match &found.segments[..] {
+            [only] if only.phase == Phase::Hold => only.mode,
+            _ => None,
+        }
+    }
+
+    fn read_as(quantity: SourceQuantity) -> [Correction; 1] {
+        [Correction::ReadAs { quantity, factor: 1.0 }]
+    }
+
+    /// A melt that flows at a constant stress was "no hold: the jaw drifts", its recovery a relaxation.
+    #[test]
+    fn creep_at_exactly_constant_force_is_a_hold_of_the_force() {
+        let time: Vec<f64> = (0..200).map(|i| 0.01 * 1.05f64.powi(i)).collect();
+        let flow: Vec<f64> = time.iter().map(|t| 0.02 * t + 1.0 - (-t).exp()).collect();
+        let record = |displacement: Vec<f64>| Record::new(time.clone(), Some(displacement), vec![10.0; 200]).unwrap();
+        assert_eq!(held(&record(flow.clone())), Some(HoldMode::ForceHeld));
+        // There and back is no creep.
+        let back = flow.iter().map(|d| if *d < 2.0 { *d } else { 4.0 - d }).collect();
+        assert_eq!(stated(&record(back)), None);
+    }
+
+    /// G(t) at many samples was "the jaw drifts or reverses without a stop", J(t) a standstill too short.
+    #[test]
+    fn a_modulus_and_a_compliance_are_holds_by_what_they_are() {
+        let time: Vec<f64> = (0..1800).map(|i| 0.2 + f64::from(i)).collect();
+        let modulus: Vec<f64> = time.iter().map(|t| 1.43e5 * (1.0 + t).powf(-0.6)).collect();
+        let compliance: Vec<f64> = time.iter().map(|t| 1.0 / (1.43e5 * (1.0 + t).powf(-0.6))).collect();
+        let relaxes = Record::new(time.clone(), None, modulus).unwrap();
+        assert_eq!(held(&relaxes.corrected_before(read_as(SourceQuantity::Modulus))), Some(HoldMode::DisplacementHeld));
+        let creeps = Record::new(time, Some(compliance), vec![1.0; 1800]).unwrap();
+        assert_eq!(held(&creeps.corrected_before(read_as(SourceQuantity::Compliance))), Some(HoldMode::ForceHeld));
+    }
 }
