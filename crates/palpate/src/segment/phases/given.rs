@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use super::fit_start::place_fits;
 use super::ramps::fill_gaps;
-use super::whole::{begins_in_hold, relaxes_throughout, stated, whole};
+use super::whole::{begins_in_hold, creeps_throughout, relaxes_throughout, stated, whole};
 use super::{from_both, from_force};
 use crate::record::Record;
 use crate::segment::{
@@ -62,6 +62,7 @@ fn searched_alone(
     };
     let mode = match &found {
         Err(SegmentError::Cancelled(cancelled)) => return Err((*cancelled).into()),
+        found if creeps_throughout(record, found.as_ref().ok()) => Some(HoldMode::ForceHeld),
         Ok(segmentation) if relaxes_throughout(record, segmentation) => Some(HoldMode::DisplacementHeld),
         Ok(_) => None,
         Err(error) => whole(record, error),

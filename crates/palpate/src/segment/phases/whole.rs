@@ -15,33 +15,49 @@ const FIRST_HALF_ALONE: f64 = 0.7;
 const LEFT: f64 = 0.1;
 
 /// What is held in a record whose quantities say that it is one hold: a relaxation modulus is a force at a strain that stays, a creep
-/// compliance a displacement at a stress that stays. So is a force of one value throughout, or one that is not given, while the
-/// displacement goes one way.
+/// compliance a displacement at a stress that stays, and so is the strain of a creep that goes one way.
 pub(super) fn stated(record: &Record) -> Option<HoldMode> {
     let gives = |wanted: SourceQuantity| {
         let is_wanted = |done: &Correction| matches!(done, Correction::ReadAs { quantity, .. } if *quantity == wanted);
         record.corrections().iter().any(is_wanted)
     };
-    let force = record.force();
-    let is_constant = || force[0] != 0.0 && range(force) == 0.0;
     match record.displacement() {
         None if gives(SourceQuantity::Modulus) => Some(HoldMode::DisplacementHeld),
         Some(_) if gives(SourceQuantity::Compliance) => Some(HoldMode::ForceHeld),
         Some(displacement) if gives(SourceQuantity::CreepStrain) && goes_one_way(displacement) => {
             Some(HoldMode::ForceHeld)
         }
-        // A machine that moves in air goes straight.
-        Some(displacement)
-            if is_constant() && goes_one_way(displacement) && slows(record.time(), displacement, STRAIGHT) =>
-        {
-            Some(HoldMode::ForceHeld)
-        }
         _ => None,
     }
 }
 
-/// Share of its way that a body under a constant force has gone in half of the time, at least: one that flows goes on all but straight.
-const STRAIGHT: f64 = 0.51;
+/// Fewest samples that show whether a motion is straight.
+const FEWEST_MOVING: usize = 8;
+
+/// Whether a body creeps in the whole of a record under a force of exactly one value. A machine that moves in air goes straight up to where
+/// it stands.
+pub(super) fn creeps_throughout(record: &Record, found: Option<&Segmentation>) -> bool {
+    let (time, force, displacement) = (record.time(), record.force(), record.displacement().unwrap_or_default());
+    let hold = found.and_then(|found| found.holds().next());
+    let moving = hold.map_or(time.len(), |hold| hold.start).min(displacement.len());
+    let is_constant = force[0] != 0.0 && range(force) == 0.0;
+    is_constant
+        && moving >= FEWEST_MOVING
+        && goes_one_way(displacement)
+        && bends(&time[..moving], &displacement[..moving])
+}
+
+/// Share of its way by which a creep is ahead of a straight line on the mean, at least: one that flows goes on all but straight.
+const AHEAD: f64 = 0.02;
+
+/// Whether values are ahead of the straight line from their first to their last.
+fn bends(time: &[f64], values: &[f64]) -> bool {
+    let last = values.len() - 1;
+    let whole = values[last] - values[0];
+    let ahead = |(t, value): (&f64, &f64)| (value - values[0]) / whole - (t - time[0]) / (time[last] - time[0]);
+    let all: Vec<f64> = time.iter().zip(values).map(ahead).collect();
+    mean(&all) > AHEAD + 3.0 * noise(values) / whole.abs()
+}
 
 /// Whether values go from their first to their last by more than their noise, and do not turn back.
 fn goes_one_way(values: &[f64]) -> bool {
@@ -175,9 +191,15 @@ mod tests {
         let flow: Vec<f64> = time.iter().map(|t| 0.02 * t + 1.0 - (-t).exp()).collect();
         let record = |displacement: Vec<f64>| Record::new(time.clone(), Some(displacement), vec![10.0; 200]).unwrap();
         assert_eq!(held(&record(flow.clone())), Some(HoldMode::ForceHeld));
-        // There and back is no creep.
-        let back = flow.iter().map(|d| if *d < 2.0 { *d } else { 4.0 - d }).collect();
-        assert_eq!(stated(&record(back)), None);
+        // One that comes to its end was a ramp and a hold.
+        let ends = time.iter().map(|t| 1.0 - (-t).exp()).collect();
+        assert_eq!(held(&record(ends)), Some(HoldMode::ForceHeld));
+        // There and back is no creep, and a machine goes straight.
+        for moves in [|t: f64| if t < 50.0 { t } else { 100.0 - t }, |t: f64| t.min(50.0), |t: f64| t] {
+            let record = record(time.iter().copied().map(moves).collect());
+            let found = find_phases(&record, &SegmentOptions::default());
+            assert!(found.is_err() || held(&record).is_none(), "{found:?}");
+        }
     }
 
     /// G(t) at many samples was "the jaw drifts or reverses without a stop", J(t) a standstill too short.
