@@ -19,6 +19,8 @@ ROOT = pathlib.Path(__file__).resolve().parent.parent
 GRIPPER = ["--columns", "time=Time:s,displacement=Pos:mm,force=Force:N"]
 SILICONE = ["--test", str(ROOT / "examples/tests/silicone-steps.toml")]
 TITIN = ["--test", str(ROOT / "validation/records/titin.toml")]
+MODULUS = ["--columns", "time=1:s,modulus=2:Pa"]
+COMPLIANCE = ["--columns", "time=1:s,compliance=2:1/Pa"]
 ZWICK = {f"230515-P002-{n}": "D F" for n in (1, 3, 4, 6, 7, 8, 9, 10, 11, 12, 13)}
 
 # File, further arguments, and what is true: holds in their order, "none", or a word per test of the file.
@@ -28,7 +30,7 @@ EXPECTED = [
     ("creep/CM3_Creep.creep", [], "F"),
     ("creep/CM3_CreepRecovery.creep", [], "F"),
     ("creep/HC1_stressrelaxation_20C_5.csv", [], "D"),
-    ("creep/creep_perihepatic_data.csv", [], "F"),
+    ("creep/creep_perihepatic_data.csv", COMPLIANCE, "F"),
     ("foam/XtraSoft.csv", [], "D"),
     ("gripper-fruit/banana_ForceData_20240824_210940_refined.csv", GRIPPER, "F F F"),
     ("gripper-fruit/kiwi_ForceData_20241127_224354_refined.csv", GRIPPER, "none"),
@@ -49,6 +51,8 @@ EXPECTED = [
     ("more/afm/force-save-1.txt.gz", [], "none"),
     ("more/afm/fmt-chiaro-txt_AEBP1_Indentation_002.zip", [], "none"),
     ("more/afm/fmt-tab-fd_version_0.13.3.tab", [], "none"),
+    ("more/afm/fmt-hdf5-fd_version_0.13.3.h5", [], "none"),
+    ("more/afm/fmt-igor-fd_SiN_FD_plot.ibw", [], "none"),
     ("more/afm/fmt-jpk-fd_map2x2_extracted.jpk-force-map", [], {None: "none"}),
     *((f"more/afm/cell1-{n}.jpk-force", [], "D") for n in ("0001", "0002", "0005", "0009", "0012")),
     ("more/gripper-fruit/banana_20241113_143619.csv", GRIPPER, "D"),
@@ -59,10 +63,10 @@ EXPECTED = [
     ("more/mts/i8_3_1_hold.txt", [], "D"),
     ("more/mts/i8_3_1_ramp.txt", ["--then", "more/mts/i8_3_1_hold.txt"], "D"),
     ("more/nanoindentation/agilent_example.xls", [], {None: "F F"}),
-    ("more/rheometer/creep_mucus.csv", [], "F"),
-    ("more/rheometer/relaxation_fishmuscle.csv", [], "D"),
-    ("more/rheometer/relaxation_hdpe.csv", [], "D"),
-    ("more/rheometer/relaxation_ps145.csv", [], "D"),
+    ("more/rheometer/creep_mucus.csv", COMPLIANCE, "F"),
+    ("more/rheometer/relaxation_fishmuscle.csv", MODULUS, "D"),
+    ("more/rheometer/relaxation_hdpe.csv", MODULUS, "D"),
+    ("more/rheometer/relaxation_ps145.csv", MODULUS, "D"),
     ("more/tendon/G1_1.csv", [], "D"),
     ("more/tendon/G1_2.csv", [], "D"),
     ("more/vhb4910/relax_2d0.csv", [], "D"),
