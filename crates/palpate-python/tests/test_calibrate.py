@@ -306,7 +306,8 @@ def test_a_number_that_is_left_open_is_a_warning(material: palpate.Material, tmp
     with pytest.warns(palpate.PalpateWarning, match="left a parameter open"):
         calibration = elastic.calibrate(law="prony:4", test={"specimen": {"shape": "ball", "radius": "35 mm"}}, alternatives=[])
     assert not calibration.is_good and calibration.material.log_covariance is None
-    assert calibration.remarks[0].startswith("Terms of the series merged")
+    # Superfluous terms end on one another or at the edge of what is sought.
+    assert calibration.remarks[0].startswith(("Terms of the series merged", "The search ended at a bound"))
     assert pickle.loads(pickle.dumps(calibration)) == calibration
     # As `palpate calibrate` writes one whose search ended at a bound.
     lines = material.to_toml().splitlines(keepends=True)
