@@ -15,7 +15,8 @@ const FIRST_HALF_ALONE: f64 = 0.7;
 const LEFT: f64 = 0.1;
 
 /// What is held in a record whose quantities say that it is one hold: a relaxation modulus is a force at a strain that stays, a creep
-/// compliance a displacement at a stress that stays, and so is the strain of a creep that goes one way.
+/// compliance a displacement at a stress that stays, and so is a strain that goes one way under a
+/// stress of one value, or of none given.
 pub(super) fn stated(record: &Record) -> Option<HoldMode> {
     let gives = |wanted: SourceQuantity| {
         let is_wanted = |done: &Correction| matches!(done, Correction::ReadAs { quantity, .. } if *quantity == wanted);
@@ -24,11 +25,19 @@ pub(super) fn stated(record: &Record) -> Option<HoldMode> {
     match record.displacement() {
         None if gives(SourceQuantity::Modulus) => Some(HoldMode::DisplacementHeld),
         Some(_) if gives(SourceQuantity::Compliance) => Some(HoldMode::ForceHeld),
-        Some(displacement) if gives(SourceQuantity::CreepStrain) && goes_one_way(displacement) => {
+        Some(displacement)
+            if (gives(SourceQuantity::CreepStrain) || gives(SourceQuantity::Strain) && is_constant(record.force()))
+                && goes_one_way(displacement) =>
+        {
             Some(HoldMode::ForceHeld)
         }
         _ => None,
     }
+}
+
+/// Whether a force has one value throughout.
+fn is_constant(force: &[f64]) -> bool {
+    force[0] != 0.0 && range(force) == 0.0
 }
 
 /// Fewest samples that show whether a motion is straight.
@@ -37,11 +46,10 @@ const FEWEST_MOVING: usize = 8;
 /// Whether a body creeps in the whole of a record under a force of exactly one value. A machine that moves in air goes straight up to where
 /// it stands.
 pub(super) fn creeps_throughout(record: &Record, found: Option<&Segmentation>) -> bool {
-    let (time, force, displacement) = (record.time(), record.force(), record.displacement().unwrap_or_default());
+    let (time, displacement) = (record.time(), record.displacement().unwrap_or_default());
     let hold = found.and_then(|found| found.holds().next());
     let moving = hold.map_or(time.len(), |hold| hold.start).min(displacement.len());
-    let is_constant = force[0] != 0.0 && range(force) == 0.0;
-    is_constant
+    is_constant(record.force())
         && moving >= FEWEST_MOVING
         && goes_one_way(displacement)
         && bends(&time[..moving], &displacement[..moving])
@@ -210,6 +218,10 @@ mod tests {
         let compliance: Vec<f64> = time.iter().map(|t| 1.0 / (1.43e5 * (1.0 + t).powf(-0.6))).collect();
         let relaxes = Record::new(time.clone(), None, modulus).unwrap();
         assert_eq!(held(&relaxes.corrected_before(read_as(SourceQuantity::Modulus))), Some(HoldMode::DisplacementHeld));
+        // A melt flows all but straight: only that it is a strain states that no machine moved.
+        let flow = time.iter().map(|t| 2e-4 * t).collect();
+        let flows = Record::new(time.clone(), Some(flow), vec![10.0; 1800]).unwrap();
+        assert_eq!(held(&flows.corrected_before(read_as(SourceQuantity::Strain))), Some(HoldMode::ForceHeld));
         let creeps = Record::new(time, Some(compliance), vec![1.0; 1800]).unwrap();
         assert_eq!(held(&creeps.corrected_before(read_as(SourceQuantity::Compliance))), Some(HoldMode::ForceHeld));
     }
