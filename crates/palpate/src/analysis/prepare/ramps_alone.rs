@@ -2,7 +2,7 @@
 
 use crate::analysis::AnalysisOptions;
 use crate::record::Record;
-use crate::segment::{Phase, Segment, SegmentError, SegmentSettings, Segmentation};
+use crate::segment::{self, Phase, Segment, SegmentError, SegmentSettings, Segmentation};
 use crate::statistics::{noise_in_time, range};
 
 /// A turn smaller than this many standard deviations of the noise is none.
@@ -27,28 +27,10 @@ pub(super) fn ramps_alone(record: &Record, error: &SegmentError, options: &Analy
     let (time, values) = (record.time(), record.displacement().unwrap_or_else(|| record.force()));
     let noise = noise_in_time(time, values);
     let turn = (OBSERVED * noise).max(SHARE * range(values));
-    let moves = !matches!(error, SegmentError::NoMotion { .. });
-    let bounds = [vec![0], turns(values, turn).into_iter().map(|at| at + 1).collect(), vec![values.len()]].concat();
-    let segments: Vec<Segment> = bounds
-        .windows(2)
-        .map(|pair| {
-            let (start, end) = (pair[0], pair[1]);
-            let rises = values[end - 1] >= values[start.saturating_sub(1)];
-            Segment {
-                phase: match (moves, rises) {
-                    (false, _) => Phase::Rest,
-                    (true, true) => Phase::Loading,
-                    (true, false) => Phase::Unloading,
-                },
-                start,
-                end,
-                after: None,
-                mode: None,
-                fit_start: start,
-                fit_start_rule: None,
-            }
-        })
-        .collect();
+    let mut segments = segment::ramps_alone(values, turn);
+    if matches!(error, SegmentError::NoMotion { .. }) {
+        segments.iter_mut().for_each(|segment| segment.phase = Phase::Rest);
+    }
     let speed = |segment: &Segment| {
         let (first, last) = (segment.start.saturating_sub(1), segment.end - 1);
         (values[last] - values[first]).abs() / (time[last] - time[first])
@@ -77,36 +59,5 @@ pub(super) fn ramps_alone(record: &Record, error: &SegmentError, options: &Analy
             minimum_hold,
             minimum_samples,
         },
-    }
-}
-
-/// The samples at which values turn by more than `least`.
-fn turns(values: &[f64], least: f64) -> Vec<usize> {
-    let (mut turns, mut extreme, mut rising) = (Vec::new(), 0, None);
-    for (index, value) in values.iter().enumerate() {
-        let change = value - values[extreme];
-        match rising {
-            None if change.abs() > least => (rising, extreme) = (Some(change > 0.0), index),
-            Some(up) if (change > 0.0) == up => extreme = index,
-            Some(up) if change.abs() > least => {
-                turns.push(extreme);
-                (rising, extreme) = (Some(!up), index);
-            }
-            _ => {}
-        }
-    }
-    turns
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn noise_turns_nothing() {
-        let there_and_back = [0.0, 1.0, 2.0, 1.9, 3.0, 2.0, 1.0, 1.1, 0.0, 1.0];
-        assert_eq!(turns(&there_and_back, 0.5), [4, 8]);
-        assert_eq!(turns(&there_and_back, 0.05), [2, 3, 4, 6, 7, 8]);
-        assert!(turns(&[1.0; 5], 0.0).is_empty());
     }
 }

@@ -29,3 +29,4 @@ mod turning;
 mod whole;
 
 pub use given::{GivenHold, find_phases, phases_watched, phases_with};
+pub(crate) use ramps::ramps_alone;

@@ -30,6 +30,11 @@ pub(super) fn fill_gaps(values: &[f64], levels: &[Level], hysteresis: f64) -> Ve
     segments
 }
 
+/// The ramps of a record without a hold: from one turning point to the next, a turn smaller than `hysteresis` being none.
+pub(crate) fn ramps_alone(values: &[f64], hysteresis: f64) -> Vec<Segment> {
+    fill_gaps(values, &[], hysteresis)
+}
+
 /// Appends the monotone parts of samples from..until.
 fn ramps(values: &[f64], from: usize, until: usize, hysteresis: f64, segments: &mut Vec<Segment>) {
     if until <= from {
@@ -76,4 +81,21 @@ fn approach(values: &[f64], segments: &[Segment]) -> Option<After> {
     let mut ramps = ramps;
     let last = ramps.find(|segment| travel(segment) >= 0.25 * most)?;
     Some(if last.phase == Phase::Loading { After::Loading } else { After::Unloading })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn noise_turns_nothing() {
+        let there_and_back = [0.0, 1.0, 2.0, 1.9, 3.0, 2.0, 1.0, 1.1, 0.0, 1.0];
+        let turns = |values: &[f64], least: f64| -> Vec<usize> {
+            let ramps = ramps_alone(values, least);
+            ramps[1..].iter().map(|ramp| ramp.start - 1).collect()
+        };
+        assert_eq!(turns(&there_and_back, 0.5), [4, 8]);
+        assert_eq!(turns(&there_and_back, 0.05), [2, 3, 4, 6, 7, 8]);
+        assert!(turns(&[1.0; 5], 0.0).is_empty());
+    }
 }
