@@ -87,8 +87,14 @@ fn page(
 ) -> Page {
     let record = Section::new("The record")
         .block(Block::paragraph(summary(analysis)))
-        .blocks(named(drawings, "record"))
-        .block(Block::Table(tables::holds(analysis)));
+        .blocks(named(drawings, "record"));
+    let mut page = Page::new(&input.title, "Squeeze-and-hold test: phases, strains and the latency law");
+    if analysis.holds.is_empty() {
+        // No laws, and no tables of holds to list.
+        page = page.section(Section::new("Findings").blocks(findings(analysis))).section(record);
+        return with_provenance(page.section(method(analysis)), input);
+    }
+    let record = record.block(Block::Table(tables::holds(analysis)));
     let mut laws = Section::new("The law for each hold")
         .blocks(tables::paper_tables(analysis).map(Block::Table))
         .block(Block::Table(tables::exponents(analysis)));
@@ -100,7 +106,6 @@ fn page(
         .blocks(tables::joint(analysis).map(Block::Table))
         .blocks(tables::agreements(analysis).map(Block::Table))
         .blocks(tables::predictions(analysis).map(Block::Table));
-    let mut page = Page::new(&input.title, "Squeeze-and-hold test: phases, strains and the latency law");
     let (answer, comparison) = which_law.map(|which| (which.answer, which.comparison)).unzip();
     if let Some(blocks) = answer {
         page = page.section(Section::new("Answer").blocks(blocks));
@@ -114,8 +119,17 @@ fn page(
     }
     page = page
         .section(Section::new("All fits").block(Block::Table(tables::fits(analysis))))
-        .section(Section::new("Method and settings").blocks(method::blocks(analysis)));
-    page = page
+        .section(method(analysis));
+    with_provenance(page, input)
+}
+
+fn method(analysis: &Analysis) -> Section {
+    Section::new("Method and settings").blocks(method::blocks(analysis))
+}
+
+/// A page that states what it was made of, and by what.
+fn with_provenance(page: Page, input: &Input) -> Page {
+    let mut page = page
         .provenance("Record", input.called())
         .provenance("SHA-256", &input.sha256)
         .provenance("Rows", input.rows.to_string());
@@ -138,6 +152,11 @@ fn summary(analysis: &Analysis) -> String {
     );
     if analysis.segmentation.segments.iter().any(|segment| segment.phase == Phase::Rest) {
         text.push_str(" The record begins at rest.");
+    }
+    if analysis.holds.is_empty()
+        && let Some(sentence) = tables::modulus_sentence(analysis)
+    {
+        text.push_str(&format!(" {sentence}"));
     }
     if let Some(n) = analysis.across.common_exponent {
         let fitted = analysis.holds.iter().filter(|hold| !hold.fits.is_empty()).count();

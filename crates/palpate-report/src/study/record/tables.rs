@@ -8,8 +8,10 @@ use palpate::segment::{After, FitStartRule, RelaxationType};
 use crate::number::significant;
 use crate::result::{ComparedRecord, Input, budgets_of_analysis, mode_word, percent, word};
 use crate::study::comparison::tables as comparison_tables;
+use crate::study::findings::Gathered;
 use crate::study::{answer, budget, findings};
 use crate::table::{Cell, Table};
+use crate::wrap::wrapped;
 
 /// An exponent as people write it: 5, not 5.000.
 fn order(n: f64) -> Cell {
@@ -286,6 +288,9 @@ pub(super) fn all(analysis: &Analysis) -> Vec<Table> {
 pub fn analysis_text(analysis: &Analysis, input: &Input) -> String {
     let compared = ComparedRecord::of_analysis(analysis, input.clone());
     let gathered = findings::gathered(analysis, findings::MOST_PLAIN);
+    if analysis.holds.is_empty() {
+        return without_hold(analysis, &gathered);
+    }
     let mut text = String::new();
     if analysis.options.compare.is_some() {
         text.push_str(&answer::answer_text(&compared, &gathered));
@@ -317,11 +322,36 @@ pub fn analysis_text(analysis: &Analysis, input: &Input) -> String {
     if analysis.options.compare.is_some() {
         text.push_str(&comparison_tables::verdict_text(&compared));
     }
+    text.push_str(&what_was_done(analysis, &gathered));
+    text
+}
+
+/// The text of a record without a hold: there are no laws to list.
+fn without_hold(analysis: &Analysis, gathered: &[Gathered]) -> String {
+    let modulus = modulus_sentence(analysis).map(|sentence| wrapped(&sentence) + "\n");
+    modulus.unwrap_or_default() + &what_was_done(analysis, gathered)
+}
+
+/// The modulus of the first loading ramp in a sentence, where there is one.
+pub(super) fn modulus_sentence(analysis: &Analysis) -> Option<String> {
+    let found = analysis.loading_modulus?;
+    Some(format!(
+        "Apparent modulus of the first loading ramp: {} Pa, standard error {} Pa. The residual is {} % of the largest force of the ramp \
+         (rms).",
+        significant(found.value, 4),
+        significant(found.standard_error, 2),
+        significant(100.0 * found.relative_rmse, 2)
+    ))
+}
+
+/// Corrections and findings.
+fn what_was_done(analysis: &Analysis, gathered: &[Gathered]) -> String {
+    let mut text = String::new();
     let requested: Vec<String> = analysis.record.corrections().iter().filter_map(untold).collect();
     if !requested.is_empty() {
         text.push_str(&format!("Corrections\n  {}\n\n", requested.join("\n  ")));
     }
-    let findings = findings::plain(&gathered);
+    let findings = findings::plain(gathered);
     if !findings.is_empty() {
         text.push_str(&format!("Findings\n{findings}\n"));
     }
