@@ -134,6 +134,10 @@ fn curves_without_a_hold_in_a_zip_have_a_row_with_their_modulus() {
     let codes: Vec<&str> =
         document["findings"].as_array().unwrap().iter().filter_map(|found| found["code"].as_str()).collect();
     assert!(codes.contains(&"no_hold"), "{codes:?}");
+    // Its text once was three tables without a row, and no modulus.
+    let text = done(folder, &["analyze", "map.zip", "--part", "2", "--test", "tip.toml"]);
+    assert!(text.contains("Apparent modulus of the first loading ramp: 2000 Pa"), "{text}");
+    assert!(text.contains("no_hold") && !text.contains("Holds of the record"), "{text}");
     assert!(refused(folder, &["analyze", "map.zip", "--part", "2"]).contains("no hold found"));
 }
 
