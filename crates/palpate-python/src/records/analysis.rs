@@ -164,7 +164,7 @@ shown! {
             Table::of(columns!(self.document.segments, row => phase, start_s, end_s, first_row, last_row)),
         /// The holds, a row each.
         holds: PyResult<Table> = Table::of(columns!(self.document.holds, hold =>
-            index, start_s, end_s, fit_start_s, fit_start_rule, displacement_m, after, mode, relaxation, force_change_n,
+            index, start_s, end_s, fit_start_s, fit_start_rule, displacement_m, after, mode, doubtful, relaxation, force_change_n,
             force_change_standard_error_n, p_value, force_start_n, force_end_n, signal, preferred, lowest_order
         )),
         /// The latency law fitted to every hold, a row each: ``hold``, ``law``, ``domain``, ``exponent``, ``equilibrium``, ...,

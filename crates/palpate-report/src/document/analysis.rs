@@ -54,6 +54,8 @@ documents! {
         after: Option<String> = hold.after.map(word),
         /// What the machine held: `displacement`, `force` or `neither`.
         mode: Option<String> = hold.segment.mode.map(mode_word),
+        /// Found in a force alone, which ramps explain nearly as well.
+        doubtful: bool = hold.segment.doubtful,
         /// `type_1` (the force falls), `type_2` (it rises) or `none`.
         relaxation: String = word(hold.relaxation.kind),
         /// Change of the force over the hold, N.

@@ -276,6 +276,13 @@ pub enum Finding {
         /// One clock stamps both columns: there is no skew.
         one_clock: bool,
     },
+    /// Holds of a force alone without which the record can be explained nearly as well.
+    HoldsDoubtful {
+        /// Their numbers, from 1.
+        holds: Vec<usize>,
+        /// All holds that were found.
+        of: usize,
+    },
     /// The labels of the file and a search of its columns disagree on the holds.
     LabelsDisagree(LabelCheck),
     /// The jaw oscillates about the positions it holds.

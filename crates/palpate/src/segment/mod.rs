@@ -8,6 +8,7 @@
 //! | `error.rs` | why no phases were found |
 //! | `standstill/` | where a column stands still |
 //! | `mode.rs` | what is held: the displacement, the force, or neither |
+//! | `force_alone/` | holds and ramps by the shape of a force |
 //! | `phases/` | the record cut into loading, hold and unloading |
 //! | `relaxation.rs` | Type I or Type II, with its probability |
 //! | `touch/` | first touch and the zero of the force |
@@ -15,6 +16,7 @@
 use crate::watch::{Cancelled, Progress, Watch};
 
 mod error;
+mod force_alone;
 mod mode;
 mod phases;
 mod relaxation;

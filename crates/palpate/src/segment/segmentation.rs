@@ -137,6 +137,9 @@ pub struct Segment {
     /// For a hold: how that sample was chosen.
     #[serde(default)]
     pub fit_start_rule: Option<FitStartRule>,
+    /// For a hold found in a force alone: whether the record can be explained nearly as well without it.
+    #[serde(default)]
+    pub doubtful: bool,
 }
 
 impl Segment {

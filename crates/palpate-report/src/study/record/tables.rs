@@ -46,7 +46,10 @@ pub(super) fn holds(analysis: &Analysis) -> Table {
     Table::of("holds", "Holds of the record.", &analysis.holds)
         .column("Hold", "hold", "", |hold| Cell::Integer(hold.number as i64))
         .column("After", "after", "", |hold| Cell::text(hold.after.map(word).unwrap_or_default()))
-        .column("Held", "mode", "", |hold| Cell::text(hold.segment.mode.map(mode_word).unwrap_or_default()))
+        .column("Held", "mode", "", |hold| {
+            let mode = hold.segment.mode.map(mode_word).unwrap_or_default();
+            Cell::text(if hold.segment.doubtful { format!("{mode}, doubtful") } else { mode })
+        })
         .column("From", "start_s", "s", |hold| Cell::Number(hold.start, 5))
         .column("To", "end_s", "s", |hold| Cell::Number(hold.end, 5))
         .column("Fit from", "fit_start_s", "s", |hold| Cell::Number(hold.fit_start, 5))

@@ -398,6 +398,12 @@ impl Finding {
                 "no correction was made; forces in ramps may have the wrong displacement",
                 "sample ramps faster, or give the skew as a time in [clock] of the test description",
             ),
+            Self::HoldsDoubtful { holds, of } => caution(
+                "holds_doubtful",
+                format!("{} of {} may be none: {}", counted(holds.len(), "hold"), of, listed(holds)),
+                "the record has no displacement, and ramps explain these parts of the force nearly as well",
+                "inspect the phases; give the limits of the holds by hand ([[phases.hold]] in the test description)",
+            ),
             Self::LabelsDisagree(check) => caution(
                 "labels_disagree",
                 format!(

@@ -36,6 +36,14 @@ pub(in crate::analysis) fn signal_findings(
         findings.push(Finding::OneHold);
     }
     findings.extend(segmentation.labels.map(Finding::LabelsDisagree));
+    let doubtful = segmentation.holds().zip(1..).filter(|(hold, _)| hold.doubtful).map(|(_, number)| number);
+    let doubtful: Vec<usize> = doubtful.collect();
+    if !doubtful.is_empty() {
+        findings.push(Finding::HoldsDoubtful {
+            holds: doubtful,
+            of: segmentation.holds().count(),
+        });
+    }
     findings.extend(segmentation.ripple.map(Finding::JawHunts));
     findings.extend(segmentation.ruptures.iter().copied().map(Finding::Ruptured));
     findings.extend(suspicious_signs(&corrected.record));

@@ -7,7 +7,6 @@
 //! | `given.rs` | phases that are sought, and holds whose limits someone gives |
 //! | `from_both.rs` | phases where displacement and force were recorded |
 //! | `from_force.rs` | phases where only the force was |
-//! | `after_peaks.rs` | holds of a force that relaxes slowly all along |
 //! | `nothing_held.rs` | standstills in which no body is held in place |
 //! | `ramps.rs` | what lies between the holds: loading and unloading |
 //! | `rupture.rs` | where the body broke |
@@ -16,7 +15,6 @@
 //! | `whole.rs` | a record that is one hold throughout |
 //! | `fit_start.rs` | from where in a hold the laws are fitted |
 
-mod after_peaks;
 mod fit_start;
 mod from_both;
 mod from_force;

@@ -23,6 +23,7 @@ pub(super) fn fill_gaps(values: &[f64], levels: &[Level], hysteresis: f64) -> Ve
             mode: after.map(|_| HoldMode::DisplacementHeld),
             fit_start: level.start,
             fit_start_rule: None,
+            doubtful: false,
         });
         (from, before) = (level.end, Some(level.value));
     }
@@ -52,6 +53,7 @@ fn ramps(values: &[f64], from: usize, until: usize, hysteresis: f64, segments: &
             mode: None,
             fit_start: start,
             fit_start_rule: None,
+            doubtful: false,
         });
     };
     for i in from..until {

@@ -17,6 +17,15 @@ fn records() -> u64 {
     std::env::var("PALPATE_SUITE").ok().and_then(|text| text.parse().ok()).unwrap_or(100)
 }
 
+#[test]
+fn holds_of_a_force_alone_are_found() {
+    let mut score = Score::default();
+    (0..records()).for_each(|number| score.add(&scored(&suite::labelled(number), true).score));
+    assert!(score.found_share() >= 0.9, "{}", reported(&score));
+    assert!(score.extra <= score.holds / 15, "{}", reported(&score));
+    assert!(quantile(&score.sharp[0], 0.9).unwrap() <= 4.0, "{}", reported(&score));
+}
+
 /// The scores of records of some kinds, added.
 fn sum(keep: impl Fn(Kind, f64) -> bool) -> Score {
     let mut sum = Score::default();
