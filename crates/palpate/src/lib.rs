@@ -127,7 +127,7 @@ pub mod simulate;
 #[cfg(feature = "std")]
 pub mod special;
 #[cfg(feature = "std")]
-mod statistics;
+pub mod statistics;
 #[cfg(feature = "std")]
 pub mod strain;
 #[cfg(feature = "std")]

@@ -1,9 +1,87 @@
-//! Small robust statistics that several steps share.
+//! Statistics that several steps share: means over specimens, medians, quantiles, noise.
 
 pub(crate) use crate::vector::dot;
 use std::cell::Cell;
 
 use statrs::distribution::{ContinuousCDF, Normal, StudentsT};
+
+/// Mean and scatter of independent values, such as a parameter over the specimens of a material (ISO 2602).
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct SampleMean {
+    /// Number of values, N.
+    pub count: usize,
+    /// x̄ = Σx/N.
+    pub mean: f64,
+    /// s = √(Σ(x − x̄)²/(N − 1)); `None` for one value.
+    pub standard_deviation: Option<f64>,
+    /// Confidence interval of the mean of all specimens, x̄ ± t s/√N with Student's t for N − 1 degrees of freedom; `None` for one value.
+    pub interval: Option<(f64, f64)>,
+    /// Whether all of this is that of the logarithms, taken back.
+    pub is_geometric: bool,
+}
+
+impl SampleMean {
+    /// Of all finite values, with intervals of this coverage, between 0 and 1; `None` without one.
+    ///
+    /// ```
+    /// use palpate::statistics::SampleMean;
+    /// let found = SampleMean::of(&[20.1, 21.3, 19.7, 20.9], 0.95).unwrap();
+    /// assert_eq!((found.count, found.mean), (4, 20.5));
+    /// assert!((found.standard_deviation.unwrap() - 0.730_297).abs() < 1e-6);
+    /// // t = 3.182446 for 3 degrees of freedom.
+    /// let (low, high) = found.interval.unwrap();
+    /// assert!((low - 19.337_936).abs() < 1e-5 && (high - 21.662_064).abs() < 1e-5);
+    /// assert_eq!(SampleMean::of(&[5.0], 0.95).unwrap().interval, None);
+    /// assert_eq!(SampleMean::of(&[f64::NAN], 0.95), None);
+    /// ```
+    #[must_use]
+    pub fn of(values: &[f64], confidence: f64) -> Option<Self> {
+        let values: Vec<f64> = values.iter().copied().filter(|value| value.is_finite()).collect();
+        let count = values.len();
+        let mean = values.iter().sum::<f64>() / count as f64;
+        let freedom = count.checked_sub(1)? as f64;
+        let squares: f64 = values.iter().map(|value| (value - mean).powi(2)).sum();
+        let deviation = (freedom > 0.0).then(|| (squares / freedom).sqrt());
+        let half = deviation.map(|deviation| coverage_factor(confidence, freedom) * deviation / (count as f64).sqrt());
+        Some(Self {
+            count,
+            mean,
+            standard_deviation: deviation,
+            interval: half.map(|half| (mean - half, mean + half)),
+            is_geometric: false,
+        })
+    }
+
+    /// The same of the natural logarithms, for positive scales such as rates and times: the geometric mean exp(m) with the interval of m taken
+    /// back, and the standard deviation of a log-normal variable of that geometric mean, exp(m) √(exp(s²) − 1), with m and s those of ln x. `None`
+    /// where a value is not positive.
+    ///
+    /// ```
+    /// use palpate::statistics::SampleMean;
+    /// let found = SampleMean::geometric(&[1.0, 10.0, 100.0], 0.95).unwrap();
+    /// assert!((found.mean - 10.0).abs() < 1e-12 && found.is_geometric);
+    /// // ln x = 0, 2.302585, 4.60517: s = 2.302585, t = 4.302653.
+    /// let (low, high) = found.interval.unwrap();
+    /// assert!((low - 0.032_784).abs() < 1e-5 && (high - 3050.3).abs() < 0.5);
+    /// assert_eq!(SampleMean::geometric(&[1.0, -1.0], 0.95), None);
+    /// ```
+    #[must_use]
+    pub fn geometric(values: &[f64], confidence: f64) -> Option<Self> {
+        if values.iter().any(|value| *value <= 0.0) {
+            return None;
+        }
+        let logarithms: Vec<f64> = values.iter().map(|value| value.ln()).collect();
+        let found = Self::of(&logarithms, confidence)?;
+        let mean = found.mean.exp();
+        Some(Self {
+            count: found.count,
+            mean,
+            standard_deviation: found.standard_deviation.map(|s| mean * (s * s).exp_m1().sqrt()),
+            interval: found.interval.map(|(low, high)| (low.exp(), high.exp())),
+            is_geometric: true,
+        })
+    }
+}
 
 /// Median; reorders `values`. NaN for an empty slice.
 pub(crate) fn median(values: &mut [f64]) -> f64 {
