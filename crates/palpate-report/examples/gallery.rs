@@ -143,7 +143,7 @@ fn relaxation() -> Figure {
     .panel(
         Panel::new(Axis::log("Time", "s"), Axis::linear("Relaxation modulus E(t)", "Pa"))
             .layer(Layer::band(t.clone(), low, high, Role::Fitted).label("95 % band"))
-            .layer(Layer::points(t_measured, measured, Role::Measured).error_bars(errors).label("measured"))
+            .layer(Layer::points(t_measured, measured, Role::Measured).error_bars(&errors).label("measured"))
             .layer(Layer::line(t.clone(), apply(&t, modulus), Role::Fitted).label("stretched"))
             .layer(Layer::line(t.clone(), curve(0.93), Role::Alternative(0)).label("one rate"))
             .layer(Layer::line(t.clone(), curve(1.06), Role::Alternative(1)).label("power law"))

@@ -9,6 +9,7 @@
 //! | `signals.rs` | the columns of a record, their corrections, first touch |
 //! | `calibration.rs` | `palpate.calibration/1`, laws calibrated on a whole record |
 //! | `several_calibrations.rs` | `palpate.several-calibrations/1`, one calibration of several records |
+//! | `specimens.rs` | `palpate.specimens/1`, the records of several specimens |
 //! | `comparison.rs` | `palpate.comparison/1`, laws compared on the holds of records |
 //! | `grip.rs` | `palpate.grip/1`, a planned grip |
 //! | `finding.rs`, `software.rs` | what stands in several of them |
@@ -57,6 +58,7 @@ mod settings;
 mod several_calibrations;
 mod signals;
 mod software;
+mod specimens;
 mod watch;
 
 pub use analysis::{AnalysisDocument, HoldDocument, LoadingModulusDocument};
@@ -73,4 +75,5 @@ pub use reproduction::ReproductionDocument;
 pub(crate) use several_calibrations::of_between;
 pub use several_calibrations::{BatchParameterDocument, SeveralCalibrationsDocument, SpecimenDocument};
 pub use software::Software;
+pub use specimens::{BetweenSpecimensDocument, SpecimenReportDocument, SpecimensDocument};
 pub use watch::{ObservationDocument, WatchDocument, WatchSummaryDocument, WatchedHoldDocument};

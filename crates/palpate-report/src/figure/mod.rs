@@ -27,3 +27,5 @@ mod draw;
 mod layout;
 
 pub use content::{Arrangement, Axis, Figure, FigureError, Layer, MOST_PANELS, Map, Mark, Panel, Role, Scale};
+pub(crate) use draw::Drawn;
+pub use draw::View;

@@ -1,10 +1,11 @@
 //! What can stand in a section of a page.
 
 use palpate::analysis::Severity;
+use palpate::watch::Unwatched;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use crate::figure::{Figure, FigureError};
+use crate::figure::{Figure, FigureError, View};
 use crate::table::Table;
 
 /// One piece of content. All text is plain text and is escaped when it is written.
@@ -21,11 +22,26 @@ pub enum Block {
     Table(Table),
     /// A drawn figure, numbered on the page.
     Figure {
-        /// An SVG element, as [`Figure::to_svg`] writes it; it goes into the page unchanged.
-        svg: String,
+        /// What is drawn; it goes into the page unchanged.
+        view: View,
         /// Caption.
         caption: String,
     },
+    /// The sentence that a page begins with.
+    Lede(String),
+    /// Formulas, each below what it is of.
+    Formulas(Vec<(String, String)>),
+    /// Findings in a line each.
+    Notes(Vec<(Severity, String)>),
+    /// Content that is folded until a reader opens it, and open on paper.
+    Folded {
+        /// What is folded.
+        title: String,
+        /// Content in order.
+        blocks: Vec<Block>,
+    },
+    /// Records with links to their reports.
+    Cards(Vec<Card>),
     /// What was noticed in the data or in the analysis.
     Findings(Vec<Finding>),
     /// Names with their values.
@@ -51,6 +67,21 @@ pub struct Finding {
     pub meaning: String,
     /// What helps.
     pub remedy: String,
+}
+
+/// A record in an index.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Card {
+    /// Its title.
+    pub title: String,
+    /// Where its report lies, with forward slashes; a name of a file may contain any character.
+    pub path: Vec<String>,
+    /// A small figure.
+    pub picture: Option<View>,
+    /// Sentences about it.
+    pub lines: Vec<String>,
+    /// Its most severe finding and how many there are.
+    pub findings: Option<(Severity, usize)>,
 }
 
 /// One thing that the paper reports, checked.
@@ -81,7 +112,7 @@ impl Block {
     /// When the figure cannot be drawn.
     pub fn figure(figure: &Figure) -> Result<Self, FigureError> {
         Ok(Self::Figure {
-            svg: figure.to_svg()?,
+            view: figure.drawing(&mut Unwatched)?.view,
             caption: figure.caption.clone(),
         })
     }

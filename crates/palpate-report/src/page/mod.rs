@@ -1,4 +1,7 @@
-//! One self-contained HTML page: opens without a network, needs no script, prints well.
+//! One self-contained HTML page: opens without a network, can be read without a script, prints well.
+//!
+//! The first page stands before everything else and on one sheet of A4; sections are folded below it. A small script of our own adds
+//! readings, zooms, switches and sorting, and a policy in the page forbids everything else.
 //!
 //! ```
 //! use palpate_report::page::{Block, Page, Section};
@@ -10,9 +13,11 @@
 //! ```
 
 mod block;
+mod content;
 mod html;
+mod policy;
 
-pub use block::{Block, Check, Finding};
+pub use block::{Block, Card, Check, Finding};
 pub use palpate::analysis::Severity;
 
 /// A page with its sections and where its content comes from.
@@ -22,7 +27,9 @@ pub struct Page {
     pub title: String,
     /// Line below the title; may be empty.
     pub subtitle: String,
-    /// Sections in order.
+    /// What stands on the first page, on one sheet of paper; may be empty.
+    pub first: Vec<Block>,
+    /// Sections in order: folded below a first page, open without one.
     pub sections: Vec<Section>,
     /// Names and values in the footer: software, version, input files, settings.
     pub provenance: Vec<(String, String)>,
@@ -46,6 +53,13 @@ impl Page {
             subtitle: subtitle.into(),
             ..Self::default()
         }
+    }
+
+    /// Adds content to the first page.
+    #[must_use]
+    pub fn first(mut self, blocks: impl IntoIterator<Item = Block>) -> Self {
+        self.first.extend(blocks);
+        self
     }
 
     /// Adds a section.

@@ -9,6 +9,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::input::Input;
+use super::words::condition;
 use crate::word::word;
 
 /// What the laws were fitted to.
@@ -82,6 +83,11 @@ impl Quantity {
         }
     }
 
+    /// Its SI unit at an axis: none of a strain.
+    pub(crate) fn axis_unit(self) -> &'static str {
+        if self == Self::Strain { "" } else { self.unit() }
+    }
+
     /// The unit for people of values up to this size, and the factor to it.
     pub(crate) fn for_people(self, largest: f64) -> (&'static str, f64) {
         match self {
@@ -104,20 +110,26 @@ impl From<Signal> for Quantity {
 impl ComparedHold {
     /// "Hold 2, after loading, 10.00 mm", or "…, 6.00 N" in creep.
     pub(crate) fn title(&self) -> String {
-        let after = self.after.map_or(String::new(), |after| format!(", after {}", word(after)));
-        format!("Hold {}{after}{}", self.number, self.held())
+        let condition = Some(self.condition()).filter(|condition| !condition.is_empty());
+        format!("Hold {}{}", self.number, condition.map_or_else(String::new, |condition| format!(", {condition}")))
     }
 
     /// The same for the narrow head of a panel: "Hold 2, 10.00 mm".
     pub(crate) fn short_title(&self) -> String {
-        format!("Hold {}{}", self.number, self.held())
+        let held = self.held().map_or_else(String::new, |held| format!(", {held}"));
+        format!("Hold {}{held}", self.number)
     }
 
-    /// What was held, behind a comma.
-    fn held(&self) -> String {
-        self.level.map_or(String::new(), |level| match self.quantity {
-            Quantity::Displacement => format!(", {}", quantity(level, "N", 3)),
-            _ => format!(", {}", quantity(level, "m", 4)),
+    /// What holds of one kind have in common: "after loading, 10.00 mm".
+    pub(crate) fn condition(&self) -> String {
+        condition(self.after.map(word).as_deref(), self.held())
+    }
+
+    /// What was held.
+    fn held(&self) -> Option<String> {
+        self.level.map(|level| match self.quantity {
+            Quantity::Displacement => quantity(level, "N", 3),
+            _ => quantity(level, "m", 4),
         })
     }
 }

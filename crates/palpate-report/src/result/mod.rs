@@ -14,6 +14,7 @@
 //! | `calibrated_batch.rs` | several records calibrated together, with remarks |
 //! | `gripped.rs`, `grip_sentences.rs` | a body in a gripper with an answer; the answer in sentences |
 //! | `reproduced.rs` | the paper's study |
+//! | `specimens.rs` | records of several specimens: one law, its parameters between specimens |
 //! | `words.rs` | the words for what the library says |
 
 mod answer;
@@ -26,6 +27,7 @@ mod gripped;
 mod input;
 mod parameters;
 mod reproduced;
+mod specimens;
 mod words;
 
 pub use crate::page::Check;
@@ -44,5 +46,7 @@ pub use parameters::{
     parameters_of_material, parameters_table, si_unit,
 };
 pub use reproduced::{ReproducedTest, Reproduction};
+pub use specimens::{BetweenSpecimens, SpecimenHold, SpecimenResult, SpecimenResults};
+pub(crate) use specimens::{is_of_interest, is_scale};
 pub(crate) use words::{hold_start_word, percent};
 pub use words::{mode_word, slips_word};

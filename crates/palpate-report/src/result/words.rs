@@ -13,6 +13,11 @@ pub fn mode_word(mode: HoldMode) -> String {
     word(mode).replace("_held", "")
 }
 
+/// What holds of one kind have in common: "after loading, 10.00 mm"; empty where nothing is known of them.
+pub(crate) fn condition(after: Option<&str>, held: Option<String>) -> String {
+    after.map(|after| format!("after {after}")).into_iter().chain(held).collect::<Vec<_>>().join(", ")
+}
+
 /// From where in a hold the laws are fitted, as it is written in a description.
 pub(crate) fn hold_start_word(start: HoldStart) -> String {
     match start {

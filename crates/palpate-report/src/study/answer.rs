@@ -10,7 +10,7 @@ use crate::result::{
     Answer, ComparedHold, ComparedRecord, HoldAnswer, ParameterDocument, Parameters, parameter_title, parameters_of,
     percent, word,
 };
-use crate::table::{Cell, Table};
+use crate::table::{Cell, Columns, Table};
 use crate::word::capitalised;
 use crate::wrap::{indented, width, wrapped};
 
@@ -50,27 +50,24 @@ pub(super) fn answer_text(record: &ComparedRecord, findings: &[Gathered]) -> Str
     text
 }
 
-/// The answer as blocks of a page.
-pub(super) fn answer_blocks(record: &ComparedRecord, answer: &Answer, findings: &[Gathered]) -> Vec<Block> {
-    let mut blocks = vec![Block::paragraph(answer.sentence.clone())];
-    blocks.extend(verdicts(answer).map(Block::Table));
+/// The answer hold by hold as blocks of a page.
+pub(super) fn answer_blocks(record: &ComparedRecord, answer: &Answer) -> Vec<Block> {
+    let formula = |hold: &HoldAnswer| Some((hold.title.clone(), formula_line(hold)?));
+    let formulas: Vec<(String, String)> = answer.holds.iter().filter_map(formula).collect();
+    let mut blocks: Vec<Block> = verdicts(answer).map(Block::Table).into_iter().collect();
     blocks.extend(parameters_of_holds(record, answer).map(Block::Table));
-    let lines: Vec<String> = answer
-        .holds
-        .iter()
-        .filter_map(|hold| Some(format!("Hold {}, {}: {}", hold.hold, hold.law, formula_line(hold)?)))
-        .collect();
-    if !lines.is_empty() {
-        blocks.push(Block::List(lines));
-    }
-    blocks.extend(Some(most_severe(findings)).filter(|found| !found.is_empty()).map(Block::List));
+    blocks.extend((!formulas.is_empty()).then_some(Block::Formulas(formulas)));
     blocks
 }
 
 /// The formula of a hold, and from when t counts.
 fn formula_line(hold: &HoldAnswer) -> Option<String> {
-    let formula = hold.formula.as_ref()?;
-    Some(format!("{formula}, with t from {} s of the record", significant(hold.fit_start_s, 4)))
+    Some(with_start(hold.formula.as_ref()?, hold.fit_start_s))
+}
+
+/// A formula, and from when its t counts, s.
+pub(super) fn with_start(formula: &str, start: f64) -> String {
+    format!("{formula}, with t from {} s of the record", significant(start, 4))
 }
 
 /// Parameters, a line each.
@@ -105,33 +102,70 @@ pub(super) fn verdicts(answer: &Answer) -> Option<Table> {
         .unless_empty()
 }
 
+/// A law fitted to a hold.
+pub(super) struct HoldFit<'a> {
+    pub hold: &'a ComparedHold,
+    pub fit: &'a Fit,
+    pub parameters: Parameters,
+}
+
+impl<'a> HoldFit<'a> {
+    pub(super) fn new(hold: &'a ComparedHold, fit: &'a Fit) -> Self {
+        let parameters = parameters_of(fit, hold.quantity);
+        Self { hold, fit, parameters }
+    }
+}
+
+/// The law of the record as it was fitted to each hold.
+pub(super) fn fits_of_record<'a>(record: &'a ComparedRecord, answer: &Answer) -> Vec<HoldFit<'a>> {
+    let law: Option<Law> = answer.law.as_ref().and_then(|law| law.parse().ok());
+    law.map_or_else(Vec::new, |law| fits_of_law(record, law))
+}
+
+/// A law that was compared as it was fitted to each hold.
+pub(super) fn fits_of_law<'a>(record: &'a ComparedRecord, law: Law) -> Vec<HoldFit<'a>> {
+    let fit = |hold: &'a ComparedHold| {
+        let rows = &hold.comparison.as_ref()?.rows;
+        Some(HoldFit::new(hold, rows.iter().find(|row| row.law == law)?.fit.as_ref().ok()?))
+    };
+    record.holds.iter().filter_map(fit).collect()
+}
+
 /// The parameters of the law of the record on every hold.
 pub(super) fn parameters_of_holds(record: &ComparedRecord, answer: &Answer) -> Option<Table> {
-    let law: Law = answer.law.as_ref()?.parse().ok()?;
-    let fits = record.holds.iter().filter_map(|hold| {
-        let rows = &hold.comparison.as_ref()?.rows;
-        let fit = rows.iter().find(|row| row.law == law)?.fit.as_ref().ok()?;
-        Some((hold, fit, parameters_of(fit, hold.quantity)))
-    });
-    let fits: Vec<(&ComparedHold, &Fit, Parameters)> = fits.collect();
-    let (_, first, units) = fits.first()?;
-    let confidence = fits.iter().find_map(|(_, fit, _)| Some(fit.uncertainty.as_ref()?.confidence)).unwrap_or(0.95);
+    law_table(&fits_of_record(record, answer))
+}
+
+/// The parameters of one law on holds.
+pub(super) fn law_table(fits: &[HoldFit<'_>]) -> Option<Table> {
+    let law = fits.first()?.fit.law;
+    let confidence = fits.iter().find_map(|one| Some(one.fit.uncertainty.as_ref()?.confidence)).unwrap_or(0.95);
     let caption = format!("Parameters of {law} on every hold, with {} intervals.", percent(confidence));
-    let mut table = Table::of("law_of_record", caption, &fits)
-        .column("Hold", "hold", "", |(hold, ..)| Cell::Integer(hold.number as i64));
+    let table = Table::of("law_of_record", caption, fits)
+        .column("Hold", "hold", "", |one| Cell::Integer(one.hold.number as i64));
+    let value = |one: &HoldFit<'_>, name: &str| {
+        one.parameters.get(name).map_or(Cell::missing("not determined"), ParameterDocument::cell)
+    };
+    let ended = |one: &HoldFit<'_>| Cell::text(word(one.fit.termination).replace('_', " "));
+    Some(parameter_columns(table, fits, value).column("Ended", "termination", "", ended).table())
+}
+
+/// Adds a column for each parameter that is estimated, and the rate coefficient.
+pub(super) fn parameter_columns<'a, T>(
+    mut table: Columns<'a, T>,
+    fits: &[HoldFit<'_>],
+    cell: impl Fn(&T, &str) -> Cell,
+) -> Columns<'a, T> {
     let of_interest = |parameter: &&Parameter| {
         parameter.role == ParameterRole::Estimated || parameter.name.kind == ParameterKind::RateCoefficient
     };
-    for parameter in first.parameters.iter().filter(of_interest) {
+    for parameter in fits.iter().take(1).flat_map(|one| one.fit.parameters.iter().filter(of_interest)) {
         let name = parameter.name.to_string();
-        let unit = units.get(&name).map_or("", |parameter| parameter.unit.as_str());
-        table =
-            table.estimates(heading(&name), name.clone(), if unit == "1" { "" } else { unit }, |(.., parameters)| {
-                parameters.get(&name).map_or(Cell::missing("not determined"), ParameterDocument::cell)
-            });
+        let unit = fits[0].parameters.get(&name).map_or("", |parameter| parameter.unit.as_str());
+        let unit = if unit == "1" { "" } else { unit };
+        table = table.estimates(heading(&name), name.clone(), unit, |row| cell(row, &name));
     }
-    let ended = |fit: &Fit| Cell::text(word(fit.termination).replace('_', " "));
-    Some(table.column("Ended", "termination", "", |(_, fit, _)| ended(fit)).table())
+    table
 }
 
 /// A parameter as a heading names it: without its unit, which stands behind it.

@@ -4,7 +4,7 @@ use std::io;
 
 use palpate::watch::{Cancelled, Watch};
 
-use crate::figure::{Figure, FigureError};
+use crate::figure::{Drawn, Figure, FigureError, View};
 use crate::page::Block;
 use crate::table::Table;
 
@@ -45,15 +45,16 @@ impl From<FigureError> for StudyError {
 /// A figure once drawn.
 pub(crate) struct Drawing {
     name: String,
-    svg: String,
+    view: View,
     caption: String,
+    continues: Option<String>,
 }
 
 impl Drawing {
     /// As a page shows it.
     pub(crate) fn block(&self) -> Block {
         Block::Figure {
-            svg: self.svg.clone(),
+            view: self.view.clone(),
             caption: self.caption.clone(),
         }
     }
@@ -86,15 +87,16 @@ impl Bundle {
     ) -> Result<Vec<Drawing>, StudyError> {
         let mut drawings = Vec::with_capacity(figures.len());
         for figure in figures {
-            let svg = figure.to_svg_watched(watch)?;
+            let Drawn { svg, view } = figure.drawing(watch)?;
             if pictures.png {
                 self.files.push((format!("figures/{}.png", figure.name), figure.to_png_of(&svg, DPI)?));
             }
-            self.text(format!("figures/{}.svg", figure.name), svg.clone());
+            self.text(format!("figures/{}.svg", figure.name), svg);
             drawings.push(Drawing {
                 name: figure.name.clone(),
-                svg,
+                view,
                 caption: figure.caption.clone(),
+                continues: figure.continues.clone(),
             });
         }
         Ok(drawings)
@@ -119,7 +121,16 @@ impl Bundle {
     }
 }
 
-/// The drawings whose name starts so, as a page shows them.
+/// The drawings whose name starts so, as a page shows them: those that go on where one ends are folded below it.
 pub(super) fn named(drawings: &[Drawing], name: &str) -> impl Iterator<Item = Block> {
-    drawings.iter().filter(move |drawing| drawing.name.starts_with(name)).map(Drawing::block)
+    drawings
+        .iter()
+        .filter(move |drawing| drawing.name.starts_with(name))
+        .map(|drawing| match &drawing.continues {
+            Some(title) => Block::Folded {
+                title: title.clone(),
+                blocks: vec![drawing.block()],
+            },
+            None => drawing.block(),
+        })
 }

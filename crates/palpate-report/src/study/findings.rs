@@ -32,11 +32,17 @@ pub(super) struct Gathered {
 impl Gathered {
     /// In a sentence, with the first place where it was observed.
     pub(super) fn briefly(&self) -> String {
-        let (place, observed) =
-            self.lines.first().map_or(("", ""), |(place, observed)| (place.as_str(), observed.as_str()));
-        let severity = word(self.severity);
-        let place = if place.is_empty() { String::new() } else { format!(", {}", place.to_lowercase()) };
-        format!("{}{place}: {observed}.", capitalised(&severity))
+        let between = if self.lines.first().is_some_and(|(place, _)| !place.is_empty()) { ", " } else { ": " };
+        format!("{}{between}{}.", capitalised(&word(self.severity)), self.placed())
+    }
+
+    /// The first place where it was observed, and what.
+    pub(super) fn placed(&self) -> String {
+        match self.lines.first() {
+            Some((place, observed)) if !place.is_empty() => format!("{}: {observed}", place.to_lowercase()),
+            Some((_, observed)) => observed.clone(),
+            None => String::new(),
+        }
     }
 
     /// As a page shows it.
@@ -153,7 +159,7 @@ pub(super) fn entry<K: PartialEq, V: Default>(entries: &mut Vec<(K, V)>, key: K)
 }
 
 /// `Hold 2`, `Holds 1–3, 7`, or nothing for the whole record.
-fn holds_named(holds: &[usize]) -> String {
+pub(super) fn holds_named(holds: &[usize]) -> String {
     let mut runs: Vec<(usize, usize)> = Vec::new();
     let mut sorted = holds.to_vec();
     sorted.sort_unstable();
@@ -178,7 +184,7 @@ fn holds_named(holds: &[usize]) -> String {
     }
 }
 
-fn sentence(text: &str) -> String {
+pub(super) fn sentence(text: &str) -> String {
     format!("{}.", capitalised(text))
 }
 

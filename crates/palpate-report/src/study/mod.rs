@@ -7,11 +7,13 @@
 //! | `bundle.rs`, `grid.rs`, `findings.rs` | the files of a study, in memory until all exist; figures of many panels, panels of many figures; what was found, gathered over the holds |
 //! | `simulate/` | simulated contacts, waves, sweeps |
 //! | `answer.rs` | which law to use, before everything else |
+//! | `forecast.rs`, `first_page.rs` | a hold with its forecast; the first page of a record: the law, one figure, what it means |
 //! | `budget.rs` | uncertainty budgets |
 //! | `calibration/` | a whole record calibrated, and what the material predicts |
 //! | `grip/` | a planned grip |
 //! | `comparison/` | laws compared on the holds of records |
 //! | `record/` | an analysed record |
+//! | `index.rs` | the index of the reports of several specimens |
 //! | `reproduction/` | the paper's study |
 
 mod answer;
@@ -20,8 +22,11 @@ mod bundle;
 mod calibration;
 mod comparison;
 mod findings;
+mod first_page;
+mod forecast;
 mod grid;
 mod grip;
+mod index;
 mod record;
 mod reproduction;
 mod simulate;
@@ -33,6 +38,7 @@ pub use calibration::{
 };
 pub use comparison::{comparison_bundle, comparison_markdown, comparison_text};
 pub use grip::{grip_bundle, grip_figure, grip_table, grip_text, neighbour_table, schedule_table, sensitivity_table};
+pub use index::SpecimenIndex;
 pub use record::{analysis_bundle, analysis_text, cut_figure};
 pub use reproduction::{reproduction_bundle, reproduction_text};
 pub use simulate::{

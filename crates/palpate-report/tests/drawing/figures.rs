@@ -34,7 +34,7 @@ fn every_kind_of_layer_is_well_formed_and_repeatable() {
                 .layer(Layer::span(3.0, 9.0, Role::Simulated).label("hold <1>"))
                 .layer(Layer::band(x.clone(), x.clone(), ramp(50), Role::Fitted).label("95 %"))
                 .layer(Layer::line(x.clone(), x.clone(), Role::Measured).label("F₀ & F¹"))
-                .layer(Layer::points(x.clone(), x.clone(), Role::Series(3)).error_bars(vec![0.5; 50]).label("'points'"))
+                .layer(Layer::points(x.clone(), x.clone(), Role::Series(3)).error_bars(&[0.5; 50]).label("'points'"))
                 .layer(Layer::horizontal(10.0, Role::Reference).label("limit"))
                 .layer(Layer::vertical(20.0, Role::Alternative(200)).label("start")),
         )
@@ -95,7 +95,7 @@ fn odd_data_and_sizes_are_drawn_without_panic() {
             for axis in [Axis::linear("q", ""), Axis::log("q", "Pa")] {
                 let panel = Panel::new(axis.clone(), axis)
                     .layer(Layer::line(x.clone(), y.clone(), Role::Fitted).label("l"))
-                    .layer(Layer::points(x.clone(), y.clone(), Role::Measured).error_bars(y.clone()).label("p"))
+                    .layer(Layer::points(x.clone(), y.clone(), Role::Measured).error_bars(y).label("p"))
                     .layer(Layer::band(x.clone(), y.clone(), x.clone(), Role::Simulated))
                     .layer(Layer::map(map(x.clone(), y.clone(), vec![x[0]; 25], "m", "")))
                     .layer(Layer::span(y[1], x[0], Role::Measured).label("s"))

@@ -27,6 +27,10 @@ pub struct Figure {
     pub(crate) panels: Vec<Panel>,
     pub(crate) arrangement: Arrangement,
     pub(crate) without_letters: bool,
+    pub(crate) has_common_legend: bool,
+    pub(crate) continues: Option<String>,
+    /// Whether its panels are in the units that suit all panels of several figures.
+    pub(crate) has_suited_units: bool,
     width_mm: Option<f64>,
     height_mm: Option<f64>,
 }
@@ -74,6 +78,20 @@ impl Figure {
     #[must_use]
     pub fn height_mm(mut self, height: f64) -> Self {
         self.height_mm = Some(height);
+        self
+    }
+
+    /// One legend for all panels, above them, in place of one in each.
+    #[must_use]
+    pub fn common_legend(mut self) -> Self {
+        self.has_common_legend = true;
+        self
+    }
+
+    /// States that the figure goes on where another one ends, with what it shows: a page folds it below that one.
+    #[must_use]
+    pub fn continues(mut self, title: impl Into<String>) -> Self {
+        self.continues = Some(title.into());
         self
     }
 

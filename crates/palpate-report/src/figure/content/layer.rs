@@ -32,8 +32,8 @@ pub enum Mark {
         x: Vec<f64>,
         /// Vertical positions.
         y: Vec<f64>,
-        /// Half-length of the vertical error bars, if there are any.
-        error: Option<Vec<f64>>,
+        /// Lower and upper ends of vertical error bars, if there are any.
+        error: Option<(Vec<f64>, Vec<f64>)>,
     },
     /// The area between two lines.
     Band {
@@ -123,11 +123,22 @@ impl Layer {
         self
     }
 
-    /// The same points with vertical error bars; other layers stay as they are.
+    /// The same points with vertical error bars of these half-lengths; other layers stay as they are.
     #[must_use]
-    pub fn error_bars(mut self, half_lengths: Vec<f64>) -> Self {
+    pub fn error_bars(self, half_lengths: &[f64]) -> Self {
+        let Mark::Points { y, .. } = &self.mark else {
+            return self;
+        };
+        let end = |sign: f64| y.iter().zip(half_lengths).map(|(y, half)| y + sign * half).collect();
+        let (low, high) = (end(-1.0), end(1.0));
+        self.intervals(low, high)
+    }
+
+    /// The same points with vertical error bars between these ends; other layers stay as they are.
+    #[must_use]
+    pub fn intervals(mut self, low: Vec<f64>, high: Vec<f64>) -> Self {
         if let Mark::Points { error, .. } = &mut self.mark {
-            *error = Some(half_lengths);
+            *error = Some((low, high));
         }
         self
     }
@@ -149,7 +160,8 @@ impl Layer {
             Mark::Line { x, y } => need("y of a line", y.len(), x.len()),
             Mark::Points { x, y, error } => {
                 need("y of points", y.len(), x.len())?;
-                need("error of points", error.as_ref().map_or(x.len(), Vec::len), x.len())
+                let ends = error.as_ref().map_or([x.len(); 2], |(low, high)| [low.len(), high.len()]);
+                ends.into_iter().try_for_each(|found| need("error of points", found, x.len()))
             }
             Mark::Band { x, low, high } => {
                 need("lower edge of a band", low.len(), x.len())?;

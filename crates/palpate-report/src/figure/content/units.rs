@@ -16,8 +16,11 @@ enum Along {
 impl Figure {
     /// The same figure with linear axes in nN to kN, nm to m, Pa to GPa, s to days; axes of one quantity share a unit. Logarithmic axes keep
     /// theirs: they show many sizes at once.
-    pub(in crate::figure) fn in_suited_units(&self) -> Self {
+    pub(crate) fn in_suited_units(&self) -> Self {
         let mut figure = self.clone();
+        if std::mem::replace(&mut figure.has_suited_units, true) {
+            return figure;
+        }
         for (index, panel) in figure.panels.iter_mut().enumerate() {
             for along in [Along::X, Along::Y] {
                 let axis = self.axis(index, along);
@@ -74,7 +77,8 @@ impl Layer {
             (Mark::Vertical(at), Along::X) | (Mark::Horizontal(at), Along::Y) => vec![std::slice::from_mut(at)],
             (Mark::Line { y, .. }, Along::Y) => vec![y],
             (Mark::Points { y, error, .. }, Along::Y) => {
-                std::iter::once(y.as_mut_slice()).chain(error.as_mut().map(Vec::as_mut_slice)).collect()
+                let ends = error.iter_mut().flat_map(|(low, high)| [low.as_mut_slice(), high.as_mut_slice()]);
+                std::iter::once(y.as_mut_slice()).chain(ends).collect()
             }
             (Mark::Band { low, high, .. }, Along::Y) => vec![low, high],
             (Mark::Span(..) | Mark::Vertical(_), Along::Y) | (Mark::Horizontal(_), Along::X) => Vec::new(),

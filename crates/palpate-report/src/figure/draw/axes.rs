@@ -4,15 +4,42 @@ use std::fmt::Write as _;
 
 use super::heatmap;
 use super::svg::{Anchor, BOLD, Svg, font, short};
-use crate::figure::layout::{BAR, BAR_GAP, CAPTION, Frame, LEGEND_ROW, Rect, TICK, TICK_LENGTH, width};
+use crate::escape::escape;
+use crate::figure::content::{Axis, Scale};
+use crate::figure::layout::{
+    BAR, BAR_GAP, CAPTION, Frame, LEGEND_ROW, Rect, TICK, TICK_LENGTH, Ticks, Transform, width,
+};
 
 const FRAME: &str = "stroke=\"#222\" stroke-width=\"0.7\"";
+
+/// What a page needs to read values off a panel: place, limits and names of its axes, with the power of ten that its labels leave out.
+pub(crate) fn readable(frame: &Frame<'_>) -> String {
+    let Rect { x, y, w, h } = frame.area;
+    let axis = |along: &str, transform: &Transform, ticks: &Ticks, axis: &Axis, labelled: bool| {
+        let scale = if transform.scale == Scale::Log { "log" } else { "linear" };
+        format!(
+            " data-{along}=\"{scale} {:.7e} {:.7e} {} {}\" data-{along}-name=\"{}\" data-{along}-unit=\"{}\"",
+            transform.low,
+            transform.high,
+            ticks.exponent,
+            u8::from(labelled),
+            escape(&axis.label),
+            escape(&axis.unit)
+        )
+    };
+    let area = [x, y, w, h].map(short).join(" ");
+    let across = axis("x", &frame.x, &frame.x_ticks, &frame.panel.x, frame.names_x);
+    let up = axis("y", &frame.y, &frame.y_ticks, &frame.panel.y, true);
+    format!("class=\"panel\" data-area=\"{area}\"{across}{up}")
+}
 
 /// The frame, its ticks and everything written around it.
 pub(crate) fn draw_axes(svg: &mut Svg, frame: &Frame<'_>) {
     svg.rect(frame.area, FRAME);
+    svg.open_group("class=\"ticks\"");
     draw_ticks(svg, frame);
     draw_labels(svg, frame);
+    svg.close_group();
     draw_captions(svg, frame);
     draw_heading(svg, frame);
 }
@@ -38,14 +65,13 @@ fn draw_labels(svg: &mut Svg, frame: &Frame<'_>) {
     let Frame { area, .. } = frame;
     if frame.names_x {
         let y = area.bottom() + TICK_LENGTH + 2.0 + 0.78 * TICK;
-        for (value, label) in frame.x_ticks.major.iter().filter(|(v, _)| frame.x.contains(*v)) {
-            svg.text(frame.x.at(*value), y, Anchor::Middle, font(TICK), label);
-        }
+        let labels = frame.x_ticks.major.iter().filter(|(v, _)| frame.x.contains(*v));
+        svg.texts(Anchor::Middle, font(TICK), labels.map(|(value, label)| (frame.x.at(*value), y, label.as_str())));
     }
     let x = area.x - TICK_LENGTH - 2.0;
-    for (value, label) in frame.y_ticks.major.iter().filter(|(v, _)| frame.y.contains(*v)) {
-        svg.text(x, frame.y.at(*value) + 0.36 * TICK, Anchor::End, font(TICK), label);
-    }
+    let labels = frame.y_ticks.major.iter().filter(|(v, _)| frame.y.contains(*v));
+    let at = |value: f64| frame.y.at(value) + 0.36 * TICK;
+    svg.texts(Anchor::End, font(TICK), labels.map(|(value, label)| (x, at(*value), label.as_str())));
 }
 
 fn draw_captions(svg: &mut Svg, frame: &Frame<'_>) {
@@ -62,15 +88,29 @@ fn draw_captions(svg: &mut Svg, frame: &Frame<'_>) {
 fn draw_heading(svg: &mut Svg, frame: &Frame<'_>) {
     let rise = 2.0 + frame.span_strip() + frame.legend_rows as f64 * LEGEND_ROW;
     let y = frame.area.y - rise - 2.5;
-    let mut x = frame.area.x;
+    // A title that is wider than its axes begins to their left.
+    let written = frame.panel.title.as_ref().map_or(0.0, |title| width(title, CAPTION + 0.5));
+    let letter = if frame.letter.is_some() { width("(a)", CAPTION + 0.5) + 5.0 } else { 0.0 };
+    let mut x = frame.area.x.min(frame.cell.right() - letter - written - 1.0).max(frame.cell.x + 1.0);
     if let Some(letter) = frame.letter {
         let letter = format!("({letter})");
         svg.text(x, y, Anchor::Start, font(CAPTION + 0.5).with(BOLD), &letter);
         x += width(&letter, CAPTION + 0.5) + 5.0;
     }
     if let Some(title) = &frame.panel.title {
-        svg.text(x, y, Anchor::Start, font(CAPTION + 0.5), title);
+        let title = shortened(title, frame.cell.right() - x - 1.0);
+        svg.text(x, y, Anchor::Start, font(CAPTION + 0.5), &title);
     }
+}
+
+/// A title that would be wider than its room, without its end.
+fn shortened(title: &str, room: f64) -> String {
+    let fits = |text: &str| width(text, CAPTION + 0.5) <= room;
+    if fits(title) {
+        return title.to_owned();
+    }
+    let ends = title.char_indices().map(|(end, _)| format!("{}…", &title[..end]));
+    ends.take_while(|text| fits(text)).last().unwrap_or_default()
 }
 
 /// The bar that explains the colours of a map.

@@ -5,6 +5,12 @@ use crate::figure::layout::Position;
 /// Series up to this length are drawn as they are.
 pub(crate) const PLAIN: usize = 2000;
 
+/// Points up to this number are drawn as they are.
+const FEW: usize = 250;
+
+/// Most points that are drawn; where there are more, neighbours cover each other.
+const MOST_POINTS: usize = 1000;
+
 /// Columns per unit of page width into which a long line is gathered.
 const COLUMNS_PER_UNIT: f64 = 1.5;
 
@@ -16,6 +22,36 @@ const STRETCHES: usize = 1200;
 /// A long line keeps, for every narrow column of the page, its first, lowest, highest and last
 /// position, so that no peak is lost. `width` is the width of the plot.
 pub(crate) fn line(count: usize, width: f64, position: impl Fn(usize) -> Position) -> Vec<Vec<Position>> {
+    gathered(count, width, position).iter().map(|piece| straightened(piece)).collect()
+}
+
+/// Distance within which positions lie on a straight line.
+const STRAIGHT: f64 = 0.04;
+
+/// A line without the positions that lie on the straight line between those that stay (Douglas and Peucker).
+fn straightened(piece: &[Position]) -> Vec<Position> {
+    let mut stays = vec![false; piece.len()];
+    let mut open = vec![(0, piece.len().saturating_sub(1))];
+    while let Some((first, last)) = open.pop() {
+        let (Some(&(x, y)), Some(&(to_x, to_y))) = (piece.get(first), piece.get(last)) else {
+            continue;
+        };
+        (stays[first], stays[last]) = (true, true);
+        let (dx, dy) = (to_x - x, to_y - y);
+        let length = dx.hypot(dy);
+        let off = |i: usize| {
+            let (px, py) = (piece[i].0 - x, piece[i].1 - y);
+            if length > 0.0 { (px * dy - py * dx).abs() / length } else { px.hypot(py) }
+        };
+        let farthest = (first + 1..last).max_by(|a, b| off(*a).total_cmp(&off(*b)));
+        if let Some(middle) = farthest.filter(|i| off(*i) > STRAIGHT) {
+            open.extend([(first, middle), (middle, last)]);
+        }
+    }
+    piece.iter().zip(stays).filter(|(_, stays)| *stays).map(|(position, _)| *position).collect()
+}
+
+fn gathered(count: usize, width: f64, position: impl Fn(usize) -> Position) -> Vec<Vec<Position>> {
     if count <= PLAIN {
         return gather(count, position, |_| false);
     }
@@ -123,14 +159,14 @@ pub(crate) fn band(count: usize, edges: impl Fn(usize) -> (f64, f64, f64)) -> Ve
 
 /// Separate points without those that would lie on another one; all extremes stay.
 pub(crate) fn points(positions: Vec<Position>) -> Vec<Position> {
-    if positions.len() <= PLAIN {
+    if positions.len() <= FEW {
         return positions;
     }
     let mut extremes = Bucket::default();
     for (i, p) in positions.iter().enumerate() {
         extremes.add(i, *p);
     }
-    let mut cell = 0.4;
+    let mut cell = 0.5;
     loop {
         let mut observed = std::collections::HashSet::new();
         let mut kept: Vec<Position> = positions
@@ -138,7 +174,7 @@ pub(crate) fn points(positions: Vec<Position>) -> Vec<Position> {
             .copied()
             .filter(|(x, y)| observed.insert(((x / cell) as i64, (y / cell) as i64)))
             .collect();
-        if kept.len() <= 2 * PLAIN {
+        if kept.len() <= MOST_POINTS {
             extremes.empty_into(&mut kept);
             return kept;
         }
@@ -159,8 +195,17 @@ mod tests {
 
     #[test]
     fn short_lines_stay_as_they_are() {
-        let pieces = line(5, 100.0, |i| (i as f64, 1.0));
-        assert_eq!(pieces, vec![(0..5).map(|i| (f64::from(i), 1.0)).collect::<Vec<_>>()]);
+        let at = |i: usize| (i as f64, (i % 2) as f64);
+        assert_eq!(line(5, 100.0, at), vec![(0..5).map(at).collect::<Vec<_>>()]);
+    }
+
+    #[test]
+    fn positions_on_a_straight_line_are_left_out() {
+        assert_eq!(line(5, 100.0, |i| (i as f64, 2.0 * i as f64)), [[(0.0, 0.0), (4.0, 8.0)]]);
+        let arc = |i: usize| (100.0 * (i as f64 / 199.0), (i as f64 / 199.0).powi(2) * 50.0);
+        let kept = line(200, 100.0, arc);
+        assert!(kept[0].len() < 40 && kept[0].len() > 10, "{}", kept[0].len());
+        assert!(line(0, 1.0, arc).is_empty());
     }
 
     #[test]
@@ -214,7 +259,7 @@ mod tests {
             (300.0 + 280.0 * (t * 0.77).sin(), 100.0 + 90.0 * (t * 0.31).cos())
         });
         let kept = points(many.clone().collect());
-        assert!(kept.len() <= 2 * PLAIN + 6);
+        assert!(kept.len() <= MOST_POINTS + 6);
         let highest = many.fold(0.0, |high: f64, p| high.max(p.1));
         assert!(kept.iter().any(|p| p.1 == highest));
     }

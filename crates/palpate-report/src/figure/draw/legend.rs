@@ -1,16 +1,14 @@
 //! Legends: what they list and where they cover nothing.
 
 use super::series;
-use super::svg::{Anchor, Svg, font, polyline};
+use super::svg::{Anchor, Svg, element, font, polyline};
 use crate::figure::content::{Mark, Panel, Style};
-use crate::figure::layout::{CAPTION, LEGEND_ROW, Occupancy, Position, Rect, width};
+use crate::figure::layout::{CAPTION, INSET, LEGEND_ROW, Occupancy, Position, Rect, width};
 
 /// Width of the sample beside a legend text.
 const SAMPLE: f64 = 18.0;
 /// Distance between sample and text, and between neighbours in a row.
 const SPACE: f64 = 4.0;
-/// Distance from the axes.
-const INSET: f64 = 4.0;
 /// One line of a legend.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub(crate) struct Entry {
@@ -21,10 +19,10 @@ pub(crate) struct Entry {
     band: Option<Style>,
 }
 
-/// The entries of a panel; layers with equal labels share one.
-pub(crate) fn entries(panel: &Panel) -> Vec<Entry> {
+/// The entries of panels; layers with equal labels share one.
+pub(crate) fn entries<'a>(panels: impl IntoIterator<Item = &'a Panel>) -> Vec<Entry> {
     let mut entries: Vec<Entry> = Vec::new();
-    for layer in &panel.layers {
+    for (panel, layer) in panels.into_iter().flat_map(|panel| panel.layers.iter().map(move |layer| (panel, layer))) {
         let drawn = matches!(layer.mark, Mark::Line { .. } | Mark::Points { .. } | Mark::Band { .. });
         let Some(label) = layer.label.as_ref().filter(|_| drawn && !layer.is_empty(panel.x.scale, panel.y.scale))
         else {
@@ -106,7 +104,29 @@ pub(crate) fn draw_rows(svg: &mut Svg, entries: &[Entry], (x, y): Position, room
     }
 }
 
+/// The entries for a legend beside a drawing: text, and a sample as an SVG element.
+pub(crate) fn samples(entries: &[Entry], scale: f64) -> Vec<(String, String)> {
+    let sample = |entry: &Entry| {
+        let mut svg = Svg::default();
+        draw_sample(&mut svg, entry, 0.0, LEGEND_ROW / 2.0);
+        let area = Rect::new(0.0, 0.0, SAMPLE, LEGEND_ROW);
+        (entry.label.clone(), element(area, scale, None, &svg.into_body()))
+    };
+    entries.iter().map(sample).collect()
+}
+
 fn draw_entry(svg: &mut Svg, entry: &Entry, x: f64, middle: f64) {
+    svg.open_series("entry", Some(&entry.label));
+    // What a page answers to lies around the text too.
+    let room = SAMPLE + SPACE + width(&entry.label, CAPTION);
+    svg.rect(Rect::new(x, middle - LEGEND_ROW / 2.0, room, LEGEND_ROW), "fill=\"#fff\" fill-opacity=\"0\"");
+    draw_sample(svg, entry, x, middle);
+    let baseline = middle + 0.36 * CAPTION;
+    svg.text(x + SAMPLE + SPACE, baseline, Anchor::Start, font(CAPTION), &entry.label);
+    svg.close_group();
+}
+
+fn draw_sample(svg: &mut Svg, entry: &Entry, x: f64, middle: f64) {
     if let Some(style) = entry.band {
         svg.rect(Rect::new(x, middle - 3.5, SAMPLE, 7.0), &series::band_attributes(style));
     }
@@ -120,6 +140,4 @@ fn draw_entry(svg: &mut Svg, entry: &Entry, x: f64, middle: f64) {
         Some((style, false)) => series::draw_markers(svg, &[(centre, middle)], style, 2.0),
         None => {}
     }
-    let baseline = middle + 0.36 * CAPTION;
-    svg.text(x + SAMPLE + SPACE, baseline, Anchor::Start, font(CAPTION), &entry.label);
 }

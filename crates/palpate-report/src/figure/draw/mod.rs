@@ -8,10 +8,12 @@
 //! | `heatmap.rs` | heat maps as embedded pictures |
 //! | `reference.rs` | reference lines and shaded stretches with their names |
 //! | `legend.rs` | legends, and where they cover nothing |
+//! | `drawn.rs` | a figure once drawn: a document, or what a page shows |
 //! | `raster.rs` | SVG to PNG |
 
 mod axes;
 mod decimate;
+mod drawn;
 mod heatmap;
 mod legend;
 #[cfg(feature = "png")]
@@ -20,11 +22,14 @@ mod reference;
 mod series;
 mod svg;
 
+pub(crate) use drawn::Drawn;
+use drawn::NARROW_MM;
+pub use drawn::View;
 use palpate::watch::{Cancelled, Progress, Unwatched, Watch};
 use svg::Svg;
 
 use super::content::{Figure, FigureError, Mark};
-use super::layout::{Frame, LEGEND_ROW, Occupancy, Rect, arrange};
+use super::layout::{Frame, INSET, LEGEND_ROW, Occupancy, Rect, arrange};
 
 impl Figure {
     /// The figure as an SVG document with real text and no ids, fit for a file or for a page.
@@ -42,23 +47,46 @@ impl Figure {
     ///
     /// As for [`Self::to_svg`], and [`FigureError::Cancelled`].
     pub fn to_svg_watched(&self, watch: &mut dyn Watch) -> Result<String, FigureError> {
+        Ok(self.drawing(watch)?.svg)
+    }
+
+    /// The figure once drawn, as a document and for a page.
+    ///
+    /// # Errors
+    ///
+    /// As for [`Self::to_svg_watched`].
+    pub(crate) fn drawing(&self, watch: &mut dyn Watch) -> Result<Drawn, FigureError> {
         for layer in self.panels.iter().flat_map(|panel| &panel.layers) {
             layer.check(&self.name)?;
         }
         look(watch)?;
-        self.in_suited_units().drawn(watch)
+        let figure = self.in_suited_units();
+        let mut drawn = figure.drawn(watch)?;
+        if figure.is_wide() {
+            drawn.view.narrow = figure.width_mm(NARROW_MM).drawn(watch)?.view.panels.pop();
+        }
+        Ok(drawn)
     }
 
-    fn drawn(&self, watch: &mut dyn Watch) -> Result<String, FigureError> {
-        let legends: Vec<_> = self.panels.iter().map(legend::entries).collect();
-        let frames = self.frames(&legends, watch)?;
-        let mut svg = Svg::default();
+    fn drawn(&self, watch: &mut dyn Watch) -> Result<Drawn, FigureError> {
+        let common = if self.has_common_legend { legend::entries(&self.panels) } else { Vec::new() };
+        let own = |panel| if self.has_common_legend { Vec::new() } else { legend::entries([panel]) };
+        let legends: Vec<_> = self.panels.iter().map(own).collect();
+        let (width, height) = self.size_points();
+        let strip = legend::rows(&common, width - 2.0 * INSET) as f64 * LEGEND_ROW;
+        let frames = self.frames(strip, &legends, watch)?;
+        let mut panels = Vec::with_capacity(frames.len());
         for (frame, legend) in frames.iter().zip(&legends) {
+            let mut svg = Svg::default();
+            svg.open_group(&axes::readable(frame));
             self.draw_panel(&mut svg, frame, watch)?;
             draw_inner_text(&mut svg, frame, legend);
+            svg.close_group();
+            panels.push((frame.cell, svg.into_body()));
         }
-        let (width, height) = self.size_points();
-        Ok(svg.finish(width, height, &self.caption))
+        let mut svg = Svg::default();
+        legend::draw_rows(&mut svg, &common, (INSET, INSET), width - 2.0 * INSET);
+        Ok(Drawn::new(self, (width, height + strip), (&svg.into_body(), &common), &panels))
     }
 
     /// The figure as a PNG picture with `dpi` picture elements per inch.
@@ -74,7 +102,7 @@ impl Figure {
     #[cfg_attr(not(feature = "png"), expect(unused_variables, reason = "nothing is drawn"))]
     pub(crate) fn to_png_of(&self, svg: &str, dpi: f64) -> Result<Vec<u8>, FigureError> {
         #[cfg(feature = "png")]
-        return raster::png(&self.name, svg, self.size_points(), dpi);
+        return raster::png(&self.name, svg, dpi);
         #[cfg(not(feature = "png"))]
         Err(FigureError::Raster {
             figure: self.name.clone(),
@@ -84,10 +112,15 @@ impl Figure {
     }
 
     /// Places the panels; legends that would cover data get rows of their own above the axes.
-    fn frames(&self, legends: &[Vec<legend::Entry>], watch: &mut dyn Watch) -> Result<Vec<Frame<'_>>, Cancelled> {
+    fn frames(
+        &self,
+        strip: f64,
+        legends: &[Vec<legend::Entry>],
+        watch: &mut dyn Watch,
+    ) -> Result<Vec<Frame<'_>>, Cancelled> {
         let mut rows = vec![0; self.panels.len()];
         loop {
-            let frames = arrange(self, &rows);
+            let frames = arrange(self, strip, &rows);
             let before = rows.clone();
             for ((rows, frame), legend) in rows.iter_mut().zip(&frames).zip(legends) {
                 look(watch)?;
@@ -112,23 +145,34 @@ impl Figure {
             })?;
             svg.image(frame.area, &data);
         }
-        for layer in &frame.panel.layers {
+        let drawn = || {
+            let (x, y) = (frame.panel.x.scale, frame.panel.y.scale);
+            frame.panel.layers.iter().filter(move |layer| !layer.is_empty(x, y))
+        };
+        for layer in drawn() {
             if let Mark::Band { x, low, high } = &layer.mark {
+                svg.open_series("band", layer.label.as_deref());
                 series::draw_band(svg, frame, (x, low, high), layer.role);
+                svg.close_group();
             }
         }
         reference::draw_references(svg, frame);
         svg.close_clip();
-        for layer in &frame.panel.layers {
+        for layer in drawn() {
             look(watch)?;
             match &layer.mark {
                 Mark::Line { x, y } => {
                     svg.open_clip(frame.area);
+                    svg.open_series("line", layer.label.as_deref());
                     series::draw_line(svg, frame, (x, y), layer.role);
+                    svg.close_group();
                     svg.close_clip();
                 }
                 Mark::Points { x, y, error } => {
-                    series::draw_points(svg, frame, (x, y), error.as_deref(), layer.role);
+                    svg.open_series("points", layer.label.as_deref());
+                    let ends = error.as_ref().map(|(low, high)| (low.as_slice(), high.as_slice()));
+                    series::draw_points(svg, frame, (x, y), ends, layer.role);
+                    svg.close_group();
                 }
                 _ => {}
             }
@@ -139,7 +183,9 @@ impl Figure {
             axes::draw_colour_bar(svg, frame);
         }
         axes::draw_axes(svg, frame);
+        svg.open_group("class=\"names\"");
         reference::draw_span_names(svg, frame);
+        svg.close_group();
         Ok(())
     }
 }
@@ -159,7 +205,9 @@ fn inner_text<'a>(frame: &'a Frame<'_>, legend: &[legend::Entry]) -> (Vec<refere
 
 fn draw_inner_text(svg: &mut Svg, frame: &Frame<'_>, legend: &[legend::Entry]) {
     let (names, place) = inner_text(frame, legend);
+    svg.open_group("class=\"names\"");
     reference::draw_reference_names(svg, &names);
+    svg.close_group();
     if frame.legend_rows > 0 {
         let rise = frame.span_strip() + frame.legend_rows as f64 * LEGEND_ROW + 1.0;
         let start = (frame.area.x, frame.area.y - rise);

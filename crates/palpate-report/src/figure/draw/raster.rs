@@ -20,25 +20,25 @@ static FONTS: LazyLock<Arc<fontdb::Database>> = LazyLock::new(|| {
     Arc::new(fonts)
 });
 
-/// PNG bytes of an SVG document at `scale` picture elements per point.
-pub(crate) fn png(name: &str, svg: &str, points: (f64, f64), dpi: f64) -> Result<Vec<u8>, FigureError> {
+/// PNG bytes of an SVG document at `dpi` picture elements per inch.
+pub(crate) fn png(name: &str, svg: &str, dpi: f64) -> Result<Vec<u8>, FigureError> {
     let fail = |reason: String| FigureError::Raster {
         figure: name.to_owned(),
         reason,
     };
-    let scale = dpi / 72.0;
-    let (width, height) = ((points.0 * scale).round(), (points.1 * scale).round());
-    if !(width >= 1.0 && height >= 1.0 && width <= MOST && height <= MOST) {
-        return Err(fail(format!("{width} by {height} picture elements at {dpi} per inch")));
-    }
     let options = Options {
         fontdb: Arc::clone(&FONTS),
         ..Options::default()
     };
     let tree = Tree::from_str(svg, &options).map_err(|error| fail(error.to_string()))?;
+    // Lengths of a document are picture elements of a screen, 96 to an inch.
+    let (size, scale) = (tree.size(), dpi / 96.0);
+    let (width, height) = ((f64::from(size.width()) * scale).round(), (f64::from(size.height()) * scale).round());
+    if !(width >= 1.0 && height >= 1.0 && width <= MOST && height <= MOST) {
+        return Err(fail(format!("{width} by {height} picture elements at {dpi} per inch")));
+    }
     let mut pixmap =
         Pixmap::new(width as u32, height as u32).ok_or_else(|| fail("no memory for the picture".to_owned()))?;
-    let size = tree.size();
     let transform = Transform::from_scale(width as f32 / size.width(), height as f32 / size.height());
     resvg::render(&tree, transform, &mut pixmap.as_mut());
     encode(&pixmap, dpi).map_err(|error| fail(error.to_string()))

@@ -16,10 +16,14 @@ pub(crate) type Name<'a> = (Rect, &'a str);
 
 /// Shaded stretches, below everything else.
 pub(crate) fn draw_spans(svg: &mut Svg, frame: &Frame<'_>) {
+    let Rect { y, .. } = frame.area;
+    let bottom = frame.area.bottom();
+    svg.open_series("mark", None);
     for (from, to, role, _) in spans(frame) {
         let attributes = format!("fill=\"{}\" fill-opacity=\"0.12\"", role.style().colour);
-        svg.rect(Rect::new(from, frame.area.y, to - from, frame.area.h), &attributes);
+        svg.path(&polyline(&[(from, y), (to, y), (to, bottom), (from, bottom)], true), &attributes);
     }
+    svg.close_group();
 }
 
 /// Names of shaded stretches above the frame; a name without room is left out.
@@ -57,9 +61,11 @@ fn spans<'a>(frame: &'a Frame<'_>) -> impl Iterator<Item = (f64, f64, Role, Opti
 
 /// Levels and positions across the panel.
 pub(crate) fn draw_references(svg: &mut Svg, frame: &Frame<'_>) {
+    svg.open_series("mark", None);
     for (ends, role, _) in references(frame) {
         svg.path(&polyline(&ends, false), &series::line_attributes(role.style()));
     }
+    svg.close_group();
 }
 
 /// Ends, role and name of the reference lines within the axes.

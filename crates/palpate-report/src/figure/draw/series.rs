@@ -8,7 +8,7 @@ use crate::figure::content::{Mark, Marker, Role, Style};
 use crate::figure::layout::{Frame, Occupancy, Position};
 
 /// Beyond this many points, simple dots replace the marker shapes.
-pub(crate) const CROWD: usize = 250;
+pub(crate) const CROWD: usize = 60;
 
 pub(crate) fn line_attributes(style: Style) -> String {
     let dash = if style.dash.is_empty() { String::new() } else { format!(" stroke-dasharray=\"{}\"", style.dash) };
@@ -63,46 +63,50 @@ pub(crate) fn draw_points(
     svg: &mut Svg,
     frame: &Frame<'_>,
     (x, y): (&[f64], &[f64]),
-    error: Option<&[f64]>,
+    error: Option<(&[f64], &[f64])>,
     role: Role,
 ) {
     let style = role.style();
-    if let Some(error) = error.filter(|_| x.len() <= CROWD) {
-        draw_error_bars(svg, frame, (x, y, error), style);
+    if let Some((low, high)) = error.filter(|_| x.len() <= CROWD) {
+        draw_error_bars(svg, frame, (x, low, high), style);
     }
     let positions = visible(frame, x, y);
     if positions.len() > CROWD {
         draw_dots(svg, &positions, style);
     } else {
-        let radius = if positions.len() > 80 { 1.6 } else { 2.0 };
-        draw_markers(svg, &positions, style, radius);
+        draw_markers(svg, &positions, style, 2.0);
     }
 }
 
-/// Draws a crowd of points.
+/// Draws a crowd of points: in tenths of a point, each from the one before it, which takes half the characters of positions.
 pub(crate) fn draw_dots(svg: &mut Svg, positions: &[Position], style: Style) {
     let mut d = String::new();
+    let mut last = (0, 0);
     for (x, y) in positions {
-        let _ = write!(d, "M{} {}h0", short(*x), short(*y));
+        let here = ((10.0 * x).round() as i64, (10.0 * y).round() as i64);
+        let _ = write!(d, "m{} {}h0", here.0 - last.0, here.1 - last.1);
+        last = here;
     }
-    let attributes = format!("stroke=\"{}\" stroke-width=\"1.7\" stroke-linecap=\"round\"", style.colour);
+    let size = if positions.len() > 4 * CROWD { 12 } else { 16 };
+    let attributes = format!(
+        "transform=\"scale(.1)\" stroke=\"{}\" stroke-width=\"{size}\" stroke-linecap=\"round\"",
+        style.colour
+    );
     svg.path(&d, &attributes);
 }
 
-fn draw_error_bars(svg: &mut Svg, frame: &Frame<'_>, (x, y, error): (&[f64], &[f64], &[f64]), style: Style) {
+fn draw_error_bars(svg: &mut Svg, frame: &Frame<'_>, (x, low, high): (&[f64], &[f64], &[f64]), style: Style) {
     let mut d = String::new();
-    for ((x, y), error) in x.iter().zip(y).zip(error) {
+    for ((x, low), high) in x.iter().zip(low).zip(high) {
         let px = frame.x.at(*x);
-        let low = (y - error).max(frame.y.low);
-        let (bottom, top) = (frame.y.at(low), frame.y.at(y + error));
+        let (bottom, top) = (frame.y.at(low.max(frame.y.low)), frame.y.at(*high));
         if !(frame.x.contains(*x) && bottom.is_finite() && top.is_finite()) {
             continue;
         }
         let _ = write!(
             d,
-            "M{x} {b}V{t}M{l} {b}h3M{l} {t}h3",
+            "M{x} {b}V{t}M{x} {b}m-1.5 0h3M{x} {t}m-1.5 0h3",
             x = short(px),
-            l = short(px - 1.5),
             b = short(bottom.min(frame.area.bottom())),
             t = short(top.max(frame.area.y))
         );
@@ -119,42 +123,37 @@ pub(crate) fn draw_markers(svg: &mut Svg, positions: &[Position], style: Style, 
     let attributes = if style.marker == Marker::Cross {
         format!("stroke=\"{colour}\" stroke-width=\"1\"")
     } else if style.filled {
-        format!("fill=\"{colour}\" stroke=\"#fff\" stroke-width=\"0.3\"")
+        format!("fill=\"{colour}\"")
     } else {
-        format!("fill=\"#fff\" stroke=\"{colour}\" stroke-width=\"0.8\"")
+        format!("stroke=\"{colour}\" stroke-width=\"0.8\"")
     };
     svg.path(&d, &attributes);
 }
 
+/// A marker drawn from its centre, where its path begins.
 fn marker(d: &mut String, shape: Marker, (x, y): Position, r: f64) {
+    let _ = write!(d, "M{} {}", short(x), short(y));
     let _ = match shape {
-        Marker::Circle => write!(
-            d,
-            "M{} {y}a{r} {r} 0 1 0 {} 0a{r} {r} 0 1 0 {} 0Z",
-            short(x - r),
-            short(2.0 * r),
-            short(-2.0 * r),
-            y = short(y),
-            r = short(r)
-        ),
+        Marker::Circle => {
+            let (r, across) = (short(r), short(2.0 * r));
+            write!(d, "m-{r} 0a{r} {r} 0 1 0 {across} 0a{r} {r} 0 1 0 -{across} 0Z")
+        }
         Marker::Square => {
-            let s = 0.9 * r;
-            let (left, top, side) = (short(x - s), short(y - s), short(2.0 * s));
-            write!(d, "M{left} {top}h{side}v{side}h-{side}Z")
+            let (half, side) = (short(0.9 * r), short(1.8 * r));
+            write!(d, "m-{half} -{half}h{side}v{side}h-{side}Z")
         }
         Marker::Triangle | Marker::TriangleDown => {
             let up = if shape == Marker::Triangle { 1.2 * r } else { -1.2 * r };
-            let (apex, base, half) = (short(y - up), short(1.8 * up), 1.15 * r);
-            write!(d, "M{} {apex}l{} {base}h-{}Z", short(x), short(half), short(2.0 * half))
+            let half = 1.15 * r;
+            write!(d, "m0 {}l{} {}h-{}Z", short(-up), short(half), short(1.8 * up), short(2.0 * half))
         }
         Marker::Diamond => {
             let s = short(1.35 * r);
-            write!(d, "M{} {}l{s} {s}l-{s} {s}l-{s} -{s}Z", short(x), short(y - 1.35 * r))
+            write!(d, "m0 -{s}l{s} {s}l-{s} {s}l-{s} -{s}Z")
         }
         Marker::Cross => {
-            let (s, side) = (0.95 * r, short(1.9 * r));
-            let (left, top, bottom) = (short(x - s), short(y - s), short(y + s));
-            write!(d, "M{left} {top}l{side} {side}M{left} {bottom}l{side} -{side}")
+            let (half, side) = (short(0.95 * r), short(1.9 * r));
+            write!(d, "m-{half} -{half}l{side} {side}m-{side} 0l{side} -{side}")
         }
     };
 }

@@ -44,12 +44,48 @@ impl Font {
     pub(crate) fn with(self, more: &'static str) -> Self {
         Self { more, ..self }
     }
+
+    fn attributes(self, anchor: Anchor) -> String {
+        let anchor = match anchor {
+            Anchor::Start => "",
+            Anchor::Middle => " text-anchor=\"middle\"",
+            Anchor::End => " text-anchor=\"end\"",
+        };
+        format!("font-size=\"{}\" fill=\"{}\"{anchor}{}", short(self.size), self.colour, self.more)
+    }
 }
 
-/// An SVG document under construction; lengths are points.
+/// The inside of an SVG element under construction; lengths are points.
 #[derive(Debug, Default)]
 pub(crate) struct Svg {
     body: String,
+}
+
+/// An SVG document of its own: `body` on a white page.
+pub(crate) fn document((width, height): (f64, f64), description: &str, body: &str) -> String {
+    let mm = |points: f64| short(points * 25.4 / 72.0);
+    format!(
+        "<svg xmlns=\"http://www.w3.org/2000/svg\" role=\"img\" aria-label=\"{}\" \
+         width=\"{}mm\" height=\"{}mm\" viewBox=\"0 0 {} {}\" \
+         font-family=\"Arimo, Arial, Helvetica, 'Liberation Sans', sans-serif\" fill=\"none\">\n\
+         <rect width=\"100%\" height=\"100%\" fill=\"#fff\"/>\n{body}</svg>\n",
+        escape(description),
+        mm(width),
+        mm(height),
+        short(width),
+        short(height),
+    )
+}
+
+/// An SVG element of a page that shows `area` of what `body` draws, `scale` picture elements to a point where there is room.
+///
+/// Without a description it is an ornament.
+pub(crate) fn element(area: Rect, scale: f64, description: Option<&str>, body: &str) -> String {
+    let [x, y, w, h] = [area.x, area.y, area.w, area.h].map(short);
+    let [width, height] = [area.w, area.h].map(|length| (length * scale).round());
+    let role = description
+        .map_or("aria-hidden=\"true\"".to_owned(), |text| format!("role=\"img\" aria-label=\"{}\"", escape(text)));
+    format!("<svg {role} width=\"{width}\" height=\"{height}\" viewBox=\"{x} {y} {w} {h}\">\n{body}</svg>\n")
 }
 
 /// A number with at most two decimals and nothing superfluous.
@@ -60,21 +96,45 @@ pub(crate) fn short(value: f64) -> String {
 }
 
 impl Svg {
-    /// The finished document.
-    pub(crate) fn finish(self, width: f64, height: f64, description: &str) -> String {
-        let mm = |points: f64| short(points * 25.4 / 72.0);
-        format!(
-            "<svg xmlns=\"http://www.w3.org/2000/svg\" role=\"img\" aria-label=\"{}\" \
-             width=\"{}mm\" height=\"{}mm\" viewBox=\"0 0 {} {}\" \
-             font-family=\"Arimo, Arial, Helvetica, 'Liberation Sans', sans-serif\" fill=\"none\">\n\
-             <rect width=\"100%\" height=\"100%\" fill=\"#fff\"/>\n{}</svg>\n",
-            escape(description),
-            mm(width),
-            mm(height),
-            short(width),
-            short(height),
-            self.body
-        )
+    /// What was drawn.
+    pub(crate) fn into_body(self) -> String {
+        self.body
+    }
+
+    /// Opens a group; `attributes` are escaped.
+    pub(crate) fn open_group(&mut self, attributes: &str) {
+        let _ = writeln!(self.body, "<g {attributes}>");
+    }
+
+    /// Opens a group of what a series draws: a page reads values from it, and switches it by the label.
+    pub(crate) fn open_series(&mut self, kind: &str, label: Option<&str>) {
+        let label = label.map(|label| format!(" data-series=\"{}\"", escape(label))).unwrap_or_default();
+        self.open_group(&format!("class=\"{kind}\"{label}"));
+    }
+
+    /// Closes the group opened last.
+    pub(crate) fn close_group(&mut self) {
+        self.body.push_str("</g>\n");
+    }
+
+    /// Texts of one look, held in one way.
+    pub(crate) fn texts<'a>(
+        &mut self,
+        anchor: Anchor,
+        font: Font,
+        texts: impl IntoIterator<Item = (f64, f64, &'a str)>,
+    ) {
+        self.open_group(&font.attributes(anchor));
+        for (x, y, content) in texts {
+            let _ = writeln!(
+                self.body,
+                "<text x=\"{}\" y=\"{}\">{}</text>",
+                short(x),
+                short(y),
+                markup(content, font.size)
+            );
+        }
+        self.close_group();
     }
 
     /// Opens an area that hides what reaches beyond it.
@@ -109,8 +169,7 @@ impl Svg {
         let _ = writeln!(
             self.body,
             "<image x=\"{x}\" y=\"{y}\" width=\"{w}\" height=\"{h}\" \
-             preserveAspectRatio=\"none\" image-rendering=\"optimizeSpeed\" \
-             style=\"image-rendering:pixelated\" href=\"data:image/png;base64,{data}\"/>"
+             preserveAspectRatio=\"none\" image-rendering=\"optimizeSpeed\" href=\"data:image/png;base64,{data}\"/>"
         );
     }
 
@@ -133,19 +192,7 @@ impl Svg {
         } else {
             format!("x=\"{x}\" y=\"{y}\"")
         };
-        let anchor = match anchor {
-            Anchor::Start => "",
-            Anchor::Middle => " text-anchor=\"middle\"",
-            Anchor::End => " text-anchor=\"end\"",
-        };
-        let _ = writeln!(
-            self.body,
-            "<text {place} font-size=\"{}\" fill=\"{}\"{anchor}{}>{}</text>",
-            short(font.size),
-            font.colour,
-            font.more,
-            markup(content, font.size)
-        );
+        let _ = writeln!(self.body, "<text {place} {}>{}</text>", font.attributes(anchor), markup(content, font.size));
     }
 }
 

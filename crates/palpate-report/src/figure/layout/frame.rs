@@ -18,6 +18,8 @@ pub(crate) const BAR: f64 = 8.0;
 pub(crate) const BAR_GAP: f64 = 7.0;
 /// Height of one legend row.
 pub(crate) const LEGEND_ROW: f64 = 10.5;
+/// Distance of a legend from the axes, and of one above all panels from the border.
+pub(crate) const INSET: f64 = 4.0;
 /// Height of the strip that names shaded stretches.
 pub(crate) const SPAN_STRIP: f64 = 9.5;
 /// Height of the line with the panel letter and title.
@@ -44,6 +46,8 @@ pub(crate) struct Frame<'a> {
     pub(crate) legend_rows: usize,
     /// Left border of the room that belongs to this panel.
     pub(crate) left: f64,
+    /// The room that belongs to this panel, with everything written around its axes.
+    pub(crate) cell: Rect,
 }
 
 #[derive(Debug, Clone, Copy, Default)]
@@ -54,8 +58,8 @@ struct Margins {
     bottom: f64,
 }
 
-/// Places all panels; `legend_rows` tells how many legend rows stand above each.
-pub(crate) fn arrange<'a>(figure: &'a Figure, legend_rows: &[usize]) -> Vec<Frame<'a>> {
+/// Places all panels below a strip of this height; `legend_rows` tells how many legend rows stand above each.
+pub(crate) fn arrange<'a>(figure: &'a Figure, strip: f64, legend_rows: &[usize]) -> Vec<Frame<'a>> {
     let columns = figure.columns();
     let rows = figure.panels.len().div_ceil(columns);
     let shared = figure.shares_x();
@@ -83,6 +87,7 @@ pub(crate) fn arrange<'a>(figure: &'a Figure, legend_rows: &[usize]) -> Vec<Fram
                 letter: figure.letter(i),
                 legend_rows: legend_rows.get(i).copied().unwrap_or(0),
                 left: 0.0,
+                cell: Rect::default(),
             }
         })
         .collect();
@@ -93,23 +98,19 @@ pub(crate) fn arrange<'a>(figure: &'a Figure, legend_rows: &[usize]) -> Vec<Fram
     // Tick labels decide the margins, and margins the ticks: twice is enough to agree.
     for _ in 0..2 {
         let margins: Vec<Margins> = frames.iter().map(Frame::margins).collect();
-        place(&mut frames, &margins, columns, (page_w, page_h));
+        place(&mut frames, &margins, columns, (page_w, page_h), strip);
     }
     frames
 }
 
-fn place(frames: &mut [Frame<'_>], margins: &[Margins], columns: usize, page: (f64, f64)) {
+fn place(frames: &mut [Frame<'_>], margins: &[Margins], columns: usize, page: (f64, f64), strip: f64) {
     let rows = frames.len().div_ceil(columns);
     let most = |pick: fn(&Margins) -> f64, keep: &dyn Fn(usize) -> bool| {
         let kept = margins.iter().enumerate().filter(|(i, _)| keep(*i));
         kept.map(|(_, m)| pick(m)).fold(0.0, f64::max)
     };
-    let sides: Vec<(f64, f64)> = (0..columns)
-        .map(|c| {
-            let here = |i: usize| i % columns == c;
-            (most(|m| m.left, &here), most(|m| m.right, &here))
-        })
-        .collect();
+    // Alike in all columns, so that panels have one size wherever they stand.
+    let (left, right) = (most(|m| m.left, &|_| true), most(|m| m.right, &|_| true));
     let heights: Vec<(f64, f64, f64)> = (0..rows)
         .map(|r| {
             let here = |i: usize| i / columns == r;
@@ -118,18 +119,18 @@ fn place(frames: &mut [Frame<'_>], margins: &[Margins], columns: usize, page: (f
             (most(|m| m.top, &here), most(|m| m.bottom, &here), share)
         })
         .collect();
-    let used: f64 = sides.iter().map(|(l, r)| l + r).sum();
-    let w = ((page.0 - used - GAP * (columns + 1) as f64) / columns as f64).max(10.0);
+    let w = ((page.0 - GAP * (columns + 1) as f64) / columns as f64 - left - right).max(10.0);
     let used: f64 = heights.iter().map(|(t, b, _)| t + b).sum();
     let shares: f64 = heights.iter().map(|h| h.2).sum();
     let room = page.1 - used - GAP * (rows + 1) as f64;
-    let mut y = GAP;
+    let mut y = GAP + strip;
     for (r, (top, bottom, share)) in heights.iter().enumerate() {
         let h = (room * share / shares).max(10.0);
         let mut x = GAP;
-        for (c, (left, right)) in sides.iter().enumerate() {
+        for c in 0..columns {
             if let Some(frame) = frames.get_mut(r * columns + c) {
                 frame.left = x;
+                frame.cell = Rect::new(x - GAP / 2.0, y - GAP / 2.0, left + w + right + GAP, top + h + bottom + GAP);
                 frame.settle(Rect::new(x + left, y + top, w, h));
             }
             x += left + w + right + GAP;
@@ -194,7 +195,7 @@ impl Frame<'_> {
 }
 
 impl Figure {
-    fn columns(&self) -> usize {
+    pub(in crate::figure) fn columns(&self) -> usize {
         match self.arrangement {
             Arrangement::Stacked => 1,
             Arrangement::SideBySide => self.panels.len().max(1),

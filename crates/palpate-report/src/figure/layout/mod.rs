@@ -18,8 +18,9 @@ mod scale;
 mod text;
 mod ticks;
 
-pub(super) use frame::{BAR, BAR_GAP, CAPTION, Frame, LEGEND_ROW, TICK, TICK_LENGTH, arrange};
+pub(super) use frame::{BAR, BAR_GAP, CAPTION, Frame, INSET, LEGEND_ROW, TICK, TICK_LENGTH, arrange};
 pub(super) use occupancy::Occupancy;
 pub(super) use rect::{Position, Rect};
-pub(super) use scale::{colour_limits, edges};
+pub(super) use scale::{Transform, colour_limits, edges};
 pub(super) use text::{markup, width};
+pub(super) use ticks::Ticks;

@@ -126,10 +126,9 @@ impl Extent {
             Mark::Points { x, y, error } => {
                 self.fit = self.fit.max(Fit::Loose);
                 self.take(if vertical { y } else { x }, scale);
-                if let (true, Some(error)) = (vertical, error) {
-                    for (y, e) in y.iter().zip(error) {
-                        self.take(&[y - e, y + e], scale);
-                    }
+                if let (true, Some((low, high))) = (vertical, error) {
+                    self.take(low, scale);
+                    self.take(high, scale);
                 }
             }
             Mark::Band { x, .. } if !vertical => self.take(x, scale),

@@ -111,28 +111,39 @@ fn logarithmic(low: f64, high: f64, count: f64) -> Ticks {
         };
     }
     let inside = |v: f64| v >= low * (1.0 - 1e-9) && v <= high * (1.0 + 1e-9);
-    let mantissas: &[u8] = match decades {
-        d if d < 1.5 && count >= 4.0 => &[1, 2, 5],
-        d if d < 2.2 && count >= 5.0 => &[1, 3],
-        _ => &[1],
-    };
-    let every = ((decades / count).ceil() as i32).max(1);
     let plain = first >= -3 && last <= 4;
-    let mut ticks = Ticks::default();
-    for power in first..=last {
-        for mantissa in 1..10u8 {
-            let value = f64::from(mantissa) * 10f64.powi(power);
-            if !inside(value) {
-                continue;
-            }
-            if mantissas.contains(&mantissa) && power.rem_euclid(every) == 0 {
-                ticks.major.push((value, log_label(mantissa, power, plain)));
-            } else if every == 1 || mantissa == 1 {
-                ticks.minor.push(value);
+    let labelled = |(mantissas, every): (&[u8], i32)| {
+        let mut ticks = Ticks::default();
+        for power in first..=last {
+            for mantissa in 1..10u8 {
+                let value = f64::from(mantissa) * 10f64.powi(power);
+                if !inside(value) {
+                    continue;
+                }
+                if mantissas.contains(&mantissa) && power.rem_euclid(every) == 0 {
+                    ticks.major.push((value, log_label(mantissa, power, plain)));
+                } else if every == 1 || mantissa == 1 {
+                    ticks.minor.push(value);
+                }
             }
         }
-    }
-    ticks
+        ticks
+    };
+    // The most labels that have room; of a short axis as few as two, for one alone says nothing of the scale.
+    let every = (1..=((decades / count).ceil() as i32).max(1)).rev().map(|every| (&[1][..], every));
+    let between: [(&[u8], i32); 2] = [(&[1, 3], 1), (&[1, 2, 5], 1)];
+    let choices: Vec<Ticks> = every.chain(between).map(labelled).collect();
+    // Between powers of ten only where there are few of them.
+    let most = if decades < 2.2 { choices.len() } else { choices.len() - between.len() };
+    let fits = |ticks: &&Ticks| ticks.major.len() >= 2 && ticks.major.len() as f64 <= (count + 1.0).round();
+    let fewest = || choices.iter().find(|ticks| ticks.major.len() >= 2);
+    choices[..most]
+        .iter()
+        .rev()
+        .find(fits)
+        .or_else(fewest)
+        .cloned()
+        .unwrap_or_else(|| linear(low, high, count))
 }
 
 fn log_label(mantissa: u8, power: i32, plain: bool) -> String {
@@ -180,6 +191,25 @@ mod tests {
         assert_eq!(ticks.minor.len(), 5 * 8);
         let ticks = Ticks::new(Scale::Log, 1e-12, 1e12, 5.0);
         assert!(ticks.major.len() <= 6);
+    }
+
+    #[test]
+    fn a_log_axis_of_any_range_has_two_labels_or_more() {
+        for low in [1e-7, 0.011, 0.15, 0.2, 0.9, 1.0, 3.3, 70.0] {
+            for decades in [0.01, 0.1, 0.3, 0.5, 0.75, 0.95, 1.1, 1.3, 1.7, 2.1, 2.6, 4.0, 9.0] {
+                for count in [2.0, 3.0, 4.2, 9.0] {
+                    let ticks = Ticks::new(Scale::Log, low, low * 10f64.powf(decades), count);
+                    let found = labels(&ticks);
+                    assert!(
+                        found.len() >= 2 && found.len() as f64 <= 3.0 * count,
+                        "{low} {decades} {count}: {found:?}"
+                    );
+                    let distinct: std::collections::HashSet<_> = found.iter().collect();
+                    assert_eq!(distinct.len(), found.len(), "{low} {decades}: {found:?}");
+                }
+            }
+        }
+        assert_eq!(labels(&Ticks::new(Scale::Log, 0.15, 2.0, 3.0)), ["0.2", "0.5", "1", "2"]);
     }
 
     #[test]

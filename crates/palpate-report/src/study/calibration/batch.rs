@@ -8,7 +8,7 @@ use crate::number::significant;
 use crate::page::{Block, Page, Section};
 use crate::result::{CalibratedBatch, ParameterDocument, parameter_title, percent, si_unit};
 use crate::study::bundle::StudyError;
-use crate::study::grid::by_hold;
+use crate::study::grid::{by_hold, columns, grid};
 use crate::table::{Cell, Table};
 use crate::wrap::wrapped;
 
@@ -88,7 +88,8 @@ pub fn batch_page(batch: &CalibratedBatch) -> Result<Page, StudyError> {
         .block(Block::Table(batch_table(batch)))
         .block(Block::Table(records_table(batch)))
         .block(Block::List(batch.remarks()));
-    if let Some(figure) = batch_figure(batch, "calibration") {
+    let records = panels(batch);
+    for figure in by_hold("calibration", CAPTION, (80.0, 54.0), (&records, "records"), Panel::clone) {
         section = section.block(Block::figure(&figure)?);
     }
     let mut page = Page::new("Calibration", "One calibration of several records, ramps and holds").section(section);
@@ -98,17 +99,23 @@ pub fn batch_page(batch: &CalibratedBatch) -> Result<Page, StudyError> {
     Ok(page.provenance("Software", Software::this().to_string()))
 }
 
+const CAPTION: &str = "The records with the law that was calibrated on all of them.";
+
 /// Measured and simulated force over time, a panel for each record.
 #[must_use]
 pub fn batch_figure(batch: &CalibratedBatch, name: &str) -> Option<Figure> {
-    let panel = |(specimen, data): &(&CalibratedSpecimen, &CalibrationData)| {
+    let panels = panels(batch);
+    let columns = columns(panels.len());
+    grid(name, CAPTION.to_owned(), panels, columns, if columns == 1 { 80.0 } else { 62.0 })
+}
+
+fn panels(batch: &CalibratedBatch) -> Vec<Panel> {
+    let panel = |(specimen, data): (&CalibratedSpecimen, &CalibrationData)| {
         let times = || data.times().to_vec();
         Panel::over_time("Force", "N")
             .title(&specimen.name)
             .layer(Layer::line(times(), data.forces().to_vec(), Role::Measured).label("measured"))
             .layer(Layer::line(times(), specimen.simulated.clone(), Role::Fitted).label("calibrated"))
     };
-    let records: Vec<(&CalibratedSpecimen, &CalibrationData)> = batch.found.specimens.iter().zip(&batch.data).collect();
-    let caption = "The records with the law that was calibrated on all of them.";
-    by_hold(name, caption, (80.0, 62.0), (&records, "records"), panel)
+    batch.found.specimens.iter().zip(&batch.data).map(panel).collect()
 }

@@ -1,13 +1,14 @@
 //! Figures of compared laws.
 
 use palpate::fit::SpectrumFit;
-use palpate::forecast::{Comparison, Forecasted, HoldForecast, Row};
+use palpate::forecast::{Comparison, Row};
 use palpate::laws::Law;
+use palpate::units::quantity;
 
 use crate::figure::{Axis, Figure, Layer, Panel, Role};
-use crate::number::significant;
-use crate::result::{ComparedHold, ComparedRecord, law_of_record, word};
+use crate::result::{ComparedHold, ComparedRecord, law_of_record};
 use crate::study::findings::entry;
+use crate::study::forecast::{forecast_panel, predicted};
 use crate::study::grid::by_hold;
 
 /// Laws that a panel shows; there are no more markers that can be distinguished.
@@ -16,6 +17,8 @@ const MOST_LAWS: usize = 8;
 const FEWER_LAWS: usize = 5;
 /// Laws whose residuals are shown.
 const MOST_RESIDUALS: usize = 3;
+/// What those are called where each hold has its own.
+const RANKS: [&str; MOST_RESIDUALS] = ["recommended law", "second", "third"];
 /// Stretches of ln t over which residuals are averaged.
 const STRETCHES: usize = 60;
 
@@ -27,52 +30,28 @@ pub(in crate::study) fn all(record: &ComparedRecord, suffix: &str) -> Vec<Figure
         law_residuals(record, suffix),
         spectra(record, suffix),
     ]
-    .into_iter()
-    .flatten()
-    .collect()
+    .concat()
 }
 
 /// What each hold will show next, up to three times its duration.
-fn forecasts(record: &ComparedRecord, suffix: &str) -> Option<Figure> {
-    const POINTS: usize = 81;
-    const FARTHEST: f64 = 3.0;
-    const CONFIDENCE: f64 = 0.95;
-    let holds: Vec<_> = record.verdicts().filter_map(|(hold, found)| Some((hold, found.forecast.as_ref()?))).collect();
-    let panel = |(hold, forecast): &(&ComparedHold, &HoldForecast)| {
-        let largest = hold.values.iter().fold(0.0, |most: f64, value| most.max(value.abs()));
-        let (unit, factor) = hold.quantity.for_people(largest);
-        let (measured, means) = averaged(hold, factor, |_| 0.0);
-        let end = forecast.duration;
-        let begin = measured.first().map_or(0.01 * end, |first| first.min(end));
-        let spaced = |from: f64, to: f64| -> Vec<f64> {
-            (0..POINTS).map(|i| from * (to / from).powf(i as f64 / (POINTS - 1) as f64)).collect()
-        };
-        let (before, beyond) = (spaced(begin, end), spaced(end, FARTHEST * end));
-        let found = |times: &[f64]| forecast.at_times(times, CONFIDENCE);
-        let column = |of: &[Forecasted], pick: fn(&Forecasted) -> f64| -> Vec<f64> {
-            of.iter().map(|at| factor * pick(at)).collect()
-        };
-        let (fitted, next) = (found(&before), found(&beyond));
-        let (low, high) = (column(&next, |at| at.low), column(&next, |at| at.high));
-        let value = [column(&fitted, |at| at.value), column(&next, |at| at.value)].concat();
-        Panel::new(Axis::log("Time", "s"), Axis::linear(word(hold.quantity), unit))
-            .title(hold.short_title())
-            .layer(Layer::vertical(end, Role::Reference))
-            .layer(Layer::band(beyond.clone(), low, high, Role::Fitted).label("95 % of samples"))
-            .layer(Layer::points(measured, means, Role::Measured).label("measured, means"))
-            .layer(Layer::line([before, beyond].concat(), value, Role::Fitted).label("forecast"))
+fn forecasts(record: &ComparedRecord, suffix: &str) -> Vec<Figure> {
+    let holds: Vec<_> = record.verdicts().filter(|(_, found)| found.forecast.is_some()).collect();
+    let panel = |(hold, comparison): &(&ComparedHold, &Comparison)| {
+        let (measured, means) = averaged(hold, |_| 0.0);
+        let measured = Layer::points(measured, means, Role::Measured).label("measured, means");
+        forecast_panel(hold, comparison, measured, |_| "recommended law".to_owned()).title(hold.short_title())
     };
     by_hold(
         &format!("forecasts{suffix}"),
-        "What each hold will show next, up to three times its duration (line), from all laws together: each counts by what it has predicted of the hold so far. The band is for a sample; it covered what followed in 19 of 20 of the measured holds on which its width was set.",
-        (1.4 * 62.0, 62.0),
+        "What each hold will show next, from its end to three times its duration: the recommended law, and the forecast from all laws together, in which each counts by what it has predicted of the hold so far. The band is for a sample; it covered what followed in 19 of 20 of the measured holds on which its width was set.",
+        (84.0, 54.0),
         (&holds, "holds"),
         panel,
     )
 }
 
 /// Forward error of each law after each cut.
-fn forward_errors(record: &ComparedRecord, suffix: &str) -> Option<Figure> {
+fn forward_errors(record: &ComparedRecord, suffix: &str) -> Vec<Figure> {
     let holds: Vec<_> = record.verdicts().filter(|(_, comparison)| !comparison.cuts.is_empty()).collect();
     let (laws, all) = best_laws(record, &holds);
     let panel = |(hold, comparison): &(&ComparedHold, &Comparison)| {
@@ -91,7 +70,7 @@ fn forward_errors(record: &ComparedRecord, suffix: &str) -> Option<Figure> {
             "Held-out error: each law fitted to the first part of a hold, root mean square error of its prediction of the rest in % of the change of the signal.{left}{}",
             for_record(record)
         ),
-        (1.4 * 78.0, 78.0),
+        (100.0, 54.0),
         (&holds, "holds"),
         panel,
     )
@@ -133,45 +112,35 @@ fn forward_layers(row: &Row, comparison: &Comparison, series: usize) -> Vec<Laye
 }
 
 /// Residuals of the best laws, averaged over stretches of ln t.
-fn law_residuals(record: &ComparedRecord, suffix: &str) -> Option<Figure> {
+fn law_residuals(record: &ComparedRecord, suffix: &str) -> Vec<Figure> {
     let holds: Vec<_> = record.verdicts().collect();
     let panel = |(hold, comparison): &(&ComparedHold, &Comparison)| {
-        let (unit, factor) = hold.quantity.for_people(comparison.change);
-        let mut panel = Panel::new(Axis::log("Time", "s"), Axis::linear("Mean residual", unit))
-            .title(hold.short_title())
-            .zero_line();
+        let mut panel =
+            Panel::new(Axis::log("Time", "s"), Axis::linear("Mean residual", hold.quantity.axis_unit())).zero_line();
         let chosen = comparison.verdict.as_ref().map(|verdict| verdict.law);
         let mut rows: Vec<&Row> = comparison.rows.iter().filter(|row| row.is_good()).collect();
         rows.sort_by_key(|row| Some(row.law) != chosen);
-        for (series, row) in rows.into_iter().take(MOST_RESIDUALS).enumerate() {
-            let (times, means) = averaged(hold, factor, |t| predicted(row, t));
-            let label = if Some(row.law) == chosen { format!("{}, recommended", row.law) } else { row.law.to_string() };
-            panel = panel.layer(Layer::line(times, means, Role::Series(series as u8)).label(label));
+        let rows: Vec<&Row> = rows.into_iter().take(MOST_RESIDUALS).collect();
+        for (rank, row) in rows.iter().enumerate() {
+            let (times, means) = averaged(hold, |t| predicted(row, t));
+            panel = panel.layer(Layer::line(times, means, Role::Series(rank as u8)).label(RANKS[rank]));
         }
-        panel
+        let law = chosen.map_or_else(String::new, |law| format!(": {law}"));
+        panel.title(format!("Hold {}{law}", hold.number))
     };
     by_hold(
         &format!("law_residuals{suffix}"),
         format!(
-            "Residuals of the best laws fitted to the whole hold (measured less fitted, averaged over {STRETCHES} intervals of ln t). Noise scatters about zero; a systematic wave indicates a misfit of the law."
+            "Residuals of the recommended law, which the title of a panel names, and of the two that follow in the table of its hold (measured less fitted, averaged over {STRETCHES} intervals of ln t). Noise scatters about zero; a systematic wave indicates a misfit of the law."
         ),
-        (1.4 * 62.0, 62.0),
+        (84.0, 54.0),
         (&holds, "holds"),
         panel,
     )
 }
 
-/// What a law fitted to the whole hold is at a time.
-fn predicted(row: &Row, t: f64) -> f64 {
-    match (&row.spectrum, &row.fit) {
-        (Some(spectrum), _) => spectrum.predict(t),
-        (None, Ok(fit)) => fit.predict(t),
-        (None, Err(_)) => f64::NAN,
-    }
-}
-
-/// Means of what is measured less a curve over stretches that are equally long in ln t, in the unit for people.
-fn averaged(hold: &ComparedHold, factor: f64, curve: impl Fn(f64) -> f64) -> (Vec<f64>, Vec<f64>) {
+/// Means of what is measured less a curve over stretches that are equally long in ln t.
+fn averaged(hold: &ComparedHold, curve: impl Fn(f64) -> f64) -> (Vec<f64>, Vec<f64>) {
     // The first sample is at time zero, which a logarithm has no place for.
     let first = hold.times.partition_point(|t| *t <= 0.0);
     let (times, values) = (&hold.times[first..], &hold.values[first..]);
@@ -182,56 +151,54 @@ fn averaged(hold: &ComparedHold, factor: f64, curve: impl Fn(f64) -> f64) -> (Ve
     for (t, y) in times.iter().zip(values) {
         let place = (t / start).ln() / (end / start).ln() * STRETCHES as f64;
         let stretch = &mut sums[(place as usize).min(STRETCHES - 1)];
-        *stretch = (stretch.0 + t.ln(), stretch.1 + factor * (y - curve(*t)), stretch.2 + 1);
+        *stretch = (stretch.0 + t.ln(), stretch.1 + y - curve(*t), stretch.2 + 1);
     }
     let filled = sums.into_iter().filter(|(.., count)| *count > 0);
     filled.map(|(ln_t, sum, count)| ((ln_t / count as f64).exp(), sum / count as f64)).unzip()
 }
 
 /// The dense spectrum of each hold, as stems over ln τ.
-fn spectra(record: &ComparedRecord, suffix: &str) -> Option<Figure> {
+fn spectra(record: &ComparedRecord, suffix: &str) -> Vec<Figure> {
     let spectrum = |comparison: &'_ Comparison| comparison.rows.iter().find_map(|row| row.spectrum.clone());
     let holds: Vec<_> = record.verdicts().filter_map(|(hold, found)| Some((hold, spectrum(found)?))).collect();
     by_hold(
         &format!("spectra{suffix}"),
         "The dense spectrum of each hold: amplitude against relaxation time; the line marks the duration of the hold. If the slowest time has weight the spectrum is open-ended, and its equilibrium is a convention of the grid.",
-        (1.4 * 62.0, 62.0),
+        (84.0, 54.0),
         (&holds, "holds"),
         |(hold, fit)| spectrum_panel(hold, fit),
     )
 }
 
 fn spectrum_panel(hold: &ComparedHold, fit: &SpectrumFit) -> Panel {
-    let largest = hold.values.iter().fold(0.0, |most: f64, value| most.max(value.abs()));
-    let (unit, factor) = hold.quantity.for_people(largest);
     let stems: Vec<(f64, f64)> = fit
         .times
         .iter()
         .zip(&fit.amplitudes)
         .filter(|(_, height)| **height > 0.0)
-        .map(|(time, height)| (*time, factor * fit.sign * height))
+        .map(|(time, height)| (*time, fit.sign * height))
         .collect();
     let (mut x, mut y) = (Vec::new(), Vec::new());
     for (time, height) in &stems {
         x.extend([*time, *time, f64::NAN]);
         y.extend([0.0, *height, f64::NAN]);
     }
-    let end = significant(factor * fit.equilibrium, 4);
     let title = if fit.is_open_ended() {
         format!("Hold {}: open-ended", hold.number)
-    } else if unit.is_empty() {
-        format!("Hold {}: equilibrium {end}", hold.number)
     } else {
-        format!("Hold {}: equilibrium {end} {unit}", hold.number)
+        format!("Hold {}: equilibrium {}", hold.number, quantity(fit.equilibrium, hold.quantity.axis_unit(), 4))
     };
     let (first, last) = (fit.times.first().copied().unwrap_or(1.0), fit.times.last().copied().unwrap_or(1.0));
     let (times, heights) = stems.into_iter().unzip();
-    Panel::new(Axis::log("Relaxation time τ", "s").range(0.9 * first, 1.1 * last), Axis::linear("Amplitude", unit))
-        .title(title)
-        .zero_line()
-        .layer(Layer::vertical(fit.duration, Role::Reference))
-        .layer(Layer::line(x, y, Role::Series(0)))
-        .layer(Layer::points(times, heights, Role::Series(0)))
+    Panel::new(
+        Axis::log("Relaxation time τ", "s").range(0.9 * first, 1.1 * last),
+        Axis::linear("Amplitude", hold.quantity.axis_unit()),
+    )
+    .title(title)
+    .zero_line()
+    .layer(Layer::vertical(fit.duration, Role::Reference))
+    .layer(Layer::line(x, y, Role::Series(0)))
+    .layer(Layer::points(times, heights, Role::Series(0)))
 }
 
 #[cfg(test)]
@@ -265,7 +232,7 @@ mod tests {
             findings: Vec::new(),
         };
         for row in &comparison.rows {
-            let (times, means) = averaged(&hold, 1.0, |t| predicted(row, t));
+            let (times, means) = averaged(&hold, |t| predicted(row, t));
             assert!(times.windows(2).all(|pair| pair[0] < pair[1]) && times.len() <= STRETCHES);
             let late = &means[means.len() - 5..];
             assert!(late.iter().all(|mean| mean.abs() < 0.5 * comparison.noise), "{}: {late:?}", row.law);

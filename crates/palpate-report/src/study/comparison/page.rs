@@ -4,11 +4,10 @@ use super::{figures, tables};
 use palpate::watch::Watch;
 
 use crate::document::{ComparisonDocument, ComparisonSettingsDocument, Software};
-use crate::figure::MOST_PANELS;
 use crate::page::{Block, Page, Section};
 use crate::result::{Answer, ComparedRecord, LeftOut, parameters_table};
-use crate::study::bundle::{Bundle, Drawing, Pictures, StudyError};
-use crate::study::{answer, findings};
+use crate::study::bundle::{Bundle, Drawing, Pictures, StudyError, named};
+use crate::study::{answer, findings, first_page};
 
 /// All files of compared records: `report.html`, `comparison.json`, `comparison.md`, `tables/*.csv`, `figures/*.svg`.
 ///
@@ -25,11 +24,24 @@ pub fn comparison_bundle(
     let mut page = Page::new("Laws compared", "Law of relaxation or creep to use, and its certainty");
     for (index, record) in records.iter().enumerate() {
         let suffix = if records.len() == 1 { String::new() } else { format!("_{}", index + 1) };
+        let summary = bundle.figures(
+            first_page::figure_of_hold(record, &format!("summary{suffix}")).as_slice(),
+            pictures,
+            watch,
+        )?;
         let drawings = bundle.figures(&figures::all(record, &suffix), pictures, watch)?;
         let found = findings::gathered_of(record, findings::MOST_LINES);
-        let mut section = Section::new(&record.input.title)
-            .blocks(answer::answer_blocks(record, &Answer::new(record), &found))
-            .blocks(blocks(record, &drawings));
+        let answer = Answer::new(record);
+        let first = first_page::of_comparison(record, &answer, summary.iter().map(Drawing::block), &found);
+        let mut section = Section::new(&record.input.title);
+        // Of several records each has its own first page in its section.
+        if records.len() == 1 {
+            page = page.first(first);
+            page.subtitle = record.input.title.clone();
+        } else {
+            section = section.blocks(first);
+        }
+        section = section.blocks(answer::answer_blocks(record, &answer)).blocks(blocks(record, &drawings));
         if !found.is_empty() {
             section = section
                 .block(Block::Subheading("Findings".to_owned()))
@@ -64,19 +76,18 @@ pub(in crate::study) fn blocks(record: &ComparedRecord, drawings: &[Drawing]) ->
         [(_, comparison)] => blocks.extend(tables::sentences(comparison).map(Block::Paragraph)),
         _ => {}
     }
-    blocks.extend(drawings.iter().map(Drawing::block));
-    for (hold, comparison) in judged.iter().take(MOST_PANELS) {
+    blocks.extend(named(drawings, ""));
+    for (hold, comparison) in &judged {
+        let table = tables::laws_of_hold(record, hold).map(Block::Table);
         if judged.len() > 1 {
-            blocks.push(Block::Subheading(hold.title()));
-            blocks.extend(tables::sentences(comparison).map(Block::Paragraph));
+            let sentences = tables::sentences(comparison).map(Block::Paragraph);
+            blocks.push(Block::Folded {
+                title: hold.title(),
+                blocks: sentences.chain(table).collect(),
+            });
+        } else {
+            blocks.extend(table);
         }
-        blocks.extend(tables::laws_of_hold(record, hold).map(Block::Table));
-    }
-    if judged.len() > MOST_PANELS {
-        blocks.push(Block::paragraph(format!(
-            "The first {MOST_PANELS} holds are shown; tables/laws.csv has all {}.",
-            judged.len()
-        )));
     }
     blocks.push(Block::List(tables::NOTES.map(str::to_owned).into()));
     blocks

@@ -1,31 +1,48 @@
 //! Figures of an analysed record.
 
 use palpate::analysis::{Analysis, HoldAnalysis, Signal};
-use palpate::fit::{ExponentChoice, LatencyFit, Termination};
+use palpate::fit::{ExponentChoice, LatencyFit};
 use palpate::forecast::Row;
 use palpate::segment::After;
 
 use super::cut::{MOST_NAMED, shaded};
-use crate::figure::{Arrangement, Axis, Figure, Layer, MOST_PANELS, Panel, Role};
-use crate::study::grid::{by_hold, displacement_panel, first_of, grid};
+use crate::figure::{Arrangement, Axis, Figure, Layer, Panel, Role};
+use crate::result::ComparedRecord;
+use crate::study::first_page::panel_of_hold;
+use crate::study::grid::{by_hold, displacement_panel, grid};
 
 /// Points that a fitted curve is drawn with.
 const CURVE: usize = 200;
 /// Holds that share a panel.
 const MOST_SERIES: usize = 8;
 
+/// All figures of a record, in order; `look` ends it.
+pub(super) fn all<E>(analysis: &Analysis, mut look: impl FnMut(usize) -> Result<(), E>) -> Result<Vec<Figure>, E> {
+    let makes: [&dyn Fn() -> Vec<Figure>; 5] = [
+        &|| vec![record(analysis, "record")],
+        &|| strain_rates(analysis, "strain_rates").into_iter().collect(),
+        &|| holds(analysis, "holds"),
+        &|| residuals(analysis, "residuals"),
+        &|| trend(analysis, "trend").into_iter().collect(),
+    ];
+    let mut figures = Vec::new();
+    for (done, make) in makes.into_iter().enumerate() {
+        look(done)?;
+        figures.extend(make());
+    }
+    Ok(figures)
+}
+
 /// Force over displacement over time with the phases, the paper's figure 4; the simulated force laid over where there is one.
 pub(super) fn record(analysis: &Analysis, name: &str) -> Figure {
     let time = analysis.record.time();
-    let holds: Vec<(f64, f64)> = analysis.holds.iter().map(|hold| (hold.start, hold.end)).collect();
-    let measured = Layer::line(time.to_vec(), analysis.record.force().to_vec(), Role::Measured).label("measured");
-    let mut force = shaded(Panel::over_time("Force", "N").share(1.7), &holds).layer(measured);
+    let mut force = force_panel(analysis).share(1.7);
     if let Some(overlay) = &analysis.overlay {
         let n = overlay.model.law.exponent();
         let label = format!("simulated, n = {n}");
         force = force.layer(Layer::line(overlay.time.clone(), overlay.force.clone(), Role::Simulated).label(label));
     }
-    let numbered = if holds.len() <= MOST_NAMED { ", with their numbers" } else { "" };
+    let numbered = if analysis.holds.len() <= MOST_NAMED { ", with their numbers" } else { "" };
     let quantities = if analysis.record.displacement().is_some() { "Force and displacement" } else { "Force" };
     let mut caption = format!("{quantities} over time. Shaded: the detected holds{numbered}.");
     if analysis.overlay.is_some() {
@@ -37,10 +54,43 @@ pub(super) fn record(analysis: &Analysis, name: &str) -> Figure {
     Figure::new(name, caption).panel(force).panels(jaw)
 }
 
+/// Force over time with the phases.
+pub(in crate::study) fn force_panel(analysis: &Analysis) -> Panel {
+    let holds: Vec<(f64, f64)> = analysis.holds.iter().map(|hold| (hold.start, hold.end)).collect();
+    let (time, force) = (analysis.record.time().to_vec(), analysis.record.force().to_vec());
+    shaded(Panel::over_time("Force", "N"), &holds).layer(Layer::line(time, force, Role::Measured).label("measured"))
+}
+
+/// The record, and the hold that stands for it with its law and its forecast; of a record without a hold its loading.
+pub(super) fn summary(analysis: &Analysis, record: &ComparedRecord, name: &str) -> Figure {
+    let force = force_panel(analysis).title("Record");
+    let fitted = || analysis.holds.iter().find(|hold| !hold.fits.is_empty());
+    let of_fit = || {
+        let hold = fitted()?;
+        let what = "over the logarithm of the time since the start of its fit, with the fitted laws.";
+        Some((hold_panel(analysis, hold), format!("Hold {} {what}", hold.number)))
+    };
+    let loading = || {
+        let travel = analysis.record.displacement()?.iter().map(|d| 1e3 * d).collect();
+        let layer = Layer::line(travel, analysis.record.force().to_vec(), Role::Measured);
+        let panel = Panel::new(Axis::linear("Displacement", "mm"), Axis::linear("Force", "N")).layer(layer);
+        Some((panel, "Force against displacement.".to_owned()))
+    };
+    let shaded = if analysis.holds.is_empty() { "" } else { " Shaded: the detected holds." };
+    match panel_of_hold(record).or_else(of_fit).or_else(loading) {
+        Some((second, what)) => Figure::new(name, format!("(a) Force over time.{shaded} (b) {what}"))
+            .panel(force)
+            .panel(second)
+            .arrangement(Arrangement::SideBySide)
+            .height_mm(76.0),
+        None => Figure::new(name, format!("Force over time.{shaded}")).panel(force).width_mm(120.0).height_mm(72.0),
+    }
+}
+
 /// Strain rate against strain with the fitted law, hold by hold: the paper's figure 6. `None` where no strain is known.
 pub(in crate::study) fn strain_rates(analysis: &Analysis, name: &str) -> Option<Figure> {
     let n = analysis.across.common_exponent?;
-    let (mut panels, mut most) = (Vec::new(), 0);
+    let mut panels = Vec::new();
     let mut caption = format!(
         "Strain rate against strain (points: smoothed differences of the record; lines: the law with n = {n} fitted to the signal over time)."
     );
@@ -50,41 +100,20 @@ pub(in crate::study) fn strain_rates(analysis: &Analysis, name: &str) -> Option<
             .iter()
             .filter(|hold| hold.after == Some(after) && hold.signal == Signal::Strain && !hold.rates.rate.is_empty())
             .collect();
-        let shown = spread(&holds, MOST_SERIES);
-        if shown.is_empty() {
-            continue;
+        let (mut outside, mut points) = (0, 0);
+        for holds in holds.chunks(MOST_SERIES) {
+            let (panel, beyond) = rate_panel(holds, n);
+            outside += beyond;
+            points += holds.iter().map(|hold| hold.rates.rate.len()).sum::<usize>();
+            panels.push(panel.title(title));
         }
-        if shown.len() < holds.len() {
-            caption.push_str(&format!(
-                " {title}: {} of {} holds, spread over the displacements.",
-                shown.len(),
-                holds.len()
-            ));
-        }
-        let (panel, outside) = rate_panel(&shown, n);
         if outside > 0 {
-            let points: usize = shown.iter().map(|hold| hold.rates.rate.len()).sum();
             caption.push_str(&format!(" {title}: {outside} of {points} points lie outside the axes."));
         }
-        most = most.max(shown.len());
-        panels.push(panel.title(title));
     }
     // Long legends stand above the axes and need room of their own.
-    let height = if most > 5 { 84.0 } else { 66.0 };
-    let figure = Figure::new(name, caption).arrangement(Arrangement::SideBySide).height_mm(height);
-    (!panels.is_empty()).then(|| figure.panels(panels))
-}
-
-/// At most `most` holds, spread over the displacements, in the order of the record.
-fn spread<'a>(holds: &[&'a HoldAnalysis], most: usize) -> Vec<&'a HoldAnalysis> {
-    if holds.len() <= most {
-        return holds.to_vec();
-    }
-    let mut sorted = holds.to_vec();
-    sorted.sort_by(|a, b| a.displacement.unwrap_or(0.0).total_cmp(&b.displacement.unwrap_or(0.0)));
-    let mut chosen: Vec<&HoldAnalysis> = (0..most).map(|i| sorted[i * (sorted.len() - 1) / (most - 1)]).collect();
-    chosen.sort_by_key(|hold| hold.number);
-    chosen
+    let row_mm = if analysis.holds.len() > 10 { 84.0 } else { 66.0 };
+    grid(name, caption, panels, 2, row_mm)
 }
 
 /// The strain rates of some holds with their laws, and how many points lie outside the range shown.
@@ -151,10 +180,10 @@ fn rate_curve(fit: &LatencyFit, hold: &HoldAnalysis) -> (Vec<f64>, Vec<f64>) {
 }
 
 /// Each hold over the logarithm of time with its fits, and their residuals.
-pub(super) fn holds(analysis: &Analysis, name: &str) -> Option<Figure> {
+pub(super) fn holds(analysis: &Analysis, name: &str) -> Vec<Figure> {
     let fitted: Vec<&HoldAnalysis> = analysis.holds.iter().filter(|hold| !hold.fits.is_empty()).collect();
-    let caption = "Relaxation over the logarithm of the time since the start of the fit, with the recommended law and, where they differ from it, the latency law at the exponent common to all holds and with the exponent estimated.";
-    by_hold(name, caption, (95.0, 62.0), (&fitted, "fitted holds"), |hold| hold_panel(analysis, hold))
+    let caption = "Relaxation over the logarithm of the time since the start of the fit, with the recommended law, which the title of a panel names, and, where they differ from it, the latency law at the exponent common to all holds and with the exponent estimated.";
+    by_hold(name, caption, (95.0, 54.0), (&fitted, "fitted holds"), |hold| hold_panel(analysis, hold))
 }
 
 fn hold_panel(analysis: &Analysis, hold: &HoldAnalysis) -> Panel {
@@ -166,18 +195,17 @@ fn hold_panel(analysis: &Analysis, hold: &HoldAnalysis) -> Panel {
     let visible = hold.times.partition_point(|t| *t <= 0.0);
     let (times, values) = (hold.times[visible..].to_vec(), hold.values[visible..].to_vec());
     let (first, last) = (times.first().copied().unwrap_or(1.0), times.last().copied().unwrap_or(1.0));
-    let title = match hold.displacement {
-        Some(d) => format!("Hold {}, {} mm", hold.number, fixed(d * 1e3)),
-        None => format!("Hold {}", hold.number),
-    };
+    let held = hold.displacement.map_or_else(String::new, |d| format!(", {} mm", fixed(d * 1e3)));
+    let law = recommended(hold).map_or_else(String::new, |row| format!(": {}", row.law));
     let mut panel = Panel::new(Axis::log("Time", "s"), y)
-        .title(title)
+        .title(format!("Hold {}{held}{law}", hold.number))
         .layer(Layer::points(times, values, Role::Measured).label("measured"));
     if hold.fitted < hold.times.len() {
         panel = panel.layer(Layer::vertical(hold.times[hold.fitted - 1], Role::Reference).label("fitted until"));
     }
     let curve: Vec<f64> = (0..CURVE).map(|i| first * (last / first).powf(i as f64 / (CURVE - 1) as f64)).collect();
-    for (role, label, predict) in drawn_laws(analysis, hold) {
+    // The recommended law lies above its alternatives.
+    for (role, label, predict) in drawn_laws(analysis, hold).into_iter().rev() {
         panel = panel.layer(Layer::line(curve.clone(), curve.iter().map(|t| predict(*t)).collect(), role).label(label));
     }
     panel
@@ -191,19 +219,18 @@ fn drawn_laws<'a>(analysis: &Analysis, hold: &'a HoldAnalysis) -> Vec<Drawn<'a>>
     let mut drawn: Vec<Drawn<'a>> = Vec::new();
     let recommended = recommended(hold);
     if let Some(row) = recommended {
-        drawn.push((Role::Fitted, format!("{}, recommended", row.law), Box::new(predictor(row))));
+        drawn.push((Role::Fitted, "recommended law".to_owned(), Box::new(predictor(row))));
     }
     let common = analysis.across.common_exponent.map(ExponentChoice::Fixed);
     for fit in hold.fits.iter().filter(|fit| Some(fit.choice()) == common || fit.choice() == ExponentChoice::Free) {
         if recommended.is_some_and(|row| row.law == fit.law) {
             continue;
         }
-        let label = match fit.termination {
-            Termination::ExponentAtBound => format!("latency, n at its bound of {}", fit.exponent().value),
-            _ if fit.choice() == ExponentChoice::Free => format!("latency, n = {:.2} estimated", fit.exponent().value),
-            _ => fit.law.to_string(),
+        let (label, role) = match fit.choice() {
+            ExponentChoice::Free => ("latency law, n estimated".to_owned(), Role::Alternative(1)),
+            ExponentChoice::Fixed(n) => (format!("latency law, n = {n}"), Role::Alternative(0)),
         };
-        let role = if drawn.is_empty() { Role::Fitted } else { Role::Alternative(drawn.len() as u8 - 1) };
+        let role = if drawn.is_empty() { Role::Fitted } else { role };
         drawn.push((role, label, Box::new(move |t| fit.predict(t))));
     }
     drawn
@@ -226,7 +253,7 @@ fn predictor(row: &Row) -> impl Fn(f64) -> f64 + '_ {
 }
 
 /// Residuals of the recommended laws over the logarithm of time.
-pub(super) fn residuals(analysis: &Analysis, name: &str) -> Option<Figure> {
+pub(super) fn residuals(analysis: &Analysis, name: &str) -> Vec<Figure> {
     let all: Vec<(&HoldAnalysis, Drawn<'_>)> = analysis
         .holds
         .iter()
@@ -238,25 +265,24 @@ pub(super) fn residuals(analysis: &Analysis, name: &str) -> Option<Figure> {
         hold.times.iter().zip(&hold.values).all(|(t, y)| (y - predict(*t)).abs() <= 1e-9 * largest)
     };
     let worth: Vec<_> = all.iter().filter(|drawn| !is_rounding(drawn)).collect();
-    let fitted = &worth[..worth.len().min(MOST_PANELS)];
     let exact = match all.len() - worth.len() {
         0 => String::new(),
         count => format!(" Omitted: {count} holds whose residuals are within rounding."),
     };
     let caption = format!(
-        "Residuals of the recommended law on each hold (measured less fitted). Noise scatters about zero; a systematic wave indicates a misfit of the law.{}{exact}",
-        first_of(fitted.len(), worth.len(), "fitted holds")
+        "Residuals of the recommended law on each hold (measured less fitted). Noise scatters about zero; a systematic wave indicates a misfit of the law.{exact}"
     );
-    let panel = |(hold, (_, label, predict)): &(&HoldAnalysis, Drawn<'_>)| {
+    let panel = |(hold, (_, label, predict)): &&(&HoldAnalysis, Drawn<'_>)| {
         let visible = hold.times.partition_point(|t| *t <= 0.0);
         let (times, values) = (&hold.times[visible..], &hold.values[visible..]);
         let left = times.iter().zip(values).map(|(t, y)| (y - predict(*t)) * hold.force_per_signal);
+        let law = recommended(hold).map_or_else(|| label.clone(), |row| row.law.to_string());
         Panel::new(Axis::log("Time", "s"), Axis::linear("Residual", "N"))
-            .title(format!("Hold {}, {}", hold.number, label.trim_end_matches(", recommended")))
+            .title(format!("Hold {}: {law}", hold.number))
             .zero_line()
             .layer(Layer::points(times.to_vec(), left.collect(), Role::Measured))
     };
-    grid(name, caption, fitted.iter().copied().map(panel).collect(), fitted.len().min(3), 50.0)
+    by_hold(name, caption, (60.0, 46.0), (&worth, "fitted holds"), panel)
 }
 
 /// Rate coefficient against equilibrium strain with error bars: the trend of Tables I and II.
@@ -274,8 +300,8 @@ pub(super) fn trend(analysis: &Analysis, name: &str) -> Option<Figure> {
         points += fits.len();
         let x = fits.iter().map(|fit| fit.equilibrium().value).collect();
         let y = fits.iter().map(|fit| fit.rate_coefficient().value).collect();
-        let errors = fits.iter().map(|fit| fit.rate_coefficient().standard_error.unwrap_or(0.0)).collect();
-        panel = panel.layer(Layer::points(x, y, role).error_bars(errors).label(label));
+        let errors: Vec<f64> = fits.iter().map(|fit| fit.rate_coefficient().standard_error.unwrap_or(0.0)).collect();
+        panel = panel.layer(Layer::points(x, y, role).error_bars(&errors).label(label));
     }
     (points >= 2).then(|| {
         let caption = format!(

@@ -10,13 +10,13 @@ use super::{figures, method, tables};
 use palpate::watch::{Progress, Watch};
 
 use crate::document::{AnalysisDocument, Software};
-use crate::figure::Figure;
 use crate::number::significant;
 use crate::page::{Block, Page, Section};
 use crate::result::{Answer, ComparedRecord, Input, budgets_of_analysis, parameters_table};
 use crate::study::bundle::{Bundle, Drawing, Pictures, StudyError, named};
-use crate::study::{answer, budget, comparison, findings};
+use crate::study::{answer, budget, comparison, findings, first_page};
 use crate::table::Table;
+use crate::word::capitalised;
 
 /// All files of an analysed record: `report.html`, `analysis.json`, `tables/*.csv`, `figures/*.svg`.
 ///
@@ -31,39 +31,36 @@ pub fn analysis_bundle(
     let mut bundle = Bundle::default();
     // A figure of millions of samples takes a while.
     let look = |watch: &mut dyn Watch, done: usize| watch.report(Progress::open("making the report", done));
-    let makes: [&dyn Fn() -> Option<Figure>; 5] = [
-        &|| Some(figures::record(analysis, "record")),
-        &|| figures::strain_rates(analysis, "strain_rates"),
-        &|| figures::holds(analysis, "holds"),
-        &|| figures::residuals(analysis, "residuals"),
-        &|| figures::trend(analysis, "trend"),
-    ];
-    let mut figures = Vec::with_capacity(makes.len());
-    for (done, make) in makes.into_iter().enumerate() {
-        look(watch, done)?;
-        figures.extend(make());
-    }
-    look(watch, figures.len())?;
+    let figures = figures::all(analysis, |done| look(watch, done))?;
     let compared = ComparedRecord::of_analysis(analysis, input.clone());
+    let summary = bundle.figures(&[figures::summary(analysis, &compared, "summary")], pictures, watch)?;
     let drawings = bundle.figures(&figures, pictures, watch)?;
     let of_laws = bundle.figures(&comparison::figures::all(&compared, ""), pictures, watch)?;
-    let mut which_law = None;
-    if let Some(compare) = &analysis.options.compare {
-        let answer = Answer::new(&compared);
-        which_law = Some(WhichLaw {
-            answer: answer::answer_blocks(&compared, &answer, &findings::gathered(analysis, findings::MOST_LINES)),
-            comparison: comparison::page::blocks(&compared, &of_laws),
-        });
+    let answer = analysis.options.compare.as_ref().map(|_| Answer::new(&compared));
+    let which_law = answer.as_ref().map(|answer| WhichLaw {
+        answer: answer::answer_blocks(&compared, answer),
+        comparison: comparison::page::blocks(&compared, &of_laws),
+    });
+    let gathered = findings::gathered(analysis, findings::MOST_LINES);
+    let trend = joint_sentence(analysis).or_else(|| trend_sentence(analysis));
+    let first = first_page::of_analysis(
+        analysis,
+        &compared,
+        (answer.as_ref().filter(|_| !analysis.holds.is_empty()), without_comparison(analysis)),
+        summary.iter().map(Drawing::block),
+        (&gathered, trend.as_deref()),
+    );
+    if let (Some(compare), Some(answer)) = (&analysis.options.compare, &answer) {
         bundle.table(&comparison::tables::laws(slice::from_ref(&compared), &compare.cuts));
-        answer::verdicts(&answer).iter().for_each(|table| bundle.table(table));
-        answer::parameters_of_holds(&compared, &answer).iter().for_each(|table| bundle.table(table));
+        answer::verdicts(answer).iter().for_each(|table| bundle.table(table));
+        answer::parameters_of_holds(&compared, answer).iter().for_each(|table| bundle.table(table));
     }
     look(watch, 0)?;
     let budgets = budget::tables(&budgets_of_analysis(analysis, &compared), analysis.options.fit.confidence);
     budgets.iter().for_each(|table| bundle.table(table));
     tables::all(analysis).iter().for_each(|table| bundle.table(table));
     look(watch, 1)?;
-    let page = page(analysis, &input, &drawings, which_law, budgets);
+    let page = page(analysis, &input, &drawings, which_law, (&gathered, budgets)).first(first);
     look(watch, 2)?;
     let document = AnalysisDocument::new(analysis, input);
     bundle.table(&parameters_table(&document.parameter_rows()));
@@ -83,15 +80,16 @@ fn page(
     input: &Input,
     drawings: &[Drawing],
     which_law: Option<WhichLaw>,
-    budgets: Vec<Table>,
+    (gathered, budgets): (&[findings::Gathered], Vec<Table>),
 ) -> Page {
     let record = Section::new("The record")
         .block(Block::paragraph(summary(analysis)))
         .blocks(named(drawings, "record"));
-    let mut page = Page::new(&input.title, "Squeeze-and-hold test: phases, strains and the latency law");
+    let mut page = Page::new(&input.title, format!("{}: {}", input.called(), extent(analysis)));
+    let findings = || Section::new("Findings").blocks(findings(gathered));
     if analysis.holds.is_empty() {
         // No laws, and no tables of holds to list.
-        page = page.section(Section::new("Findings").blocks(findings(analysis))).section(record);
+        page = page.section(findings()).section(record);
         return with_provenance(page.section(method(analysis)), input);
     }
     let record = record.block(Block::Table(tables::holds(analysis)));
@@ -102,15 +100,19 @@ fn page(
         laws = laws.blocks(named(drawings, name));
     }
     laws = laws
-        .blocks(joint_sentence(analysis).or_else(|| trend_sentence(analysis)).map(Block::Paragraph))
+        .blocks(
+            joint_sentence(analysis)
+                .or_else(|| trend_sentence(analysis))
+                .map(|trend| Block::paragraph(format!("Trend of v {trend}"))),
+        )
         .blocks(tables::joint(analysis).map(Block::Table))
         .blocks(tables::agreements(analysis).map(Block::Table))
         .blocks(tables::predictions(analysis).map(Block::Table));
     let (answer, comparison) = which_law.map(|which| (which.answer, which.comparison)).unzip();
     if let Some(blocks) = answer {
-        page = page.section(Section::new("Answer").blocks(blocks));
+        page = page.section(Section::new("The answer for each hold").blocks(blocks));
     }
-    page = page.section(Section::new("Findings").blocks(findings(analysis))).section(record).section(laws);
+    page = page.section(findings()).section(record).section(laws);
     if !budgets.is_empty() {
         page = page.section(Section::new("Uncertainty budget").blocks(budgets.into_iter().map(Block::Table)));
     }
@@ -139,14 +141,31 @@ fn with_provenance(page: Page, input: &Input) -> Page {
     page.provenance("Software", Software::this().to_string())
 }
 
+/// What stands before everything else where laws were not compared.
+fn without_comparison(analysis: &Analysis) -> String {
+    match analysis.across.common_exponent {
+        Some(n) => {
+            format!("The lowest listed exponent that is not distinguishable from the best fit to all holds is n = {n}.")
+        }
+        None if analysis.holds.is_empty() => tables::modulus_sentence(analysis).unwrap_or_else(|| {
+            "The record has no hold, and no modulus could be determined from its first ramp.".to_owned()
+        }),
+        None => "No law could be fitted to any hold.".to_owned(),
+    }
+}
+
+/// How much was recorded.
+fn extent(analysis: &Analysis) -> String {
+    let time = analysis.record.time();
+    format!("{} samples over {} s", analysis.record.len(), significant(time[time.len() - 1] - time[0], 4))
+}
+
 /// What was found, in a few sentences.
 fn summary(analysis: &Analysis) -> String {
-    let time = analysis.record.time();
     let after = |after| analysis.holds.iter().filter(|hold| hold.after == Some(after)).count();
     let mut text = format!(
-        "{} samples over {} s: {} after loading and {} after unloading.",
-        analysis.record.len(),
-        significant(time[time.len() - 1] - time[0], 4),
+        "{}: {} after loading and {} after unloading.",
+        capitalised(&extent(analysis)),
         holds_word(after(After::Loading)),
         holds_word(after(After::Unloading)),
     );
@@ -197,7 +216,7 @@ fn joint_sentence(analysis: &Analysis) -> Option<String> {
         TrendVerdict::Undecided => "these holds do not determine whether v changes with strain",
     };
     Some(format!(
-        "Trend over {} holds after loading, weighted by their errors: d ln v/dεₑ = {} ({} % interval {} to {}): {verdict}.",
+        "over {} holds after loading, weighted by their errors: d ln v/dεₑ = {} ({} % interval {} to {}): {verdict}.",
         trend.points.len(),
         significant(trend.slope, 3),
         significant(100.0 * joint.fit.options.fit.confidence, 3),
@@ -217,7 +236,7 @@ fn trend_sentence(analysis: &Analysis) -> Option<String> {
         "these holds do not determine a trend of v"
     };
     Some(format!(
-        "Trend over {} holds after loading: d ln v/dεₑ = {} (95 % interval {} to {}): {verdict}.",
+        "over {} holds after loading: d ln v/dεₑ = {} (95 % interval {} to {}): {verdict}.",
         trend.holds,
         significant(trend.slope, 3),
         significant(low, 3),
@@ -226,14 +245,10 @@ fn trend_sentence(analysis: &Analysis) -> Option<String> {
 }
 
 /// Findings of the record and of its holds; the same finding of several holds is given once.
-fn findings(analysis: &Analysis) -> Vec<Block> {
-    let list: Vec<_> = findings::gathered(analysis, findings::MOST_LINES)
-        .iter()
-        .map(findings::Gathered::reported)
-        .collect();
-    if list.is_empty() {
+fn findings(gathered: &[findings::Gathered]) -> Vec<Block> {
+    if gathered.is_empty() {
         vec![Block::paragraph("No findings: the holds are long enough, with low noise, for the estimates below.")]
     } else {
-        vec![Block::Findings(list)]
+        vec![Block::Findings(gathered.iter().map(findings::Gathered::reported).collect())]
     }
 }

@@ -1,0 +1,203 @@
+//! Records of several specimens beside one another: one law for all, and its parameters between specimens.
+
+use palpate::analysis::{Analysis, Severity};
+use palpate::fit::ParameterRole;
+use palpate::statistics::SampleMean;
+use palpate::units::quantity;
+
+use super::answer::Answer;
+use super::compared::{ComparedHold, ComparedRecord, LeftOut};
+use super::input::Input;
+use super::parameters::{ParameterDocument, Parameters, parameters_of};
+use super::words::condition;
+use crate::word::word;
+
+/// What a report says of one specimen.
+#[derive(Debug, Clone, PartialEq)]
+pub struct SpecimenResult {
+    /// The record.
+    pub input: Input,
+    /// Where its report lies: folders and file below that of the index.
+    pub report: Vec<String>,
+    /// Which law to use, in a sentence; without a comparison what was found.
+    pub sentence: String,
+    /// The law for the record.
+    pub law: Option<String>,
+    /// Its holds.
+    pub holds: Vec<SpecimenHold>,
+    /// The modulus of its first loading ramp, where a body is described, Pa.
+    pub loading_modulus: Option<f64>,
+    /// How severe its findings are.
+    pub findings: Vec<Severity>,
+}
+
+/// One hold of a specimen with every law that was fitted to it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct SpecimenHold {
+    /// Number of the hold in its record, from 1.
+    pub number: usize,
+    /// After what the hold came, in a word.
+    after: Option<String>,
+    /// The displacement that was held, m.
+    level: Option<f64>,
+    laws: Vec<(String, Parameters)>,
+}
+
+/// The specimens of a set, and the records that gave none.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct SpecimenResults {
+    /// One a record.
+    pub specimens: Vec<SpecimenResult>,
+    /// The others, with why.
+    pub left_out: Vec<LeftOut>,
+    /// Coverage of the intervals, between 0 and 1.
+    pub confidence: f64,
+}
+
+/// A parameter of the law of all records, between specimens.
+#[derive(Debug, Clone, PartialEq)]
+pub struct BetweenSpecimens {
+    /// Number of the hold in every record; `None` for what a whole record has.
+    pub hold: Option<usize>,
+    /// What those holds have in common.
+    pub condition: String,
+    /// Name of the parameter.
+    pub name: String,
+    /// Its unit, `1` of a dimensionless parameter.
+    pub unit: String,
+    /// Mean and scatter.
+    pub sample: SampleMean,
+}
+
+impl SpecimenResult {
+    /// What the report at `report` says of a record.
+    #[must_use]
+    pub fn new(analysis: &Analysis, input: &Input, report: Vec<String>) -> Self {
+        let record = ComparedRecord::of_analysis(analysis, input.clone());
+        let answer = analysis.options.compare.as_ref().map(|_| Answer::new(&record));
+        let law = match &answer {
+            Some(answer) => answer.law.clone(),
+            None => analysis.across.common_exponent.map(|n| format!("latency:{n}")),
+        };
+        let without =
+            || law.as_ref().map_or("No law was fitted.".to_owned(), |law| format!("Law for this record: {law}."));
+        let all = analysis.findings.iter().chain(analysis.holds.iter().flat_map(|hold| &hold.findings));
+        Self {
+            input: input.clone(),
+            report,
+            sentence: answer.map_or_else(without, |answer| answer.sentence),
+            holds: analysis
+                .holds
+                .iter()
+                .zip(&record.holds)
+                .map(|(hold, compared)| {
+                    let plain =
+                        hold.fits.iter().map(|fit| (fit.law.to_string(), parameters_of(fit, compared.quantity)));
+                    SpecimenHold::new(compared, plain.collect())
+                })
+                .collect(),
+            law,
+            loading_modulus: analysis.loading_modulus.as_ref().map(|found| found.value),
+            findings: all.map(palpate::analysis::Finding::severity).collect(),
+        }
+    }
+}
+
+impl SpecimenHold {
+    /// With the laws of the comparison before those that were fitted besides.
+    fn new(hold: &ComparedHold, others: Vec<(String, Parameters)>) -> Self {
+        let rows = hold.comparison.iter().flat_map(|found| &found.rows);
+        let compared =
+            rows.filter_map(|row| Some((row.law.to_string(), parameters_of(row.fit.as_ref().ok()?, hold.quantity))));
+        Self {
+            number: hold.number,
+            after: hold.after.map(word),
+            level: hold.level,
+            laws: compared.chain(others).collect(),
+        }
+    }
+
+    /// The parameters of a law on it.
+    #[must_use]
+    pub fn parameters(&self, law: &str) -> Option<&Parameters> {
+        self.laws.iter().find(|(name, _)| name == law).map(|(_, parameters)| parameters)
+    }
+}
+
+impl SpecimenResults {
+    /// The law that is that of the most records; of several the one that comes first.
+    #[must_use]
+    pub fn law(&self) -> Option<&str> {
+        let laws = || self.specimens.iter().filter_map(|specimen| specimen.law.as_deref());
+        let count = |law: &str| laws().filter(|other| *other == law).count();
+        laws().reduce(|best, other| if count(other) > count(best) { other } else { best })
+    }
+
+    /// The parameters of that law between specimens, hold by hold, and the moduli of their first ramps.
+    #[must_use]
+    pub fn between(&self) -> Vec<BetweenSpecimens> {
+        let mut found = Vec::new();
+        let moduli: Vec<f64> = self.specimens.iter().filter_map(|specimen| specimen.loading_modulus).collect();
+        found.extend(SampleMean::of(&moduli, self.confidence).map(|sample| BetweenSpecimens {
+            hold: None,
+            condition: "first loading ramp".to_owned(),
+            name: "loading_modulus_pa".to_owned(),
+            unit: "Pa".to_owned(),
+            sample,
+        }));
+        let Some(law) = self.law() else { return found };
+        let most = self.specimens.iter().map(|specimen| specimen.holds.len()).max().unwrap_or(0);
+        for number in 1..=most {
+            let holds = self.specimens.iter().flat_map(|specimen| &specimen.holds).filter(|hold| hold.number == number);
+            let fitted: Vec<(&SpecimenHold, &Parameters)> =
+                holds.filter_map(|hold| Some((hold, hold.parameters(law)?))).collect();
+            for (name, parameter) in fitted.iter().take(1).flat_map(|(_, parameters)| parameters.iter()) {
+                let values = fitted.iter().filter_map(|(_, parameters)| parameters.get(name)?.value);
+                let values: Vec<f64> = values.collect();
+                let geometric = SampleMean::geometric(&values, self.confidence).filter(|_| is_scale(&parameter.unit));
+                let sample = geometric.or_else(|| SampleMean::of(&values, self.confidence));
+                let of_interest = is_of_interest(name, parameter);
+                found.extend(sample.filter(|_| of_interest).map(|sample| BetweenSpecimens {
+                    hold: Some(number),
+                    condition: common_condition(&fitted),
+                    name: name.clone(),
+                    unit: parameter.unit.clone(),
+                    sample,
+                }));
+            }
+        }
+        found
+    }
+}
+
+/// Whether a parameter is estimated, or the rate coefficient, which follows from those.
+pub(crate) fn is_of_interest(name: &str, parameter: &ParameterDocument) -> bool {
+    parameter.role == word(ParameterRole::Estimated) || name.starts_with("rate_coefficient")
+}
+
+/// Whether parameters of this unit are rates or times, which spread by factors: their intervals cannot reach zero.
+pub(crate) fn is_scale(unit: &str) -> bool {
+    unit == "s" || unit.ends_with("/s")
+}
+
+/// What holds of one number have in common; specimens of one protocol are held at nearly one displacement.
+fn common_condition(holds: &[(&SpecimenHold, &Parameters)]) -> String {
+    /// Displacements within this share of the largest are one.
+    const ALIKE: f64 = 0.05;
+    let after = &holds[0].0.after;
+    if holds.iter().any(|(hold, _)| hold.after != *after) {
+        return "after loading in some, after unloading in others".to_owned();
+    }
+    let levels = holds.iter().filter_map(|(hold, _)| hold.level);
+    let (low, high) = levels
+        .clone()
+        .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), at| (low.min(at), high.max(at)));
+    let level = match (low, high) {
+        (low, high) if low > high => None,
+        (low, high) if high - low <= ALIKE * high.abs().max(low.abs()) => {
+            Some(quantity(levels.clone().sum::<f64>() / levels.count() as f64, "m", 3))
+        }
+        (low, high) => Some(format!("{} to {}", quantity(low, "m", 3), quantity(high, "m", 3))),
+    };
+    condition(after.as_deref(), level)
+}

@@ -1,0 +1,191 @@
+//! The index of the reports of several specimens: links, a small figure each, and the parameters of one law between specimens.
+
+use palpate::analysis::{Analysis, Severity};
+use palpate::watch::Watch;
+
+use super::bundle::{Bundle, Drawing, Pictures, StudyError};
+use super::grid::by_hold;
+use super::record::figures::force_panel;
+use crate::document::{Software, SpecimensDocument};
+use crate::figure::{Axis, Figure, Layer, Panel, Role, View};
+use crate::number::counted;
+use crate::page::{Block, Card, Page, Section};
+use crate::result::{
+    BetweenSpecimens, Input, LeftOut, SpecimenHold, SpecimenResult, SpecimenResults, is_of_interest, is_scale,
+    parameter_title, percent,
+};
+use crate::table::{Cell, Table};
+use crate::word::capitalised;
+
+/// Holds that share a panel.
+const MOST_SERIES: usize = 8;
+
+/// The reports of several specimens, while they are written.
+#[derive(Debug, Clone, Default)]
+pub struct SpecimenIndex {
+    results: SpecimenResults,
+    pictures: Vec<View>,
+}
+
+impl SpecimenIndex {
+    /// Adds the record whose report lies at `report`, folders and file below that of the index.
+    ///
+    /// # Errors
+    /// [`StudyError`] when its figure cannot be drawn, or the watch ends it.
+    pub fn add(
+        &mut self,
+        analysis: &Analysis,
+        input: &Input,
+        report: Vec<String>,
+        watch: &mut dyn Watch,
+    ) -> Result<(), StudyError> {
+        let picture = Figure::new("record", &input.title).panel(force_panel(analysis)).width_mm(76.0).height_mm(42.0);
+        self.pictures.push(picture.drawing(watch)?.view);
+        self.results.confidence = analysis.options.fit.confidence;
+        self.results.specimens.push(SpecimenResult::new(analysis, input, report));
+        Ok(())
+    }
+
+    /// Adds a record that gave none.
+    pub fn leave_out(&mut self, left_out: LeftOut) {
+        self.results.left_out.push(left_out);
+    }
+
+    /// What was found.
+    #[must_use]
+    pub fn results(&self) -> &SpecimenResults {
+        &self.results
+    }
+
+    /// The files of the index: `index.html`, `specimens.json`, `tables/*.csv`, `figures/*.svg`.
+    ///
+    /// # Errors
+    /// [`StudyError`] when a figure or document cannot be made, or the watch ends it.
+    pub fn bundle(&self, pictures: Pictures, watch: &mut dyn Watch) -> Result<Bundle, StudyError> {
+        let results = &self.results;
+        let mut bundle = Bundle::default();
+        let drawings = bundle.figures(&by_specimen(results), pictures, watch)?;
+        let between = between_table(results);
+        between.iter().for_each(|table| bundle.table(table));
+        bundle.table(&records_table(results));
+        let cards = results.specimens.iter().zip(&self.pictures).map(|(specimen, picture)| card(specimen, picture));
+        let left_out = match results.left_out.len() {
+            0 => String::new(),
+            count => format!(", {count} left out"),
+        };
+        let law = results.law().map_or_else(String::new, |law| format!("; law of the most of them: {law}"));
+        let subtitle = format!("{}{left_out}{law}", counted(results.specimens.len(), "record"));
+        let mut page =
+            Page::new("Reports", subtitle).section(Section::new("Records").block(Block::Cards(cards.collect())));
+        if let Some(table) = between {
+            let section = Section::new("Between specimens").block(Block::Table(table));
+            page = page.section(section.blocks(drawings.iter().map(Drawing::block)));
+        }
+        if !results.left_out.is_empty() {
+            let line = |file: &LeftOut| format!("{}: {}", file.path, file.reason.lines().next().unwrap_or_default());
+            page =
+                page.section(Section::new("Left out").block(Block::List(results.left_out.iter().map(line).collect())));
+        }
+        bundle.text("index.html", page.provenance("Software", Software::this().to_string()).to_html());
+        bundle.json("specimens.json", &SpecimensDocument::new(results))?;
+        Ok(bundle)
+    }
+}
+
+fn card(specimen: &SpecimenResult, picture: &View) -> Card {
+    let severest = specimen.findings.iter().max().copied();
+    let count = specimen.findings.iter().filter(|severity| Some(**severity) == severest).count();
+    let law = specimen.law.as_ref().map_or_else(|| "No law fitted".to_owned(), |law| format!("Law: {law}"));
+    Card {
+        title: specimen.input.title.clone(),
+        path: specimen.report.clone(),
+        picture: Some(picture.clone()),
+        lines: vec![specimen.input.called(), format!("{law}; {}", counted(specimen.holds.len(), "hold"))],
+        findings: severest.filter(|severity| *severity > Severity::Info).map(|severity| (severity, count)),
+    }
+}
+
+/// The parameters of the law of all records between specimens.
+fn between_table(results: &SpecimenResults) -> Option<Table> {
+    let share = percent(results.confidence);
+    let law = results.law().map_or_else(String::new, |law| format!(" of {law}"));
+    let caption = format!(
+        "Parameters{law} between specimens: mean, standard deviation, coefficient of variation, and {share} interval of the mean by Student\u{2019}s distribution; of rates and times by their logarithms (geometric)."
+    );
+    const ONE: &str = "one specimen";
+    let number = |value: Option<f64>| Cell::number_or(value, 4, ONE);
+    let unit = |found: &BetweenSpecimens| if found.unit == "1" { String::new() } else { found.unit.clone() };
+    Table::of("between_specimens", caption, &results.between())
+        .column("Hold", "hold", "", |found| found.hold.map_or(Cell::text(""), |hold| Cell::Integer(hold as i64)))
+        .column("Condition", "condition", "", |found| Cell::text(&found.condition))
+        .column("Parameter", "parameter", "", |found| Cell::text(parameter_title(&found.name)))
+        .column("Unit", "unit", "", |found| Cell::text(unit(found)))
+        .column("Specimens", "specimens", "", |found| Cell::Integer(found.sample.count as i64))
+        .column("Kind", "kind", "", |found| {
+            Cell::text(if found.sample.is_geometric { "geometric" } else { "arithmetic" })
+        })
+        .column("Mean", "mean", "", |found| Cell::Number(found.sample.mean, 4))
+        .column("SD", "standard_deviation", "", |found| number(found.sample.standard_deviation))
+        .column("CV", "coefficient_of_variation_percent", "%", |found| {
+            let deviation = found.sample.standard_deviation;
+            Cell::number_or(deviation.map(|deviation| 100.0 * deviation / found.sample.mean.abs()), 3, ONE)
+        })
+        .column("from", "low", "", |found| number(found.sample.interval.map(|(low, _)| low)))
+        .column("to", "high", "", |found| number(found.sample.interval.map(|(_, high)| high)))
+        .unless_empty()
+}
+
+/// A row a record.
+fn records_table(results: &SpecimenResults) -> Table {
+    Table::of("records", "Records with their reports.", &results.specimens)
+        .column("Record", "record", "", |specimen| Cell::text(specimen.input.called()))
+        .column("Title", "title", "", |specimen| Cell::text(&specimen.input.title))
+        .column("Report", "report", "", |specimen| Cell::text(specimen.report.join("/")))
+        .column("Law", "law", "", |specimen| Cell::text(specimen.law.clone().unwrap_or_default()))
+        .column("Holds", "holds", "", |specimen| Cell::Integer(specimen.holds.len() as i64))
+        .table()
+}
+
+/// Each parameter of the law of all records over the specimens, with its intervals; none for one specimen.
+fn by_specimen(results: &SpecimenResults) -> Vec<Figure> {
+    let law = results.law().filter(|_| results.specimens.len() > 1);
+    let fitted = law.and_then(|law| {
+        results.specimens.iter().flat_map(|specimen| &specimen.holds).find_map(|hold| hold.parameters(law))
+    });
+    let named = fitted.into_iter().flatten().filter(|(name, parameter)| is_of_interest(name, parameter));
+    let parameters: Vec<(&String, String)> = named.map(|(name, parameter)| (name, parameter.unit.clone())).collect();
+    let most = results.specimens.iter().map(|specimen| specimen.holds.len()).max().unwrap_or(0).min(MOST_SERIES);
+    let panel = |(name, unit): &(&String, String)| {
+        let (axis_unit, title) = (if unit == "1" { "" } else { unit.as_str() }, capitalised(&parameter_title(name)));
+        let axis = if is_scale(unit) { Axis::log(title, axis_unit) } else { Axis::linear(title, axis_unit) };
+        let end = results.specimens.len() as f64 + 0.5;
+        let mut panel = Panel::new(Axis::linear("Specimen", "").range(0.5, end), axis);
+        for number in 1..=most {
+            // Holds of one specimen beside each other.
+            let aside = 0.6 * ((number as f64 - 0.5) / most as f64 - 0.5);
+            let of_number = |hold: &&SpecimenHold| hold.number == number;
+            let (mut x, mut y, mut low, mut high) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
+            for (specimen, place) in results.specimens.iter().zip(1..) {
+                let hold = specimen.holds.iter().find(of_number).and_then(|hold| hold.parameters(law?)?.get(*name));
+                let Some((parameter, value)) = hold.and_then(|found| Some((found, found.value?))) else {
+                    continue;
+                };
+                let [from, to] = parameter.interval.unwrap_or_default().map(|end| end.unwrap_or(value));
+                x.push(f64::from(place) + aside);
+                y.push(value);
+                low.push(from);
+                high.push(to);
+            }
+            let layer = Layer::points(x, y, Role::Series(number as u8 - 1)).intervals(low, high);
+            panel = panel.layer(layer.label(format!("hold {number}")));
+        }
+        panel
+    };
+    let which = if most == MOST_SERIES { format!(" (the first {MOST_SERIES} holds)") } else { String::new() };
+    let caption = format!(
+        "Parameters of {} in the order of the records{which}; bars: {} intervals of single records.",
+        law.unwrap_or_default(),
+        percent(results.confidence)
+    );
+    by_hold("by_specimen", caption, (80.0, 58.0), (&parameters, "parameters"), panel)
+}
