@@ -13,6 +13,7 @@
 //! | `depends.rs` | what a result depends on, as one digest |
 //! | `store.rs` | what can be resumed |
 //! | `threads.rs` | many pieces of work over threads |
+//! | `report_index.rs` | the index of the reports of several records |
 //! | `analyze.rs` … | one job each |
 //! | `typed.rs` | options as they are typed on a command line, with the feature `clap` |
 
@@ -34,6 +35,7 @@ mod inspect;
 mod options;
 mod outcome;
 mod predict;
+mod report_index;
 mod reproduce;
 mod simulate;
 mod store;
@@ -54,6 +56,7 @@ pub use grip::{MaterialSource, PlanGrip, RegripFor};
 pub use inspect::{Inspect, Inspected, machines_text};
 pub use outcome::{Outcome, Results, Verdict};
 pub use predict::{Predict, Predicted};
+pub use report_index::{ReportIndex, write_reports};
 pub use reproduce::Reproduce;
 pub use simulate::{DriveBy, Simulate, Simulated};
 pub use sweep::{Sweep, Swept, sweep_fields, sweep_rows};

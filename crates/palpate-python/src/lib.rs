@@ -54,7 +54,7 @@ mod _palpate {
         observers::observation::Observation,
         observers::observer::Observer,
         pickles::Piece,
-        records::analysis::{Analysis, Finding},
+        records::analysis::{Analysis, Finding, report_all},
         records::compare::{Comparison, RecordComparison, compare},
         records::forecast::forecast,
         records::read::{read, read_all},

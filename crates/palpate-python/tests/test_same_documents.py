@@ -141,3 +141,19 @@ def test_reproduce(tmp_path: Path) -> None:
     assert files == sorted(path.relative_to(tmp_path / "own") for path in (tmp_path / "own").rglob("*") if path.is_file())
     for file in files:
         assert (tmp_path / "own" / file).read_bytes() == (tmp_path / "its" / file).read_bytes(), file
+
+
+def test_reports_of_several_records_with_their_index(tmp_path: Path) -> None:
+    other = tmp_path / "other.csv"
+    other.write_bytes(Path(RECORD).read_bytes())
+    records = [Path(RECORD), other]
+    command("analyze", *records, "--test", TEST, "--no-compare", "--out", tmp_path / "its")
+    analyses = [palpate.read(record, test=TEST).analyze(compare=False) for record in records]
+    index = Path(palpate.report_all(analyses, tmp_path / "own"))
+    assert index == tmp_path / "own" / "index.html"
+    files = sorted(path.relative_to(tmp_path / "its") for path in (tmp_path / "its").rglob("*") if path.is_file())
+    assert {Path("index.html"), Path("specimens.json"), Path("ball/report.html"), Path("other/report.html")} <= set(files)
+    for file in files:
+        assert (tmp_path / "own" / file).read_bytes() == (tmp_path / "its" / file).read_bytes(), file
+    with pytest.raises(palpate.OptionError, match="one analysis or more"):
+        palpate.report_all([], tmp_path / "none")

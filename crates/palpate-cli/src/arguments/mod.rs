@@ -15,7 +15,7 @@ use palpate_jobs::BUILD;
 use palpate_jobs::typed::{Choice, one_of};
 use palpate_report::document::{
     AnalysisDocument, CalibrationDocument, ComparisonDocument, GripDocument, ReproductionDocument,
-    SeveralCalibrationsDocument, Software, WatchDocument,
+    SeveralCalibrationsDocument, Software, SpecimensDocument, WatchDocument,
 };
 use schemars::{JsonSchema, schema_for};
 use serde_json::Value;
@@ -128,6 +128,7 @@ const SCHEMAS: &[Choice<fn() -> Value>] = &[
         "Result of `palpate calibrate --format json` of several records",
         schema::<SeveralCalibrationsDocument>,
     ),
+    ("specimens", "specimens.json of `palpate analyze` of several records", schema::<SpecimensDocument>),
     ("comparison", "Result of `palpate compare --format json`", schema::<ComparisonDocument>),
     ("grip", "Result of `palpate grip --format json`", schema::<GripDocument>),
     ("watch", "A line of `palpate watch --format jsonl`", schema::<WatchDocument>),

@@ -104,7 +104,7 @@ pub(crate) struct AnalyzeArguments {
     pub(crate) records: Vec<PathBuf>,
     #[command(flatten)]
     pub(crate) described: DescribedArguments,
-    /// Folder for report.html, analysis.json, tables and figures
+    /// Folder for report.html, analysis.json, tables and figures; of several records a folder each and index.html
     #[arg(long, value_name = "DIR")]
     pub(crate) out: Option<PathBuf>,
     /// Format of standard output

@@ -4,13 +4,13 @@ use std::path::Path;
 
 use palpate_jobs::input::{Measurement, NamedRecords, OpenedFile};
 use palpate_jobs::output::{check_folder, write_bundle};
-use palpate_jobs::{Analyze, ErrorKind, JobError, Results, Verdict};
+use palpate_jobs::{Analyze, Analyzed, ErrorKind, JobError, ReportIndex, Results, Verdict};
 use palpate_report::study::Pictures;
 
 use crate::arguments::{AnalyzeArguments, Format};
 use crate::failure::tell;
 use crate::progress::Bars;
-use crate::terminal::{note_report, notes, print};
+use crate::terminal::{note, note_report, notes, print};
 
 pub(crate) fn run(arguments: &AnalyzeArguments) -> Result<Verdict, JobError> {
     arguments.out.as_deref().map_or(Ok(()), check_folder)?;
@@ -19,26 +19,36 @@ pub(crate) fn run(arguments: &AnalyzeArguments) -> Result<Verdict, JobError> {
     let alone = records.described.clone().with_then(None);
     let air = arguments.air_run.as_ref().map(|air| OpenedFile::open(air, &alone)).transpose()?;
     let air = air.map(|air| air.measurement(air.only()?, &mut Bars::default())).transpose()?;
-    let (mut tests, mut failed) = (0, 0);
+    let (mut tests, mut failed, mut index) = (0, 0, ReportIndex::default());
+    let out = arguments.out.as_deref();
     let job = Analyze {
         compare: !arguments.no_compare,
         ..arguments.job.clone()
     };
-    records.each(arguments.out.as_deref(), &mut Bars::default(), notes, |part, _| {
+    records.each(out, &mut Bars::default(), notes, |part, _| {
         tests += 1;
         let made = part
             .measurement
-            .and_then(|measured| one(arguments, &job, measured, air.as_ref(), part.folder.as_deref()));
+            .and_then(|measured| one(arguments, &job, measured, air.as_ref(), part.folder.as_deref()))
+            .and_then(|analyzed| match (out, &part.folder) {
+                (Some(out), Some(folder)) => index.add(&analyzed, folder, out, &mut Bars::default()),
+                _ => Ok(()),
+            });
         // One bad record of many does not keep the others from being analysed.
         made.or_else(|error| {
             if part.only {
                 return Err(error);
             }
             tell(&error);
+            index.leave_out(part.path, &error);
             failed += 1;
             Ok(())
         })
     })?;
+    if let Some(out) = out.filter(|_| tests > 1 && !index.is_empty()) {
+        write_bundle(out, &index.bundle(Pictures { png: arguments.png }, &mut Bars::default())?)?;
+        note(&format!("index written: {}", out.join("index.html").display()));
+    }
     match failed {
         0 => Ok(Verdict::Positive),
         count => {
@@ -54,7 +64,7 @@ fn one(
     measured: Measurement,
     air: Option<&Measurement>,
     folder: Option<&Path>,
-) -> Result<(), JobError> {
+) -> Result<Analyzed, JobError> {
     notes(&measured.notes);
     let mut bars = Bars::default();
     let outcome = job.run(measured, air, &mut bars)?;
@@ -67,5 +77,5 @@ fn one(
         Format::Text => format!("{}\n\n{}", outcome.result.input.title, outcome.result.text()),
     })?;
     folder.into_iter().for_each(note_report);
-    Ok(())
+    Ok(outcome.result)
 }

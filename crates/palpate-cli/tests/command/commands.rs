@@ -299,6 +299,60 @@ fn several_records_get_a_folder_each_and_one_bad_one_does_not_stop_the_others() 
     assert!(folder.path().join("studies/good/report.html").exists());
     assert!(!folder.path().join("studies/bad").exists());
     assert!(String::from_utf8_lossy(&output.stderr).contains("bad.csv"));
+    let index = std::fs::read_to_string(folder.path().join("studies/index.html")).unwrap();
+    assert!(index.contains("href=\"good/report.html\"") && index.contains("Left out") && index.contains("bad.csv"));
+}
+
+#[test]
+fn several_records_have_an_index_with_mean_and_interval_of_each_parameter() {
+    let folder = tempdir().unwrap();
+    let protocol = root().join("examples/protocols/ball-record.toml");
+    let test = root().join("examples/records/ball.toml");
+    let mut arguments = vec!["analyze".to_owned()];
+    for seed in ["1", "2", "3"] {
+        let record = format!("ball {seed}.csv");
+        let noise = ["--force-noise", "0.05 N", "--seed", seed, "--out", &record];
+        done(folder.path(), &[&["simulate", protocol.to_str().unwrap()][..], &noise].concat());
+        arguments.push(record);
+    }
+    let options = ["--test", test.to_str().unwrap(), "--no-compare", "--out", "set"];
+    arguments.extend(options.map(str::to_owned));
+    done(folder.path(), &arguments.iter().map(String::as_str).collect::<Vec<_>>());
+    let read =
+        |name: &str| -> Value { serde_json::from_slice(&std::fs::read(folder.path().join(name)).unwrap()).unwrap() };
+    let document = read("set/specimens.json");
+    assert_eq!((&document["schema"], &document["law"]), (&"palpate.specimens/1".into(), &"latency:5".into()));
+    let rows = document["between_specimens"].as_array().unwrap();
+    let row = |parameter: &str| rows.iter().find(|row| row["hold"] == 2 && row["parameter"] == parameter).unwrap();
+    let values = |parameter: &str| -> Vec<f64> {
+        let of = |record: &Value| {
+            let report = record["report"].as_str().unwrap().replace("report.html", "analysis.json");
+            let fits = read(&format!("set/{report}"))["holds"][1]["fits"].as_array().unwrap().clone();
+            let fit = fits.iter().find(|fit| fit["law"] == "latency:5" && fit["domain"] == "time").unwrap();
+            number(&fit["parameters"][parameter]["value"])
+        };
+        document["records"].as_array().unwrap().iter().map(of).collect()
+    };
+    let equilibrium = row("equilibrium");
+    let found = values("equilibrium");
+    let mean = found.iter().sum::<f64>() / 3.0;
+    let deviation = (found.iter().map(|value| (value - mean).powi(2)).sum::<f64>() / 2.0).sqrt();
+    // Student's t of 2 degrees of freedom, 95 %.
+    let half = 4.302_652_729_7 * deviation / 3f64.sqrt();
+    assert_eq!((&equilibrium["kind"], &equilibrium["specimens"]), (&"arithmetic".into(), &3.into()));
+    for (key, expected) in [("mean", mean), ("standard_deviation", deviation)] {
+        assert!((number(&equilibrium[key]) / expected - 1.0).abs() < 1e-9, "{key}: {equilibrium}");
+    }
+    assert!((number(&equilibrium["interval"][0]) / (mean - half) - 1.0).abs() < 1e-8, "{equilibrium}");
+    let rate = row("rate_coefficient_per_s");
+    let geometric = values("rate_coefficient_per_s").iter().product::<f64>().powf(1.0 / 3.0);
+    assert_eq!(rate["kind"], "geometric");
+    assert!(
+        (number(&rate["mean"]) / geometric - 1.0).abs() < 1e-9 && number(&rate["interval"][0]) > 0.0,
+        "{rate}"
+    );
+    let index = std::fs::read_to_string(folder.path().join("set/index.html")).unwrap();
+    assert!(index.contains("href=\"ball%203/report.html\"") && index.contains("Between specimens"));
 }
 
 #[test]
@@ -307,6 +361,7 @@ fn schemas_describe_the_documents() {
     for (name, key) in [
         ("analysis", "holds"),
         ("comparison", "records"),
+        ("specimens", "between_specimens"),
         ("reproduction", "checks"),
         ("protocol", "step"),
         ("test", "specimen"),

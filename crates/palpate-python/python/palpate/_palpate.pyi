@@ -53,6 +53,7 @@ __all__ = [
     "law_names",
     "read",
     "read_all",
+    "report_all",
     "reproduce",
     "simulate",
     "simulate_many",
@@ -642,6 +643,7 @@ def batch(
 def sweep(
     protocol: _Path, out: _Path, *, figure: _Path | None = None, show: str | None = None, restart: bool = False
 ) -> tuple[int, int]: ...
+def report_all(analyses: Sequence[Analysis], folder: _Path, *, png: bool = False) -> os.PathLike[str]: ...
 def reproduce(folder: _Path, *, png: bool = False) -> bool: ...
 def watch(
     path: _File,

@@ -9,7 +9,7 @@ use palpate::analysis::{AnalysisOptions, Severity};
 use palpate::watch::{Progress, Watch};
 use palpate_jobs::input::Measurement;
 use palpate_jobs::output::write_bundle;
-use palpate_jobs::{Analyze, Analyzed, Outcome, Results};
+use palpate_jobs::{Analyze, Analyzed, Outcome, Results, write_reports};
 use palpate_report::document::{AnalysisDocument, FitDocument};
 use palpate_report::result::ParameterDocument;
 use palpate_report::result::{Input, word};
@@ -19,13 +19,13 @@ use pyo3::prelude::*;
 use pyo3::types::PyType;
 use serde::{Deserialize, Serialize};
 
-use crate::errors::{PalpateError, keyword, refused_plainly, unwritten, warn_of};
+use crate::errors::{OptionError, PalpateError, keyword, refused_plainly, unwritten, warn_of};
 use crate::html::framed;
 use crate::pickles::{Made, Piece, Pieces, made_again, unpickled};
 use crate::records::kept::Kept;
 use crate::shown::shown;
 use crate::table::{Column, Table, budget_columns, columns, parameter_columns};
-use crate::work::{at_length, job, plain, printed, writing};
+use crate::work::{at_length, job, plain, printed, writing, writing_job};
 
 /// Something about a record, or a hold, that its numbers alone do not tell.
 #[pyclass(name = "Finding", module = "palpate", frozen, eq)]
@@ -316,4 +316,38 @@ shown! {
         let report = bundle.files.into_iter().find(|(name, _)| name == "report.html");
         Ok(report.and_then(|(_, page)| String::from_utf8(page).ok()).map(|page| framed(&page)))
     }
+}
+
+/// Writes the reports of several records and an index of them: ``palpate analyze A B --out``, all or none.
+///
+/// The index links the reports and states mean, standard deviation and interval of each parameter between specimens.
+///
+/// Parameters
+/// ----------
+/// analyses : sequence of Analysis
+///     One a record; each report lies in a folder named after its record.
+/// folder : path
+///     Made if it is not there.
+/// png : bool
+///     Whether figures are written as PNG beside SVG.
+///
+/// Returns
+/// -------
+/// Path
+///     The index.
+///
+/// Raises
+/// ------
+/// OptionError
+///     There is no analysis.
+/// PalpateError
+///     The folder cannot be written to.
+#[pyfunction]
+#[pyo3(signature = (analyses, folder, *, png=false))]
+pub(crate) fn report_all(py: Python<'_>, analyses: Vec<Py<Analysis>>, folder: PathBuf, png: bool) -> PyResult<PathBuf> {
+    if analyses.is_empty() {
+        return Err(OptionError::new_err("analyses: expected one analysis or more, found none"));
+    }
+    let done: Vec<_> = analyses.into_iter().map(|analysis| analysis.get().done(py)).collect::<PyResult<_>>()?;
+    writing_job(py, move |watch| write_reports(done.iter().map(|one| &one.result), &folder, Pictures { png }, watch))
 }
