@@ -1,0 +1,117 @@
+"""Reports of records that are hard on a page, made by the command, and a browser to open them.
+
+`./test report` sets PALPATE (the command) and CHROMIUM (the browser).
+"""
+
+from __future__ import annotations
+
+import os
+import subprocess
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from pathlib import Path
+
+import numpy as np
+import pytest
+from playwright.sync_api import Browser, BrowserContext, Page, sync_playwright
+
+HOSTILE = "\"><img src=x onerror=alert(1)><script>alert(2)<" + "/script>"
+
+
+def analyze(folder: Path, out: Path, *arguments: str | Path) -> subprocess.Popen[str]:
+    command = [os.environ["PALPATE"], "analyze", *map(str, arguments), "--out", str(out)]
+    return subprocess.Popen(command, cwd=folder, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
+
+
+def steps(levels_mm: list[float], hold_s: float, rate_hz: float, seed: int) -> np.ndarray:
+    """A body that relaxes by the latency law with n = 5 after every step: time, displacement, force with noise."""
+    noise = np.random.default_rng(seed)
+    rows, start, before = [], 0.0, 0.0
+    for level in levels_mm:
+        ramp = np.arange(0.0, 1.0, 1.0 / rate_hz)
+        hold = np.arange(0.0, hold_s, 1.0 / rate_hz)
+        excess = 0.25 * (level - before)
+        relaxed = level + excess * (1.0 + 4.0 * 0.8 * hold) ** -0.25
+        rows.append(np.c_[start + ramp, before + (level - before) * ramp, before + (level + excess - before) * ramp])
+        rows.append(np.c_[start + 1.0 + hold, np.full(hold.size, level), relaxed])
+        start, before = start + 1.0 + hold_s, level
+    table = np.concatenate(rows)
+    table[:, 2] += 0.004 * noise.standard_normal(len(table))
+    return table
+
+
+def write(path: Path, table: np.ndarray) -> Path:
+    header = "Time (s),Displacement (mm),Force (N)"
+    np.savetxt(path, table, delimiter=",", header=header, comments="", fmt="%.5f")
+    return path
+
+
+@dataclass
+class Reports:
+    """The pages under test."""
+
+    many: Path
+    long: Path
+    hostile: Path
+    index: Path
+
+
+@pytest.fixture(scope="session")
+def reports(tmp_path_factory: pytest.TempPathFactory) -> Reports:
+    folder = tmp_path_factory.mktemp("reports")
+    # A million rows: a hundred times as many as a page can show.
+    long = write(folder / "long.csv", steps([4.0, 2.0], 499.0, 1000.0, 2))
+    works = [analyze(folder, folder / "long", long, "--no-compare", "--exponents", "5", "--intervals", "curvature")]
+    levels = [3.0, 1.5, 5.0, 2.0] * 6
+    many = write(folder / "many.csv", steps(levels, 12.0, 12.0, 1))
+    works.append(analyze(folder, folder / "many", many))
+    # Names from files and descriptions reach titles, addresses, tables and legends.
+    names = ["=1+1 @SUM(A1) & 'x'", "a\"onmouseover=alert(1) <b>"]
+    described = folder / "hostile.toml"
+    described.write_text(f"[about]\ntitle = '''{HOSTILE}'''\n")
+    pads = [write(folder / f"{name}.csv", steps([3.0, 1.0], 12.0, 12.0, 3 + k)) for k, name in enumerate(names)]
+    works.append(analyze(folder, folder / "set", *pads, "--test", described))
+    for work in works:
+        messages = work.communicate()[1]
+        assert work.returncode == 0, messages
+    hostile = sorted((folder / "set").glob("*/report.html"))
+    assert len(hostile) == 2
+    return Reports(folder / "many/report.html", folder / "long/report.html", hostile[0], folder / "set/index.html")
+
+
+@pytest.fixture(scope="session")
+def browser() -> Iterator[Browser]:
+    with sync_playwright() as playwright:
+        browser = playwright.chromium.launch(executable_path=os.environ["CHROMIUM"], args=["--no-sandbox"])
+        yield browser
+        browser.close()
+
+
+@dataclass
+class Opened:
+    """A page with all that it requested and reported."""
+
+    page: Page
+    context: BrowserContext
+    requests: list[str] = field(default_factory=list)
+    messages: list[str] = field(default_factory=list)
+    failures: list[str] = field(default_factory=list)
+
+    def is_quiet(self) -> bool:
+        own = [url for url in self.requests if not url.startswith("data:")]
+        assert own == [self.page.url.split("#")[0]], own
+        assert self.messages == []
+        return True
+
+
+def opened(browser: Browser, path: Path, width: int = 1280, *, script: bool = True) -> Opened:
+    context = browser.new_context(viewport={"width": width, "height": 900}, java_script_enabled=script)
+    page = context.new_page()
+    found = Opened(page, context)
+    page.on("request", lambda request: found.requests.append(request.url))
+    page.on("requestfailed", lambda request: found.failures.append(request.failure or ""))
+    page.on("console", lambda message: found.messages.append(message.text))
+    page.on("pageerror", lambda error: found.messages.append(str(error)))
+    page.on("dialog", lambda dialog: (found.messages.append(dialog.message), dialog.dismiss()))
+    page.goto(path.as_uri())
+    return found
