@@ -96,11 +96,14 @@ fn card(specimen: &SpecimenResult, picture: &View) -> Card {
     let severest = specimen.findings.iter().max().copied();
     let count = specimen.findings.iter().filter(|severity| Some(**severity) == severest).count();
     let law = specimen.law.as_ref().map_or_else(|| "No law fitted".to_owned(), |law| format!("Law: {law}"));
+    // Records of one description share its title: the file, or the part of it, tells them apart.
+    let file = specimen.input.path.rsplit(['/', '\\']).next().unwrap_or_default();
+    let name = specimen.input.part.as_deref().unwrap_or(file);
     Card {
         title: specimen.input.title.clone(),
         path: specimen.report.clone(),
         picture: Some(picture.clone()),
-        lines: vec![specimen.input.called(), format!("{law}; {}", counted(specimen.holds.len(), "hold"))],
+        lines: vec![name.to_owned(), format!("{law}; {}", counted(specimen.holds.len(), "hold"))],
         findings: severest.filter(|severity| *severity > Severity::Info).map(|severity| (severity, count)),
     }
 }
