@@ -13,7 +13,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from playwright.sync_api import Browser, BrowserContext, Page, sync_playwright
+from playwright.sync_api import Browser, BrowserContext, Dialog, Page, sync_playwright
 
 HOSTILE = "\"><img src=x onerror=alert(1)><script>alert(2)<" + "/script>"
 
@@ -112,6 +112,11 @@ def opened(browser: Browser, path: Path, width: int = 1280, *, script: bool = Tr
     page.on("requestfailed", lambda request: found.failures.append(request.failure or ""))
     page.on("console", lambda message: found.messages.append(message.text))
     page.on("pageerror", lambda error: found.messages.append(str(error)))
-    page.on("dialog", lambda dialog: (found.messages.append(dialog.message), dialog.dismiss()))
+
+    def refuse(dialog: Dialog) -> None:
+        found.messages.append(dialog.message)
+        dialog.dismiss()
+
+    page.on("dialog", refuse)
     page.goto(path.as_uri())
     return found
