@@ -29,7 +29,7 @@ mod termination;
 pub(crate) use bounded::{BoundedProblem, BoundedSolver, Held};
 pub(crate) use cholesky::{Cholesky, Few, Square};
 pub(crate) use effort::Effort;
-pub(crate) use elimination::eliminate;
+pub(crate) use elimination::{LinearFit, eliminate, fit_linear};
 pub(crate) use minimum::{Level, Minimum, minimise};
 pub(crate) use orthogonal::Orthogonal;
 pub(crate) use separable::{

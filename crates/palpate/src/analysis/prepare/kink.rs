@@ -1,6 +1,6 @@
 //! Where a curve bends: two pieces that meet.
 
-use crate::optimise::eliminate;
+use crate::optimise::fit_linear;
 
 /// The place at which two pieces of a curve meet.
 #[derive(Debug, Clone, Copy)]
@@ -66,17 +66,8 @@ fn fitted<const N: usize>(times: &[f64], values: &[f64], at: f64, scale: f64) ->
         std::array::from_fn(|i| all[i])
     };
     let middle = values.iter().sum::<f64>() / values.len() as f64;
-    let (mut normal, mut solution) = ([[0.0; N]; N], [0.0; N]);
-    for (time, value) in times.iter().zip(values) {
-        let row = row(*time);
-        for ((own, equation), right) in row.iter().zip(&mut normal).zip(&mut solution) {
-            equation.iter_mut().zip(row).for_each(|(entry, other)| *entry += own * other);
-            *right += own * (value - middle);
-        }
-    }
-    if !eliminate(normal, &mut solution, 1e-10) {
-        return None;
-    }
+    let rows = times.iter().zip(values).map(|(time, value)| (row(*time), value - middle, 1.0));
+    let solution = fit_linear(rows, 1e-10)?.factors;
     let predicted = |time: f64| row(time).iter().zip(&solution).map(|(a, b)| a * b).sum::<f64>();
     let square = times.iter().zip(values).map(|(t, y)| (y - middle - predicted(*t)).powi(2)).sum();
     Some((solution, square))

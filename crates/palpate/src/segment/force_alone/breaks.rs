@@ -3,7 +3,7 @@
 use std::cmp::Ordering;
 use std::collections::BinaryHeap;
 
-use crate::optimise::eliminate;
+use crate::optimise::fit_linear;
 
 /// Squares that a join may cost, in squares of the noise.
 const JOINED: f64 = 9.0;
@@ -27,9 +27,9 @@ pub(super) fn sharpen(time: &[f64], force: &[f64], ends: &mut [usize]) {
         let [before, here, after] = [ends[index - 1], ends[index], ends[index + 1]];
         let reach = ((after - before) / MOVED.1).clamp(2, MOVED.0);
         let (from, until) = (before.max(here.saturating_sub(8 * reach)), after.min(here + 8 * reach));
-        let left = |end: usize| left(time, force, (from, end)) + self::left(time, force, (end, until));
+        let cost = |end: usize| left(time, force, (from, end)) + left(time, force, (end, until));
         let places = here.saturating_sub(reach).max(before + 1)..=(here + reach).min(after - 1);
-        let costs = places.map(|place| (place, left(place)));
+        let costs = places.map(|place| (place, cost(place)));
         if let Some((place, _)) = costs.min_by(|a, b| a.1.total_cmp(&b.1)) {
             ends[index] = place;
         }
@@ -135,24 +135,9 @@ fn left(time: &[f64], force: &[f64], (from, until): (usize, usize)) -> f64 {
     }
     let (centre, value) = (time[usize::midpoint(from, until)], force[usize::midpoint(from, until)]);
     let span = time[until - 1] - time[from];
-    let (mut powers, mut right, mut squares) = ([0.0; 5], [0.0; 3], 0.0);
-    for (t, f) in time[from..until].iter().zip(&force[from..until]) {
-        let (u, y) = ((t - centre) / span, f - value);
-        let mut power = 1.0;
-        for order in 0..5 {
-            powers[order] += power;
-            if order < 3 {
-                right[order] += power * y;
-            }
-            power *= u;
-        }
-        squares += y * y;
-    }
-    let matrix = std::array::from_fn(|i| std::array::from_fn(|j| powers[i + j]));
-    let mut solution = right;
-    if !eliminate::<3>(matrix, &mut solution, 0.0) {
-        return 0.0;
-    }
-    let explained: f64 = solution.iter().zip(&right).map(|(a, b)| a * b).sum();
-    (squares - explained).max(0.0)
+    let row = |(t, f): (&f64, &f64)| {
+        let u = (t - centre) / span;
+        ([1.0, u, u * u], f - value, 1.0)
+    };
+    fit_linear(time[from..until].iter().zip(&force[from..until]).map(row), 0.0).map_or(0.0, |fit| fit.left)
 }

@@ -1,7 +1,7 @@
 //! What a hold and a ramp leave of a stretch.
 
 use super::points::Point;
-use crate::optimise::{BoundedProblem, BoundedSolver, eliminate};
+use crate::optimise::{BoundedProblem, BoundedSolver, LinearFit, fit_linear};
 
 /// Number of decays.
 const K: usize = 9;
@@ -197,15 +197,20 @@ fn hold(points: &[Weighed], blank: Shape, price: f64, solver: &mut BoundedSolver
 /// A line, a parabola, or a parabola and a decay, whichever costs least.
 fn ramp(points: &[Weighed], blank: Shape, price: f64) -> Shape {
     let mut best = blank;
-    if let Some((left, [a, b])) = fitted(points, |u| [1.0, u]) {
+    if let Some(LinearFit { factors: [a, b], left }) = fitted(points, |u| [1.0, u]) {
         best.improve([a, b, 0.0], None, 2.0, left + 2.0 * price);
     }
-    if let Some((left, polynomial)) = fitted(points, |u| [1.0, u, u * u]) {
-        best.improve(polynomial, None, 3.0, left + 3.0 * price);
+    if let Some(LinearFit { factors, left }) = fitted(points, |u| [1.0, u, u * u]) {
+        best.improve(factors, None, 3.0, left + 3.0 * price);
     }
     if points.len() >= 5 && best.cost > LEFT * price {
         for place in AT_RAMPS {
-            if let Some((left, [a, b, c, size])) = fitted(points, |u| [1.0, u, u * u, (-u / DECAYS[place]).exp()]) {
+            let fitted = fitted(points, |u| [1.0, u, u * u, (-u / DECAYS[place]).exp()]);
+            if let Some(LinearFit {
+                factors: [a, b, c, size],
+                left,
+            }) = fitted
+            {
                 best.improve([a, b, c], Some((place, size)), 5.0, left + 5.0 * price);
             }
         }
@@ -213,26 +218,7 @@ fn ramp(points: &[Weighed], blank: Shape, price: f64) -> Shape {
     best
 }
 
-/// Squares left by a linear fit of these functions, and their factors.
-fn fitted<const N: usize>(points: &[Weighed], functions: impl Fn(f64) -> [f64; N]) -> Option<(f64, [f64; N])> {
-    if points.len() < N {
-        return None;
-    }
-    let (mut matrix, mut right, mut squares) = ([[0.0; N]; N], [0.0; N], 0.0);
-    for p in points {
-        let row = functions(p.u);
-        for i in 0..N {
-            for j in 0..N {
-                matrix[i][j] += p.weight * row[i] * row[j];
-            }
-            right[i] += p.weight * row[i] * p.value;
-        }
-        squares += p.weight * p.value * p.value;
-    }
-    let mut solution = right;
-    let least = 1e-13 * matrix.iter().flatten().fold(0.0, |most: f64, value| most.max(value.abs()));
-    eliminate(matrix, &mut solution, least).then(|| {
-        let explained: f64 = solution.iter().zip(&right).map(|(a, b)| a * b).sum();
-        ((squares - explained).max(0.0), solution)
-    })
+/// A fit of these functions of u.
+fn fitted<const N: usize>(points: &[Weighed], functions: impl Fn(f64) -> [f64; N]) -> Option<LinearFit<N>> {
+    fit_linear(points.iter().map(|p| (functions(p.u), p.value, p.weight)), 1e-13)
 }

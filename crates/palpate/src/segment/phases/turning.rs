@@ -1,5 +1,6 @@
 //! Turning points: all of a column, and those that noise makes look like a standstill.
 
+use crate::optimise::fit_linear;
 use crate::segment::standstill::Level;
 
 /// Whether a stretch about a level, half as long again on either side, is one smooth turning point.
@@ -53,15 +54,6 @@ pub(super) fn extremes(values: &[f64], turn: f64) -> Vec<usize> {
 
 /// Least-squares parabola: its coefficients, curvature and vertex.
 fn parabola(points: &[(f64, f64)]) -> Option<([f64; 3], f64, f64)> {
-    let sum = |f: &dyn Fn(f64, f64) -> f64| points.iter().map(|(u, v)| f(*u, *v)).sum::<f64>() / points.len() as f64;
-    let (u1, u2, u3, u4) = (sum(&|u, _| u), sum(&|u, _| u * u), sum(&|u, _| u.powi(3)), sum(&|u, _| u.powi(4)));
-    let (v0, v1, v2) = (sum(&|_, v| v), sum(&|u, v| u * v), sum(&|u, v| u * u * v));
-    let (a, b, c) = (u2 - u1 * u1, u3 - u1 * u2, u4 - u2 * u2);
-    let (d, e) = (v1 - u1 * v0, v2 - u2 * v0);
-    let determinant = a * c - b * b;
-    if points.len() < 4 || determinant <= 0.0 {
-        return None;
-    }
-    let (slope, bend) = ((d * c - b * e) / determinant, (a * e - b * d) / determinant);
-    Some(([v0 - slope * u1 - bend * u2, slope, bend], bend, -0.5 * slope / bend))
+    let [level, slope, bend] = fit_linear(points.iter().map(|(u, v)| ([1.0, *u, u * u], *v, 1.0)), 0.0)?.factors;
+    (points.len() > 3).then_some(([level, slope, bend], bend, -0.5 * slope / bend))
 }
