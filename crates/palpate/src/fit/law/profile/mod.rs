@@ -137,7 +137,7 @@ impl Fitted {
             let [low, high] = &reached[place];
             let [low, high] = if correlation < 0.0 { [high, low] } else { [low, high] };
             let end = |values: &Option<Vec<f64>>, open: f64| {
-                values.as_ref().map_or(open, |values| quantity.beyond(values[i], correlation.abs()))
+                values.as_ref().and_then(|values| quantity.beyond(values[i], correlation.abs())).unwrap_or(open)
             };
             let lowest = if quantity.scale == Scale::Log { 0.0 } else { f64::NEG_INFINITY };
             parameter.estimate.interval = Some((end(low, lowest), end(high, f64::INFINITY)));
@@ -217,15 +217,15 @@ fn followed(gradient: &[f64], covariance: &[Vec<f64>]) -> Option<(usize, f64)> {
 }
 
 impl Quantity {
-    /// Where the quantity ends if it has this value at the end of a parameter that it correlates with.
-    fn beyond(&self, end: f64, correlation: f64) -> f64 {
-        if correlation > 1.0 - 1e-9 {
-            return end;
-        }
-        match self.scale {
+    /// Where the quantity ends if it has this value at the end of a parameter that it correlates with. Where that parameter has no end, the
+    /// value may be undetermined: of v = λ |Δ|^(1 − n) the logarithm is 0 · ∞ for n = 1.
+    fn beyond(&self, end: f64, correlation: f64) -> Option<f64> {
+        let end = match self.scale {
+            _ if correlation > 1.0 - 1e-9 => end,
             Scale::Linear => self.value + (end - self.value) / correlation,
             Scale::Log => self.value * (end / self.value).powf(1.0 / correlation),
-        }
+        };
+        (!end.is_nan()).then_some(end)
     }
 }
 
@@ -261,6 +261,7 @@ mod tests {
     use super::*;
     use crate::fit::law::fit_law::fit_law;
     use crate::fit::options::{ConstantChoice, NoiseChoice};
+    use crate::fit::{ParameterKind, ParameterUnit};
     use crate::laws::ExponentChoice;
     use crate::statistics::coverage_factor;
     use crate::test_problems::noisy_hold;
@@ -268,6 +269,21 @@ mod tests {
     const FREE: Law = Law::Latency {
         exponent: ExponentChoice::Free,
     };
+
+    /// The rate coefficient of a creep with n = 1 had the interval (0, NaN): its amplitude had no end.
+    #[test]
+    fn an_end_that_is_undetermined_is_open() {
+        let rate = Quantity {
+            scale: Scale::Log,
+            ..Quantity::given(ParameterKind::RateCoefficient.into(), ParameterUnit::RateCoefficient, 1.5)
+        };
+        let at_infinity = 0.0 * f64::INFINITY;
+        for correlation in [1.0, 0.8] {
+            assert_eq!(rate.beyond(at_infinity, correlation), None);
+            assert_eq!(rate.beyond(f64::INFINITY, correlation), Some(f64::INFINITY));
+        }
+        assert_eq!(rate.beyond(3.0, 0.5), Some(6.0));
+    }
 
     #[test]
     fn a_fit_with_the_number_held_at_an_end_is_worse_by_the_bound() {
