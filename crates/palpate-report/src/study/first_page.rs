@@ -71,19 +71,24 @@ pub(super) fn of_comparison(
 
 /// The law of the record on its holds; of a spectrum, which has no parameters to state, the best law that has some, and that it is.
 fn with_parameters<'a>(record: &'a ComparedRecord, answer: &Answer) -> (Vec<HoldFit<'a>>, Option<String>) {
-    let law = law_of_record(record);
+    let Some(stated) = law_stated(record) else {
+        return (fits_of_record(record, answer), None);
+    };
+    let instead = (law_of_record(record) == Some(Law::Spectrum) && stated != Law::Spectrum).then(|| {
+        format!(
+            " It has no parameters to carry to another test; the best law that has some is {}.",
+            name_in_words(stated)
+        )
+    });
+    (fits_of_law(record, stated), instead)
+}
+
+/// The law of the record; instead of a spectrum the best law that has parameters, if there is one.
+fn law_stated(record: &ComparedRecord) -> Option<Law> {
+    let law = law_of_record(record)?;
     let rows = || shown(record).into_iter().flat_map(|(_, comparison)| &comparison.rows);
-    let stated = rows().find(|row| row.is_good() && row.fit.is_ok() && row.spectrum.is_none()).map(|row| row.law);
-    match (law, stated) {
-        (Some(Law::Spectrum), Some(stated)) => (
-            fits_of_law(record, stated),
-            Some(format!(
-                " It has no parameters to carry to another test; the best law that has some is {}.",
-                name_in_words(stated)
-            )),
-        ),
-        _ => (fits_of_record(record, answer), None),
-    }
+    let with_parameters = || rows().find(|row| row.is_good() && row.fit.is_ok() && row.spectrum.is_none());
+    Some(if law == Law::Spectrum { with_parameters().map_or(law, |row| row.law) } else { law })
 }
 
 fn blocks(
@@ -202,9 +207,13 @@ pub(super) fn panel_of_hold(record: &ComparedRecord) -> Option<(Panel, String)> 
     let visible = hold.times.partition_point(|t| *t <= 0.0);
     let (times, values) = (hold.times[visible..].to_vec(), hold.values[visible..].to_vec());
     let measured = Layer::points(times, values, Role::Measured).label("measured");
-    let panel = forecast_panel(hold, comparison, measured, |row| row.law.to_string()).title(hold.short_title());
+    // The law of the formula and of the table.
+    let stated = law_stated(record).filter(|law| comparison.rows.iter().any(|row| row.law == *law && row.fit.is_ok()));
+    let law = stated.or_else(|| comparison.verdict.as_ref().map(|verdict| verdict.law));
+    let law = law.map(|law| (law, law.to_string()));
+    let panel = forecast_panel(hold, comparison, law, measured).title(hold.short_title());
     let caption = format!(
-        "Hold {} over the logarithm of the time since the start of its fit, with the recommended law and, from its end up to {FARTHEST} times its duration, the forecast of all laws together.",
+        "Hold {} over the logarithm of the time since the start of its fit, with its law and, from its end up to {FARTHEST} times its duration, the forecast of all laws together.",
         hold.number
     );
     Some((panel, caption))

@@ -1,6 +1,7 @@
-//! A hold with its recommended law and its forecast, as a panel.
+//! A hold with a law and its forecast, as a panel.
 
 use palpate::forecast::{Comparison, Forecasted, Row};
+use palpate::laws::Law;
 
 use crate::figure::{Axis, Layer, Panel, Role};
 use crate::result::{ComparedHold, word};
@@ -9,12 +10,12 @@ use crate::word::capitalised;
 /// How far forecasts are drawn, as a multiple of the duration of a hold.
 pub(super) const FARTHEST: f64 = 3.0;
 
-/// A hold with its recommended law and, from its end on, the forecast of all laws together, where there is one.
+/// A hold with a law under a label and, from its end on, the forecast of all laws together, where there is one.
 pub(super) fn forecast_panel(
     hold: &ComparedHold,
     comparison: &Comparison,
+    law: Option<(Law, String)>,
     measured: Layer,
-    label: impl Fn(&Row) -> String,
 ) -> Panel {
     const POINTS: usize = 161;
     const CONFIDENCE: f64 = 0.95;
@@ -36,12 +37,11 @@ pub(super) fn forecast_panel(
             .layer(Layer::band(times.clone(), low, high, Role::Simulated).label("95 % of samples"))
             .layer(Layer::line(times, value, Role::Simulated).label("forecast"));
     }
-    let law = comparison.verdict.as_ref().map(|verdict| verdict.law);
-    let row = comparison.rows.iter().find(|row| Some(row.law) == law);
-    panel.layers(row.map(|row| {
+    panel.layers(law.and_then(|(law, label)| {
+        let row = comparison.rows.iter().find(|row| row.law == law)?;
         let curve = spaced(first, end);
         let values = curve.iter().map(|t| predicted(row, *t)).collect();
-        Layer::line(curve, values, Role::Fitted).label(label(row))
+        Some(Layer::line(curve, values, Role::Fitted).label(label))
     }))
 }
 

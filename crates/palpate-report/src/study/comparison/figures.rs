@@ -39,7 +39,8 @@ fn forecasts(record: &ComparedRecord, suffix: &str) -> Vec<Figure> {
     let panel = |(hold, comparison): &(&ComparedHold, &Comparison)| {
         let (measured, means) = averaged(hold, |_| 0.0);
         let measured = Layer::points(measured, means, Role::Measured).label("measured, means");
-        forecast_panel(hold, comparison, measured, |_| "recommended law".to_owned()).title(hold.short_title())
+        let law = comparison.verdict.as_ref().map(|verdict| (verdict.law, "recommended law".to_owned()));
+        forecast_panel(hold, comparison, law, measured).title(hold.short_title())
     };
     by_hold(
         &format!("forecasts{suffix}"),
