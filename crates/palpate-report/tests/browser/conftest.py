@@ -120,3 +120,10 @@ def opened(browser: Browser, path: Path, width: int = 1280, *, script: bool = Tr
     page.on("dialog", refuse)
     page.goto(path.as_uri())
     return found
+
+
+def opened_whole(browser: Browser, path: Path) -> Opened:
+    """A page with all of its sections open."""
+    found = opened(browser, path)
+    found.page.get_by_role("button", name="Open all sections").click()
+    return found

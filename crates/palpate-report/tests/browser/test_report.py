@@ -10,7 +10,7 @@ from io import BytesIO
 from pathlib import Path
 
 import pytest
-from conftest import HOSTILE, Opened, Reports, opened
+from conftest import HOSTILE, Opened, Reports, opened, opened_whole
 from playwright.sync_api import Browser, Locator
 from pypdf import PdfReader
 
@@ -184,8 +184,7 @@ def test_a_drag_zooms_and_a_double_click_resets(browser: Browser, reports: Repor
 
 
 def test_legend_entries_switch_curves(browser: Browser, reports: Reports) -> None:
-    found = opened(browser, reports.many)
-    found.page.get_by_role("button", name="Open all sections").click()
+    found = opened_whole(browser, reports.many)
     figure = found.page.locator("figure:has(ul.legend)").first
     entry = figure.locator(".legend .entry").nth(1)
     name = entry.get_attribute("data-series")
@@ -205,8 +204,7 @@ def test_legend_entries_switch_curves(browser: Browser, reports: Reports) -> Non
 
 
 def test_tables_sort_by_a_click(browser: Browser, reports: Reports) -> None:
-    found = opened(browser, reports.many)
-    found.page.get_by_role("button", name="Open all sections").click()
+    found = opened_whole(browser, reports.many)
     table = found.page.locator("table:has(th:has-text('Recommended law'))").first
     column = table.locator("th", has_text="Probability")
     index = column.evaluate("(one) => one.cellIndex")
