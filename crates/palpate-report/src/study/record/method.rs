@@ -27,14 +27,20 @@ fn phases(analysis: &Analysis) -> Pairs {
     let segment = &analysis.segmentation.settings;
     let (unit, speed, scale) = if segment.from_displacement { ("mm", "mm/s", 1e3) } else { ("N", "N/s", 1.0) };
     let column = if segment.from_displacement { "displacement" } else { "force" };
-    vec![
+    let mut pairs = vec![
         ("Phases from", column.to_owned()),
         ("Noise of that column", format!("{} {unit}", number(segment.noise * scale))),
         ("Tolerance of a hold", format!("{} {unit}", number(segment.tolerance * scale))),
-        ("Speed of the ramps", format!("{} {speed}", number(segment.ramp_speed * scale))),
-        ("At rest below", format!("{} {speed}", number(segment.still_speed * scale))),
-        ("Shortest hold", format!("{} s, {} samples", number(segment.minimum_hold), segment.minimum_samples)),
-    ]
+    ];
+    // The shapes of a force alone have no such thresholds.
+    if segment.from_displacement {
+        pairs.extend([
+            ("Speed of the ramps", format!("{} {speed}", number(segment.ramp_speed * scale))),
+            ("At rest below", format!("{} {speed}", number(segment.still_speed * scale))),
+            ("Shortest hold", format!("{} s, {} samples", number(segment.minimum_hold), segment.minimum_samples)),
+        ]);
+    }
+    pairs
 }
 
 fn touch(analysis: &Analysis) -> Pairs {

@@ -12,8 +12,6 @@ use crate::watch::Watch;
 const TURN: f64 = 0.004;
 /// Share of its range by which a force may still relax in a hold.
 const WANDER: f64 = 0.02;
-/// Speed of a hold as a share of the speed of the ramps.
-const STILL_BELOW: f64 = 0.35;
 
 /// Standard deviations of noise within which a force that does nothing stays.
 const NOISE: f64 = 14.0;
@@ -28,11 +26,7 @@ pub(super) fn phases(
     let range = high - low;
     // Where a force does not move at all, and what a hold needs, is known as for any column.
     let held = Held::new(("force", "N"), force, WANDER * range, false);
-    let searched = SegmentOptions {
-        still_below: Some(options.still_below.unwrap_or(STILL_BELOW)),
-        ..*options
-    };
-    let still = levels(time, &held, &searched, watch)?;
+    let still = levels(time, &held, options, watch)?;
     let settings = SegmentSettings {
         from_displacement: false,
         tolerance: (6.0 * still.settings.noise).max(TURN * range),
