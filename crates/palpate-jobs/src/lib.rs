@@ -57,7 +57,7 @@ pub use inspect::{Inspect, Inspected, machines_text};
 pub use outcome::{Outcome, Results, Verdict};
 pub use predict::{Predict, Predicted};
 pub use report_index::{ReportIndex, write_reports};
-pub use reproduce::Reproduce;
+pub use reproduce::{Reproduce, ReproducedRecord};
 pub use simulate::{DriveBy, Simulate, Simulated};
 pub use sweep::{Sweep, Swept, sweep_fields, sweep_rows};
 pub use watch_log::{Event, HoldObserved, Observed, WatchLog};

@@ -6,7 +6,7 @@ use palpate::laws::Law;
 use palpate_files::description::{NamedColumns, parse_test, read_material};
 use palpate_jobs::input::{Described, NamedFile, NamedRecords, OpenedFile};
 use palpate_jobs::output::write_bundle;
-use palpate_jobs::{Batch, BatchAnswer, Convert, HoldObserved, Inspect, Observed, Reproduce, Sweep, WatchLog};
+use palpate_jobs::{Batch, BatchAnswer, Convert, HoldObserved, Inspect, Observed, Reproduce, Results, Sweep, WatchLog};
 use palpate_report::document::{WatchDocument, WatchSummaryDocument};
 use palpate_report::study::{Pictures, reproduction_bundle};
 use pyo3::prelude::*;
@@ -325,7 +325,7 @@ pub(crate) fn sweep(
     Ok((done.runs, done.refused))
 }
 
-/// Reproduce the paper's study into a folder: ``palpate reproduce``.
+/// Judge every claim of the paper, or its conclusions on a record, into a folder: ``palpate reproduce``.
 ///
 /// Parameters
 /// ----------
@@ -333,24 +333,80 @@ pub(crate) fn sweep(
 ///     Made if it is not there.
 /// png
 ///     Whether figures are written as PNG beside SVG.
+/// seeds
+///     Laboratories that repeat the tests with each ball, one seed each; 32 if left out. Not with a record.
+/// sample_rate_hz
+///     Their sampling rate, Hz; 50 if left out. Not with a record.
+/// record, name, test, part, columns
+///     A record of one's own, as ``path`` and the others of `read`; it is shown in the layout of the paper, with its conclusions.
 ///
 /// Returns
 /// -------
-/// bool
-///     Whether every check passes.
+/// dict
+///     What summary.json holds: ``claims`` with their verdicts, and more; ``palpate schema reproduction`` and ``reproduced-record`` print
+///     the schemas.
 ///
 /// Raises
 /// ------
-/// OSError
-///     The folder cannot be written to.
+/// RecordError, OptionError, OSError
+///     As for `read`; seeds or a sampling rate out of range; a folder that cannot be written to.
+///
+/// Examples
+/// --------
+/// >>> import tempfile
+/// >>> with tempfile.TemporaryDirectory() as folder:
+/// ...     study = palpate.reproduce(folder, seeds=4, sample_rate_hz=10.0)
+/// >>> first = study["claims"][0]
+/// >>> first["place"], first["verdict"], first["comparisons"][0]["paper"]
+/// ('Abstract', 'not_reproduced', -0.1661)
 #[pyfunction]
-#[pyo3(signature = (folder, *, png=false))]
-pub(crate) fn reproduce(py: Python<'_>, folder: PathBuf, png: bool) -> PyResult<bool> {
-    writing_job(py, move |watch| {
-        let done = Reproduce {}.run(watch)?;
-        write_bundle(&folder, &reproduction_bundle(&done.result, Pictures { png }, watch)?)?;
-        Ok(done.result.all_passed())
-    })
+#[pyo3(signature = (
+    folder, *, png=false, seeds=None, sample_rate_hz=None, record=None, name=None, test=None, part=None, columns=None,
+))]
+#[expect(clippy::too_many_arguments, reason = "keywords of Python")]
+pub(crate) fn reproduce<'py>(
+    py: Python<'py>,
+    folder: PathBuf,
+    png: bool,
+    seeds: Option<usize>,
+    sample_rate_hz: Option<f64>,
+    record: Given<'py, '_>,
+    name: Option<&str>,
+    test: Given<'py, '_>,
+    part: Given<'py, '_>,
+    columns: Given<'py, '_>,
+) -> PyResult<Bound<'py, PyAny>> {
+    let pictures = Pictures { png };
+    let Some(record) = record else {
+        if name.is_some() || test.is_some() || part.is_some() || columns.is_some() {
+            return Err(OptionError::new_err("name, test, part and columns describe a record: give the record too"));
+        }
+        let usual = Reproduce::default();
+        let question = Reproduce {
+            seeds: seeds.unwrap_or(usual.seeds),
+            sample_rate_hz: sample_rate_hz.unwrap_or(usual.sample_rate_hz),
+        };
+        let document = writing_job(py, move |watch| {
+            let study = question.run(watch)?.result;
+            write_bundle(&folder, &reproduction_bundle(&study, pictures, watch)?)?;
+            Ok(study.document())
+        })?;
+        return plain(py, &document);
+    };
+    if seeds.is_some() || sample_rate_hz.is_some() {
+        return Err(OptionError::new_err(
+            "seeds and sample_rate_hz belong to the paper's study: leave them out with a record",
+        ));
+    }
+    let (file, described) = (record_file(record, name)?, described_with(test, part, columns)?);
+    let document = writing_job(py, move |watch| {
+        let opened = OpenedFile::named(&file, &described)?;
+        let measured = opened.measurement(opened.only()?, watch)?;
+        let found = Reproduce::of_record(measured, watch)?.result;
+        write_bundle(&folder, &found.bundle(pictures, watch)?)?;
+        Ok(found.document())
+    })?;
+    plain(py, &document)
 }
 
 /// Watch a recorded log as if it came in live: the lines of ``palpate watch --format jsonl``.

@@ -134,9 +134,17 @@ def test_convert(tmp_path: Path, ending: str) -> None:
     assert own.read_bytes() == (tmp_path / f"its.{ending}").read_bytes()
 
 
-def test_reproduce(tmp_path: Path) -> None:
-    command("reproduce", "--out", tmp_path / "its")
-    assert palpate.reproduce(tmp_path / "own")
+@pytest.mark.parametrize("of_record", [False, True])
+def test_reproduce(tmp_path: Path, of_record: bool) -> None:
+    if of_record:
+        command("reproduce", "--record", RECORD, "--test", TEST, "--out", tmp_path / "its")
+        summary = palpate.reproduce(tmp_path / "own", record=RECORD, test=TEST)
+    else:
+        command("reproduce", "--seeds", "4", "--sample-rate", "20", "--out", tmp_path / "its")
+        summary = palpate.reproduce(tmp_path / "own", seeds=4, sample_rate_hz=20.0)
+    assert summary == json.loads((tmp_path / "its" / "summary.json").read_text())
+    verdicts = {claim["verdict"] for claim in summary["claims"]}
+    assert "reproduced" in verdicts and "not_reproduced" in verdicts
     files = sorted(path.relative_to(tmp_path / "its") for path in (tmp_path / "its").rglob("*") if path.is_file())
     assert files == sorted(path.relative_to(tmp_path / "own") for path in (tmp_path / "own").rglob("*") if path.is_file())
     for file in files:
@@ -157,3 +165,10 @@ def test_reports_of_several_records_with_their_index(tmp_path: Path) -> None:
         assert (tmp_path / "own" / file).read_bytes() == (tmp_path / "its" / file).read_bytes(), file
     with pytest.raises(palpate.OptionError, match="one analysis or more"):
         palpate.report_all([], tmp_path / "none")
+def test_reproduce_refuses_what_does_not_go_together(tmp_path: Path) -> None:
+    with pytest.raises(palpate.OptionError, match="give the record too"):
+        palpate.reproduce(tmp_path / "own", test=TEST)
+    with pytest.raises(palpate.OptionError, match="leave them out with a record"):
+        palpate.reproduce(tmp_path / "own", record=RECORD, test=TEST, seeds=4)
+    with pytest.raises(palpate.OptionError, match="number of seeds: from 1 to"):
+        palpate.reproduce(tmp_path / "own", seeds=0)

@@ -5,8 +5,9 @@
 use std::path::Path;
 
 use palpate::fit::Estimate;
+use palpate::paper::Verdict;
 use palpate_report::figure::{Arrangement, Axis, Figure, Layer, Map, Panel, Role};
-use palpate_report::page::{Block, Check, Finding, Page, Section, Severity};
+use palpate_report::page::{Block, ClaimLine, ClaimRow, Finding, Page, Section, Severity};
 use palpate_report::table::{Cell, Table};
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
@@ -262,11 +263,18 @@ fn page(table: Table, figures: Section) -> Page {
         meaning: "The contact may not have settled when the hold began.".to_owned(),
         remedy: "Hold longer, or start the fit later.".to_owned(),
     };
-    let check = |name: &str, found: &str, passed| Check {
-        name: name.to_owned(),
-        criterion: "at most 5 %".to_owned(),
-        found: found.to_owned(),
-        passed,
+    let claim = |statement: &str, found: &str, verdict| ClaimRow {
+        place: "Table I".to_owned(),
+        statement: statement.to_owned(),
+        lines: vec![ClaimLine {
+            quantity: "relative error".to_owned(),
+            paper: "≤ 5 %".to_owned(),
+            ours: found.to_owned(),
+            tolerance: "0 %: as stated".to_owned(),
+        }],
+        remark: String::new(),
+        verdict,
+        shown_in: Some(("Figure 1".to_owned(), "#figure-1".to_owned())),
     };
     let pairs = [("Record", "pad-a.csv"), ("Samples", "4000"), ("Rate", "33.3 s⁻¹")];
     Page::new("Gallery of figures", "What palpate can draw, from made-up data")
@@ -283,9 +291,9 @@ fn page(table: Table, figures: Section) -> Page {
                     finding(Severity::Caution, "drift", "The force falls by 0.4 % after the last rate has died out."),
                     finding(Severity::Info, "resampled", "Samples are uneven; 4 gaps were found."),
                 ]))
-                .block(Block::Checks(vec![
-                    check("Recovered rate", "1.3 %", true),
-                    check("Recovered equilibrium strain", "7.9 %", false),
+                .block(Block::Claims(vec![
+                    claim("The rate is recovered.", "1.3 %", Verdict::Reproduced),
+                    claim("The equilibrium strain is recovered.", "7.9 %", Verdict::NotReproduced),
                 ])),
         )
         .section(figures)

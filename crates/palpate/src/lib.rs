@@ -26,6 +26,7 @@
 //! | [`instrument`] | the uncertainty of the instrument and of the body |
 //! | [`analysis`] | the complete analysis of one record, with findings |
 //! | [`observe`] | a contact observed tick by tick: holds, their equilibrium, time to slip |
+//! | [`paper`] | the paper claim by claim, each with a verdict |
 //!
 //! | feature | what |
 //! |---|---|
@@ -112,6 +113,8 @@ pub mod observe;
 mod ode;
 #[cfg(feature = "std")]
 mod optimise;
+#[cfg(feature = "std")]
+pub mod paper;
 #[cfg(feature = "std")]
 mod parallel;
 #[cfg(feature = "std")]

@@ -8,10 +8,23 @@ use palpate_jobs as jobs;
 use palpate_jobs::typed::{Choice, columns, force, length, one_of};
 
 use super::Format;
+use super::records::DescribedArguments;
 
-/// Reproduce the paper's study: simulate its tests, identify the law again, check the results.
+/// Judge every claim of the paper: simulate and analyse its tests, let laboratories repeat them, or analyse your own record.
 #[derive(Debug, Args)]
+#[command(after_help = "\
+Examples:
+  palpate reproduce                                    every equation, figure, table and statement
+  palpate reproduce --seeds 1000 --sample-rate 200     more laboratories, which sample faster
+  palpate reproduce --record press.csv --test press.toml --out press   your own record in the paper's layout")]
 pub(crate) struct ReproduceArguments {
+    /// Your own record, shown in the layout of the paper with its conclusions
+    #[arg(long, value_name = "RECORD")]
+    pub(crate) record: Option<PathBuf>,
+    #[command(flatten)]
+    pub(crate) described: DescribedArguments,
+    #[command(flatten)]
+    pub(crate) job: jobs::Reproduce,
     /// Folder for the report, figures, tables and series
     #[arg(long, value_name = "DIR", default_value = "palpate-reproduction")]
     pub(crate) out: PathBuf,

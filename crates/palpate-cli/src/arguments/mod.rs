@@ -14,8 +14,8 @@ use palpate_jobs as jobs;
 use palpate_jobs::BUILD;
 use palpate_jobs::typed::{Choice, one_of};
 use palpate_report::document::{
-    AnalysisDocument, CalibrationDocument, ComparisonDocument, GripDocument, ReproductionDocument,
-    SeveralCalibrationsDocument, Software, SpecimensDocument, WatchDocument,
+    AnalysisDocument, CalibrationDocument, ComparisonDocument, GripDocument, ReproducedRecordDocument,
+    ReproductionDocument, SeveralCalibrationsDocument, Software, SpecimensDocument, WatchDocument,
 };
 use schemars::{JsonSchema, schema_for};
 use serde_json::Value;
@@ -54,7 +54,7 @@ fn build() -> String {
 
 const AFTER_HELP: &str = "\
 Examples:
-  palpate reproduce                              the paper's study, into palpate-reproduction/
+  palpate reproduce                              the paper, claim by claim
   palpate inspect test.csv                       columns, units and phases of a record
   palpate analyze test.csv --out study           phases, laws, tables, figures, report.html
   palpate analyze test.csv --test ball.toml      with geometry: also strains, and v in 1/s
@@ -133,6 +133,11 @@ const SCHEMAS: &[Choice<fn() -> Value>] = &[
     ("grip", "Result of `palpate grip --format json`", schema::<GripDocument>),
     ("watch", "A line of `palpate watch --format jsonl`", schema::<WatchDocument>),
     ("reproduction", "summary.json of `palpate reproduce`", schema::<ReproductionDocument>),
+    (
+        "reproduced-record",
+        "summary.json of `palpate reproduce --record`",
+        schema::<ReproducedRecordDocument>,
+    ),
     ("job-inspect", "Options of `palpate inspect` as a job", schema::<jobs::Inspect>),
     ("job-analyze", "Options of `palpate analyze` as a job", schema::<jobs::Analyze>),
     ("job-compare", "Options of `palpate compare` as a job", schema::<jobs::Compare>),

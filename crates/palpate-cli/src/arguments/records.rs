@@ -40,6 +40,26 @@ impl DescribedArguments {
         let described = Described::read(self.test.as_deref(), self.part.as_deref())?;
         Ok(described.with_columns(self.columns.as_ref()).with_then(self.then.clone()))
     }
+
+    /// Refuses a description of a record where there is none.
+    ///
+    /// # Errors
+    /// [`JobError`] where anything is described.
+    pub(crate) fn refuse_without_record(&self) -> Result<(), JobError> {
+        let given = [
+            ("--test", self.test.is_some()),
+            ("--columns", self.columns.is_some()),
+            ("--part", self.part.is_some()),
+            ("--then", self.then.is_some()),
+        ];
+        match given.iter().find(|(_, is_given)| *is_given) {
+            Some((option, _)) => {
+                let message = format!("{option} describes a record, and none is given");
+                Err(JobError::option(message, "name the record: --record RECORD"))
+            }
+            None => Ok(()),
+        }
+    }
 }
 
 /// Show the columns, units, sampling and phases of a record. No file is changed.

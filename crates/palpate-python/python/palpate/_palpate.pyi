@@ -644,7 +644,18 @@ def sweep(
     protocol: _Path, out: _Path, *, figure: _Path | None = None, show: str | None = None, restart: bool = False
 ) -> tuple[int, int]: ...
 def report_all(analyses: Sequence[Analysis], folder: _Path, *, png: bool = False) -> os.PathLike[str]: ...
-def reproduce(folder: _Path, *, png: bool = False) -> bool: ...
+def reproduce(
+    folder: _Path,
+    *,
+    png: bool = False,
+    seeds: int | None = None,
+    sample_rate_hz: float | None = None,
+    record: _File | None = None,
+    name: str | None = None,
+    test: _Described | None = None,
+    part: str | int | None = None,
+    columns: _Columns | None = None,
+) -> dict[str, Any]: ...
 def watch(
     path: _File,
     *,

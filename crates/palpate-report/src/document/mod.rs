@@ -14,7 +14,7 @@
 //! | `grip.rs` | `palpate.grip/1`, a planned grip |
 //! | `finding.rs`, `software.rs` | what stands in several of them |
 //! | `watch.rs` | `palpate.watch/1`, a watched contact, one object a line |
-//! | `reproduction.rs` | `palpate.reproduction/1`, the summary of the reproduced study |
+//! | `reproduction.rs` | `palpate.reproduction/2`, the paper claim by claim; `palpate.reproduced-record/1`, its conclusions on a record |
 
 /// Documents: of each field its meaning, its type, and its place in the result. A field with `?` after its name is omitted where there
 /// is none; any other is `null` then.
@@ -71,7 +71,7 @@ pub use fit::FitDocument;
 pub use grip::{
     BackOffDocument, ForceHoldDocument, GripDocument, PositionHoldDocument, ScheduleDocument, TimeToSlipDocument,
 };
-pub use reproduction::ReproductionDocument;
+pub use reproduction::{ReproducedRecordDocument, ReproductionDocument};
 pub(crate) use several_calibrations::of_between;
 pub use several_calibrations::{BatchParameterDocument, SeveralCalibrationsDocument, SpecimenDocument};
 pub use software::Software;

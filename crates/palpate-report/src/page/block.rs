@@ -5,6 +5,7 @@ use palpate::watch::Unwatched;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+use super::claims::ClaimRow;
 use crate::figure::{Figure, FigureError, View};
 use crate::table::Table;
 
@@ -48,8 +49,8 @@ pub enum Block {
     KeyValues(Vec<(String, String)>),
     /// Text to be copied as it stands.
     Code(String),
-    /// Comparisons with a criterion.
-    Checks(Vec<Check>),
+    /// Statements with what became of them.
+    Claims(Vec<ClaimRow>),
 }
 
 /// A finding with its words.
@@ -82,20 +83,6 @@ pub struct Card {
     pub lines: Vec<String>,
     /// Its most severe finding and how many there are.
     pub findings: Option<(Severity, usize)>,
-}
-
-/// One thing that the paper reports, checked.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
-#[schemars(rename = "CheckDocument")]
-pub struct Check {
-    /// What is checked.
-    pub name: String,
-    /// When it passes.
-    pub criterion: String,
-    /// What was found.
-    pub found: String,
-    /// Whether it passes.
-    pub passed: bool,
 }
 
 impl Block {

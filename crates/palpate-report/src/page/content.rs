@@ -1,9 +1,9 @@
 //! Blocks as HTML: all text is escaped here.
 
-use super::{Block, Card, Check, Finding, Severity};
+use super::markup::{each, rich};
+use super::{Block, Card, Finding, Severity, claims};
 use crate::escape::escape;
 use crate::figure::View;
-use crate::script::{Level, runs};
 use crate::table::{Cell, Table, mark};
 use crate::word::word;
 
@@ -17,11 +17,6 @@ const DENSE: usize = 120;
 pub(super) struct Counts {
     figures: usize,
     tables: usize,
-}
-
-/// What is written of each of several things, one after the other.
-pub(super) fn each<T>(things: impl IntoIterator<Item = T>, written: impl FnMut(T) -> String) -> String {
-    things.into_iter().map(written).collect()
 }
 
 /// A block; figures and tables are counted.
@@ -61,7 +56,7 @@ pub(super) fn written(block: &Block, counts: &mut Counts) -> String {
         Block::Findings(findings) => each(findings, finding_written),
         Block::KeyValues(pairs) => key_values(pairs),
         Block::Code(text) => format!("<pre tabindex=\"0\"><code>{}</code></pre>\n", escape(text)),
-        Block::Checks(checks) => checks_written(checks),
+        Block::Claims(rows) => claims::written(rows),
     }
 }
 
@@ -80,10 +75,10 @@ fn figure_written(view: &View, caption: &str, number: usize) -> String {
     let wide = if view.narrow.is_some() { " wide" } else { "" };
     format!(
         "<figure id=\"figure-{number}\" class=\"columns-{}\">\n{legend}<div class=\"panels{wide}\">\n{}</div>\n{narrow}\
-         <figcaption><b>Figure {number}.</b> {}</figcaption>\n</figure>\n",
+         <figcaption>{}</figcaption>\n</figure>\n",
         view.columns.min(3),
         view.panels.concat(),
-        rich(caption)
+        numbered("Figure", number, caption)
     )
 }
 
@@ -169,14 +164,14 @@ fn table_written(table: &Table, number: usize) -> String {
     });
     let notes = each(&table.notes, |note| format!("<p class=\"note\">{}</p>\n", rich(note)));
     format!(
-        "<div class=\"table{}\" id=\"table-{number}\">\n<p class=\"caption\" id=\"caption-{number}\"><b>Table {number}.</b> {}</p>\n\
+        "<div class=\"table{}\" id=\"table-{number}\">\n<p class=\"caption\" id=\"caption-{number}\">{}</p>\n\
          <div class=\"scroll\">\n<table aria-labelledby=\"caption-{number}\">\n<thead>\n<tr>{heads}</tr>\n</thead>\n<tbody>\n{rows}\
          </tbody>\n</table>\n</div>\n{marked}{notes}</div>\n",
         [(table.rows.len() <= SHORT, " short"), (extent(table) > DENSE, " dense")]
             .into_iter()
             .filter_map(|(is, class)| is.then_some(class))
             .collect::<String>(),
-        rich(&table.caption)
+        numbered("Table", number, &table.caption)
     )
 }
 
@@ -211,36 +206,21 @@ fn finding_written(finding: &Finding) -> String {
     )
 }
 
-fn checks_written(checks: &[Check]) -> String {
-    let rows = each(checks, |check| {
-        let (outcome, sign) = if check.passed { ("pass", "✓") } else { ("fail", "✗") };
-        let [name, criterion, found] = [&check.name, &check.criterion, &check.found].map(|text| rich(text));
-        format!(
-            "<tr><th scope=\"row\">{name}</th><td>{criterion}</td><td>{found}</td>\
-             <td class=\"{outcome}\"><span aria-hidden=\"true\">{sign}</span> {outcome}</td></tr>\n"
-        )
-    });
-    format!(
-        "<div class=\"table short\">\n<div class=\"scroll\">\n<table class=\"checks\">\n<thead>\n<tr><th scope=\"col\">Check</th>\
-         <th scope=\"col\">Criterion</th><th scope=\"col\">Found</th>\
-         <th scope=\"col\">Outcome</th></tr>\n</thead>\n<tbody>\n{rows}</tbody>\n</table>\n</div>\n</div>\n"
-    )
+/// A caption behind its number on the page; one that begins with a number of its own, such as `Figure 4(a). `, keeps that.
+fn numbered(what: &str, number: usize, caption: &str) -> String {
+    let own = caption
+        .strip_prefix(what)
+        .and_then(|rest| rest.strip_prefix(' '))
+        .and_then(|rest| rest.split_once(". "));
+    match own {
+        Some((own, rest)) => format!("<b>{what} {}.</b> {}", rich(own), rich(rest)),
+        None => format!("<b>{what} {number}.</b> {}", rich(caption)),
+    }
 }
 
 pub(super) fn key_values(pairs: &[(String, String)]) -> String {
     let items = each(pairs, |(key, value)| format!("<dt>{}</dt><dd>{}</dd>\n", rich(key), rich(value)));
     format!("<dl>\n{items}</dl>\n")
-}
-
-/// Escaped text with superscripts and subscripts as elements.
-pub(super) fn rich(text: &str) -> String {
-    let element = |(level, run): &(Level, String)| match level {
-        Level::Base => escape(run),
-        Level::Raised => format!("<sup>{}</sup>", escape(run)),
-        Level::Lowered => format!("<sub>{}</sub>", escape(run)),
-        Level::Dot => "\u{307}".to_owned(),
-    };
-    each(&runs(text), element)
 }
 
 #[cfg(test)]

@@ -2,7 +2,8 @@
 
 use std::collections::HashSet;
 
-use super::content::{Counts, each, key_values, rich, written};
+use super::content::{Counts, key_values, written};
+use super::markup::{each, rich};
 use super::policy::{POLICY, SCRIPT, STYLE};
 use super::{Block, Page, Section};
 use crate::escape::escape;
@@ -85,7 +86,7 @@ fn holds(section: &Section) -> String {
     while let Some(block) = blocks.pop() {
         match block {
             Block::Figure { .. } => figures += 1,
-            Block::Table(_) | Block::Checks(_) => tables += 1,
+            Block::Table(_) | Block::Claims(_) => tables += 1,
             Block::Folded { blocks: inner, .. } => blocks.extend(inner),
             _ => {}
         }

@@ -13,11 +13,14 @@
 //! ```
 
 mod block;
+mod claims;
 mod content;
 mod html;
+mod markup;
 mod policy;
 
-pub use block::{Block, Card, Check, Finding};
+pub use block::{Block, Card, Finding};
+pub use claims::{ClaimLine, ClaimRow};
 pub use palpate::analysis::Severity;
 
 /// A page with its sections and where its content comes from.

@@ -13,7 +13,6 @@
 //! | `budget.rs` | uncertainty budgets of results |
 //! | `calibrated_batch.rs` | several records calibrated together, with remarks |
 //! | `gripped.rs`, `grip_sentences.rs` | a body in a gripper with an answer; the answer in sentences |
-//! | `reproduced.rs` | the paper's study |
 //! | `specimens.rs` | records of several specimens: one law, its parameters between specimens |
 //! | `words.rs` | the words for what the library says |
 
@@ -26,11 +25,9 @@ mod grip_sentences;
 mod gripped;
 mod input;
 mod parameters;
-mod reproduced;
 mod specimens;
 mod words;
 
-pub use crate::page::Check;
 pub use crate::word::word;
 pub(crate) use answer::law_of_record;
 pub use answer::{Answer, HoldAnswer, formula};
@@ -45,7 +42,6 @@ pub use parameters::{
     PARAMETER_COLUMNS, ParameterColumn, ParameterDocument, ParameterRow, Parameters, parameter_title, parameters_of,
     parameters_of_material, parameters_table, si_unit,
 };
-pub use reproduced::{ReproducedTest, Reproduction};
 pub use specimens::{BetweenSpecimens, SpecimenHold, SpecimenResult, SpecimenResults};
 pub(crate) use specimens::{is_of_interest, is_scale};
 pub(crate) use words::{hold_start_word, percent};

@@ -40,7 +40,7 @@ pub use comparison::{comparison_bundle, comparison_markdown, comparison_text};
 pub use grip::{grip_bundle, grip_figure, grip_table, grip_text, neighbour_table, schedule_table, sensitivity_table};
 pub use index::SpecimenIndex;
 pub use record::{analysis_bundle, analysis_text, cut_figure};
-pub use reproduction::{reproduction_bundle, reproduction_text};
+pub use reproduction::{claims_text, record_reproduction_bundle, reproduction_bundle, reproduction_text};
 pub use simulate::{
     Swept, cycle_table, hysteresis_figure, step_work_table, sweep_grid_figure, sweep_points_figure, trajectory_figure,
     wave_figure, write_trajectory,

@@ -1,7 +1,8 @@
 //! Pages observed from outside: complete, escaped, and without anything fetched.
 
+use palpate::paper::Verdict;
 use palpate_report::figure::{Axis, Figure, Layer, Panel, Role};
-use palpate_report::page::{Block, Check, Finding, Page, Section, Severity};
+use palpate_report::page::{Block, ClaimLine, ClaimRow, Finding, Page, Section, Severity};
 use palpate_report::table::{Cell, Table};
 
 const HOSTILE: &str = "<script>alert('&')</script>";
@@ -24,11 +25,19 @@ fn page() -> String {
         meaning: text(),
         remedy: text(),
     };
-    let check = Check {
-        name: text(),
-        criterion: text(),
-        found: text(),
-        passed: false,
+    let line = ClaimLine {
+        quantity: text(),
+        paper: text(),
+        ours: text(),
+        tolerance: text(),
+    };
+    let claim = |lines| ClaimRow {
+        place: text(),
+        statement: text(),
+        lines,
+        remark: text(),
+        verdict: Verdict::NotReproduced,
+        shown_in: Some((text(), text())),
     };
     Page::new(HOSTILE, HOSTILE)
         .section(
@@ -54,7 +63,7 @@ fn page() -> String {
                 .block(Block::Findings(vec![finding]))
                 .block(Block::Findings(vec![]))
                 .block(Block::KeyValues(vec![(text(), text())]))
-                .block(Block::Checks(vec![check]))
+                .block(Block::Claims(vec![claim(vec![line.clone(), line]), claim(Vec::new())]))
                 .block(Block::Code(text())),
         )
         .provenance(HOSTILE, HOSTILE)
@@ -84,6 +93,18 @@ fn anchors_are_unique_and_numbers_run_on() {
     let ids: Vec<&str> = html.split(" id=\"").skip(1).filter_map(|rest| rest.split('"').next()).collect();
     assert_eq!(ids, ["results", "figure-1", "figure-2", "table-1", "caption-1", "results-2"]);
     assert!(html.contains("<b>Figure 2.</b>") && html.contains("href=\"#results-2\""));
+}
+
+#[test]
+fn a_caption_keeps_a_number_of_its_own() {
+    let panel = || Panel::new(Axis::linear("x", ""), Axis::linear("y", ""));
+    let figure = |caption: &str| Block::figure(&Figure::new("f", caption).panel(panel())).expect("a drawing");
+    let section = Section::new("A").block(figure("Figure 4(a). As printed.")).block(figure("Figured out. Not so."));
+    let html = Page::new("A", "")
+        .section(section.block(Block::Table(Table::new("t", "Table II. More."))))
+        .to_html();
+    assert!(html.contains("<b>Figure 4(a).</b> As printed.") && html.contains("id=\"figure-1\""), "{html}");
+    assert!(html.contains("<b>Figure 2.</b> Figured out. Not so.") && html.contains("<b>Table II.</b> More."));
 }
 
 #[test]

@@ -1,161 +1,134 @@
-//! Figures, tables, page and all files of the reproduced study.
+//! Page and files of the study.
 
 use palpate::analysis::HoldAnalysis;
+use palpate::paper::{ReproducedTest, Reproduction};
 use palpate::segment::After;
-use palpate::simulate::Trajectory;
-
-use super::law_figures;
 use palpate::watch::Watch;
 
+use super::numbering::{Placed, caption};
+use super::{claims, hold_figures, hold_tables, law_figures, study_figures, study_tables};
 use crate::document::{ReproductionDocument, Software};
-use crate::figure::{Arrangement, Figure, Layer, Panel, Role};
+use crate::figure::{Figure, Role};
 use crate::page::{Block, Page, Section};
-use crate::result::{ReproducedTest, Reproduction};
-use crate::study::bundle::{Bundle, Drawing, Pictures, StudyError, named};
-use crate::study::grid::displacement_panel;
-use crate::study::record::figures as record_figures;
+use crate::study::bundle::{Bundle, Pictures, StudyError};
 use crate::study::simulate::{wave_figure, write_trajectory};
-use crate::table::{Cell, Table};
-
-/// Equilibrium strains of Table I as the authors measured them (compression negative in the paper).
-const MEASURED_EQUILIBRIUM: [f64; 5] = [0.1661, 0.2193, 0.2623, 0.3031, 0.3144];
-/// Rate coefficients of Table I that are legible in the paper's text, 1/s.
-const MEASURED_COEFFICIENT: [Option<f64>; 5] = [None, Some(2.6e4), Some(2.0e4), None, None];
+use crate::table::Table;
 
 /// Title of the paper.
 const PAPER: &str = "Study of the Relationship Between the Strain and Strain Rate for Viscoelastic Contact Interface in Robotic Grasping";
 
-/// All figures, named after the paper's.
+/// Holds of a test after loading or after unloading.
+fn holds(test: &ReproducedTest, after: After) -> Vec<&HoldAnalysis> {
+    test.loaded().filter(|hold| hold.after == Some(after)).collect()
+}
+
 fn figures(study: &Reproduction) -> Vec<Figure> {
     let law = study.model.law;
+    let protocol = |name: &str, test: &ReproducedTest, text: &str| {
+        let series = &test.bonded;
+        hold_figures::protocol(name, text, &series.time, &series.force, Some(&series.displacement), Role::Series(0))
+    };
+    let wave = "Strain of all layers in test (a), from the contact (layer 1) to the plane of symmetry. A new displacement strains the contact layer first and then the layers behind it. Compression is positive here.";
     let mut figures = vec![
-        law_figures::law("figure_1_law", law, 0.15),
-        law_figures::closed_form("figure_2_closed_form", law, 0.133, 0.3),
-        protocol("figure_4a", &study.test_a, "Test (a): 5, 10, 15, 20 and 25 mm, each held for 10 s"),
-        protocol("figure_4b", &study.test_b, "Test (b): 25 mm, then back by 20, 15, 10 and 5 mm, each held for 10 s"),
+        law_figures::types(law, 0.133, 0.3),
+        law_figures::law(law, 0.15),
+        law_figures::closed_form(),
+        protocol(
+            "figure_4a",
+            &study.test_a,
+            "Test (a): 5, 10, 15, 20 and 25 mm at 500 mm/min, each held for 10 s. Simulated; the measured force is in the paper's picture alone.",
+        ),
+        protocol(
+            "figure_4b",
+            &study.test_b,
+            "Test (b): 25 mm, then back by 20, 15, 10 and 5 mm at 500 mm/min, each held for 10 s. Simulated; the measured force is in the paper's picture alone.",
+        ),
+        wave_figure("figure_7", &study.test_a.wave, &caption("figure_7", wave)),
+        study_figures::last_unloading(study),
+        study_figures::equilibria(study),
+        study_figures::sensitivities(study),
+        study_figures::rate_coefficients(study),
     ];
-    let rates = [(&study.test_a, "figure_6a"), (&study.test_b, "figure_6b")];
-    let rates = rates.into_iter().filter_map(|(test, name)| record_figures::strain_rates(&test.analysis, name));
-    figures.extend(rates.map(Figure::without_letters));
-    figures.push(wave_figure(
-        "figure_7_strain_wave",
-        &study.test_a.wave,
-        "Strain of all eight layers in test (a), from the contact (layer 1) to the plane of symmetry. A new displacement strains the contact layer first and then the layers below; in the holds the strain becomes uniform.",
-    ));
-    figures.push(final_unloading(study));
+    let all_b: Vec<&HoldAnalysis> = study.test_b.loaded().collect();
+    let text = "Strain rate over strain in the holds of the simulated test, compression negative as in the paper: the derivative of the strain (points), the law with n = 5 fitted to them as in the paper, and the closed form fitted over time.";
+    figures.extend(hold_figures::rates("figure_6a", text, &holds(&study.test_a, After::Loading)));
+    figures.extend(hold_figures::rates("figure_6b", text, &all_b));
+    figures.extend(study_figures::forces_by_step(study));
     figures
 }
 
-/// Force above, displacement below: the layout of the paper's figure 4.
-fn protocol(name: &str, test: &ReproducedTest, what: &str) -> Figure {
-    let line = |values: Vec<f64>| Layer::line(test.bonded.time.clone(), values, Role::Series(0));
-    Figure::new(name, format!("{what}, at 500 mm/min: simulated force of the bonded contact above, displacement of the jaw below, in the layout of the paper's figure 4."))
-        .panel(Panel::over_time("Force", "N").share(1.7).zero_line().layer(line(test.bonded.force.clone())))
-        .panel(displacement_panel(&test.bonded.time, &test.bonded.displacement, Role::Series(0)))
-        .without_letters()
+fn tables(study: &Reproduction) -> Vec<Table> {
+    let note = "Compression is negative, as in the paper. The simulation has one v for all holds and εₑ = −u₁/r; the fits find both again, which shows that the fits are right, not that the paper is.";
+    let mut tables = study_tables::all(study);
+    let first = "The law with n = 5 fitted to the simulated test (a), beside the numbers of the paper's Table I.";
+    let second = "The law with n = 5 fitted to the simulated test (b) after unloading. No number of the paper's Table II is legible.";
+    tables.push(
+        hold_tables::law("table_1", first, &holds(&study.test_a, After::Loading), Some(&study.published)).note(note),
+    );
+    tables.push(hold_tables::illegible("table_2", second, &holds(&study.test_b, After::Unloading)).note(note));
+    tables
 }
 
-/// The whole of test (a) and its last unloading, bonded and unilateral: the paper's figure 8.
-fn final_unloading(study: &Reproduction) -> Figure {
-    let test = &study.test_a;
-    let panel = |from: f64, until: f64, title: &str| {
-        let cut = |trajectory: &Trajectory| -> (Vec<f64>, Vec<f64>) {
-            let pairs = trajectory.time.iter().zip(&trajectory.force);
-            pairs.filter(|(t, _)| (from..=until).contains(*t)).map(|(t, f)| (*t, *f)).unzip()
-        };
-        let ((bonded_t, bonded_f), (free_t, free_f)) = (cut(&test.bonded), cut(&test.unilateral));
-        Panel::over_time("Force", "N")
-            .title(title)
-            .zero_line()
-            .layer(Layer::line(bonded_t, bonded_f, Role::Series(0)).label("bonded (the paper)"))
-            .layer(Layer::line(free_t, free_f, Role::Series(1)).label("the jaw can leave"))
-    };
-    Figure::new(
-        "figure_8_simulated_force",
-        "Simulated force of test (a). In the last unloading, from 53 s on, the bonded contact goes into tension, which the authors report as faster than their ball; a jaw that cannot pull leaves the ball instead, and the force stays at zero.",
-    )
-    .panel(panel(0.0, 66.0, "Test (a)"))
-    .panel(panel(52.5, 57.5, "Last unloading"))
-    .arrangement(Arrangement::SideBySide)
-    .without_letters()
+fn section(heading: &str, blocks: impl IntoIterator<Item = Block>) -> Section {
+    Section::new(heading).blocks(blocks)
 }
 
-/// Table I or II, with what the authors measured beside it where it can be read.
-fn paper_table(study: &Reproduction, test: &ReproducedTest, after: After) -> Table {
-    let n = study.model.law.exponent();
-    let (name, caption) = match after {
-        After::Loading => ("table_1", "Table I, loading: the law re-identified in the simulated test (a), n = 5."),
-        After::Unloading => ("table_2", "Table II, unloading: the law re-identified in the simulated test (b), n = 5."),
-    };
-    let loaded: Vec<&HoldAnalysis> = test.loaded().collect();
-    let of_kind = loaded.iter().enumerate().filter(|(_, hold)| hold.after == Some(after));
-    let rows: Vec<_> = of_kind.filter_map(|(step, hold)| Some((step, *hold, hold.fit_with(n)?))).collect();
-    let measured = |value: Option<f64>, digits: usize| {
-        Cell::number_or(value.filter(|_| after == After::Loading), digits, "illegible in the source")
-    };
-    Table::of(name, caption, &rows)
-        .column("Step", "step", "", |(step, ..)| Cell::Integer(*step as i64 + 1))
-        .column("Displacement", "displacement_mm", "mm", |(_, hold, _)| {
-            Cell::number_or(hold.displacement.map(|d| 1e3 * d), 3, "not recorded")
-        })
-        .column("εₑ", "equilibrium_strain", "", |(.., fit)| Cell::Number(fit.equilibrium().value, 5))
-        .column("v", "rate_coefficient_per_s", "s⁻¹", |(.., fit)| Cell::Number(fit.rate_coefficient().value, 5))
-        .column("n (free)", "exponent_free", "", |(_, hold, _)| {
-            Cell::number_or(hold.fits.last().map(|fit| fit.exponent().value), 5, "no fit")
-        })
-        .column("v (rate domain)", "rate_coefficient_rate_domain_per_s", "s⁻¹", |(_, hold, _)| {
-            Cell::number_or(hold.rate_fit_with(n).map(|fit| fit.rate_coefficient().value), 4, "no fit")
-        })
-        .column("εₑ measured by the authors", "equilibrium_strain_measured_by_the_authors", "", |(step, ..)| {
-            measured(MEASURED_EQUILIBRIUM.get(*step).copied(), 4)
-        })
-        .column("v measured by the authors", "rate_coefficient_measured_by_the_authors_per_s", "s⁻¹", |(step, ..)| {
-            measured(MEASURED_COEFFICIENT.get(*step).copied().flatten(), 2)
-        })
-        .table()
-        .note("Compression is positive here; the paper prints it as negative. The authors' ball is stiffer than E and the geometry imply at small displacements, so their measured εₑ differ from u₁/r, the limit of the simulation. Their v falls with εₑ; the simulation has one v for all holds. The rate domain underestimates v: smoothing flattens the fast start of a hold.")
-}
-
-/// The page.
-fn page(study: &Reproduction, drawings: &[Drawing], tables: &[Table]) -> Page {
+/// The page, and the claims as a table with what shows them.
+fn page(study: &Reproduction, placed: &mut Placed<'_>) -> (Page, Table) {
     let model = &study.model;
-    let page = Page::new(
-        PAPER,
-        "Reproduced: the study of Tsai, Kao and others, simulated and re-identified",
-    )
-    .section(
-        Section::new("What is reproduced")
-            .block(Block::paragraph(
-                "A soft ball is squeezed between parallel jaws in steps, held, and released. The nonlinear latency law, strain rate = −v (ε − εₑ)ⁿ, describes how the contact strain tends to equilibrium in each hold. Both tests of the paper are simulated with its parameters, the simulated records are analysed as measured ones, and the results are checked against the paper.",
-            ))
-            .block(Block::KeyValues(vec![
-                ("Ball".to_owned(), format!("radius {:.0} mm, modulus {:.0} kPa", 1e3 * model.specimen.depth(), model.specimen.modulus() / 1e3)),
-                ("Law".to_owned(), format!("n = {}, v = {:.0} s⁻¹", model.law.exponent(), model.law.rate_coefficient())),
-                ("Layers".to_owned(), format!("{}", model.layers.count())),
-                ("Jaw".to_owned(), "500 mm/min, holds of 10 s, both jaws meet the ball: each contact takes half the travel".to_owned()),
-            ]))
-            .block(Block::Checks(study.checks.clone())),
-    )
-    .section(Section::new("The law").blocks(named(drawings, "figure_1_")).blocks(named(drawings, "figure_2")))
-    .section(
-        Section::new("The two tests")
-            .blocks(named(drawings, "figure_4a"))
-            .blocks(named(drawings, "figure_4b"))
-            .blocks(named(drawings, "figure_8"))
-            .block(Block::paragraph(
-                "The authors remark that their simulated force drops faster than the measured one when the jaw retreats at about 53 s. The cause is the model: a bonded contact can pull. With a jaw that can only push, contact is lost, the force stays at zero, and the remaining indentation recovers by the same law.",
-            )),
-    )
-    .section(
-        Section::new("Strain rate against strain")
-            .blocks(named(drawings, "figure_6"))
-            .blocks(tables.iter().cloned().map(Block::Table)),
-    )
-    .section(Section::new("The strain wave").blocks(named(drawings, "figure_7")));
-    page.provenance("Source", PAPER).provenance("Software", Software::this().to_string())
+    let mut text_of = |parts: &[&str]| -> Vec<Block> {
+        let of = |part: &&str| match part.strip_prefix("table ") {
+            Some(name) => placed.table(name).into_iter().collect::<Vec<Block>>(),
+            None => placed.figures(part),
+        };
+        parts.iter().flat_map(of).collect()
+    };
+    let gap = section("Where the simulation and Table I part", [Block::paragraph(
+        "The simulation lets every layer tend to uniform strain, so that εₑ is proportional to the displacement. The strains of Table I are not: they are larger at small displacements, and smaller at the largest. Used as a law that varies from step to step, they give the forces below.",
+    )])
+    .blocks(text_of(&["forces_by_step", "table forces_by_step", "equilibria", "table explanations"]));
+    let labs = section("What laboratories would have concluded", [Block::paragraph(
+        "Laboratories with the paper's load cell and displacement sensor repeat both tests on a ball that obeys one law, on balls that obey Table I, and on a linear viscoelastic ball for which the law is not made. Each draws the paper's conclusions, or does not.",
+    )])
+    .blocks(text_of(&["table laboratories", "table orders", "rate_coefficients"]));
+    let law = section("The law", text_of(&["figure_1", "figure_2", "closed_form"]));
+    let tests = section("The two tests", text_of(&["figure_4a", "figure_4b", "figure_8", "table last_unloading"]));
+    let rates =
+        section("Strain rate against strain", text_of(&["figure_6a", "figure_6b", "table table_1", "table table_2"]));
+    let wave = section("The strain wave", text_of(&["figure_7"]));
+    let sensitivity = section("Sensitivity", text_of(&["sensitivities", "table sensitivities"]));
+    let link = |evidence| placed.link(evidence);
+    let table = claims::table(&study.claims, link);
+    let first = Section::new("What does not match")
+        .block(Block::paragraph(claims::counted(&study.claims)))
+        .block(Block::List(claims::mismatches(&study.claims)));
+    let all = Section::new("Claim by claim")
+        .block(Block::paragraph(
+            "Equations, figures, tables and sections have the paper's numbers, and compressive strain is negative as in its tables. A statement is reproduced where every comparison holds within its tolerance.",
+        ))
+        .block(Block::Claims(claims::rows(&study.claims, link)))
+        .block(Block::KeyValues(vec![
+            ("Ball".to_owned(), format!("radius {:.0} mm, modulus {:.0} kPa", 1e3 * model.specimen.depth(), model.specimen.modulus() / 1e3)),
+            ("Law".to_owned(), format!("n = {}, v = {:.0} s⁻¹ (step 3 of Table I; the paper states none for its simulation)", model.law.exponent(), model.law.rate_coefficient())),
+            ("Layers".to_owned(), format!("{}", model.layers.count())),
+            ("Jaw".to_owned(), "500 mm/min, holds of 10 s; each contact takes half of the travel".to_owned()),
+        ]));
+    let page = Page::new(PAPER, "Claim by claim: the study of Tsai, Kao and others, simulated, analysed and repeated")
+        .section(first)
+        .section(all)
+        .section(gap)
+        .section(labs)
+        .section(sensitivity)
+        .section(law)
+        .section(tests)
+        .section(rates)
+        .section(wave)
+        .provenance("Source", PAPER)
+        .provenance("Software", Software::this().to_string());
+    (page, table)
 }
 
-/// All files of the reproduced study.
+/// All files of the study.
 ///
 /// # Errors
 /// [`StudyError`] when a figure or document cannot be made, or the watch ends it.
@@ -166,25 +139,21 @@ pub fn reproduction_bundle(
 ) -> Result<Bundle, StudyError> {
     let mut bundle = Bundle::default();
     let drawings = bundle.figures(&figures(study), pictures, watch)?;
-    let tables = [(&study.test_a, After::Loading), (&study.test_b, After::Unloading)];
-    let tables = tables.map(|(test, after)| paper_table(study, test, after));
+    let tables = tables(study);
     tables.iter().for_each(|table| bundle.table(table));
     for (name, test) in [("a", &study.test_a), ("b", &study.test_b)] {
         bundle.series(&format!("test_{name}_bonded"), write_trajectory, &test.bonded)?;
         bundle.series(&format!("test_{name}_unilateral"), write_trajectory, &test.unilateral)?;
     }
-    bundle.text("report.html", page(study, &drawings, &tables).to_html());
+    let (page, claims) = page(study, &mut Placed::new(&drawings, &tables));
+    bundle.table(&claims);
+    bundle.text("report.html", page.to_html());
     bundle.json("summary.json", &ReproductionDocument::new(study))?;
     Ok(bundle)
 }
 
-/// Every check in two lines.
+/// Every claim, and what laboratories conclude.
 #[must_use]
 pub fn reproduction_text(study: &Reproduction) -> String {
-    let mut text = String::from("Results of the paper, checked on its simulated and re-identified tests:\n\n");
-    for check in &study.checks {
-        let word = if check.passed { "pass" } else { "FAIL" };
-        text.push_str(&format!("  {word}  {}\n        {}\n", check.name, check.found));
-    }
-    text
+    claims::claims_text(&study.claims)
 }
