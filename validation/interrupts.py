@@ -156,7 +156,7 @@ def commands():
         Work("predict", command=("predict", MATERIAL, "--protocol", "SHARED/protocol.toml", "--out", "OUT/force.csv"), prepare=PROTOCOL, size=10, most=9900),
         Work("grip", command=("grip", MATERIAL, "--mass", "250g", "--friction", "0.6", "--hold", "SIZE s", "--band", "2.1..3 N", "--regrip", "work", "--out", "OUT/grip"), size=100, most=10_000),
         Work("watch", command=("watch", record, "--speed", "max", "--slip-force", "1 N"), prepare=LOGGED, size=100_000, most=20_000_000),
-        Work("reproduce", command=("reproduce", "--out", "OUT/paper", "--png"), size=1, most=1),
+        Work("reproduce", command=("reproduce", "--out", "OUT/paper", "--figures", "svg,png"), size=1, most=1),
     ]
 
 
@@ -205,7 +205,7 @@ def calls():
         Work("iteration over a Record", "sum(1 for _ in of)", WHOLE, size=300_000, most=10_000_000),
         Work("pickle of a Record", "pickle.dumps(of)", WHOLE, size=300_000, most=20_000_000),
         Work("Record from a pickle", "pickle.loads(text)", WHOLE + again, size=300_000, most=20_000_000),
-        Work("Analysis.report", "of.report(out / 'study', png=True)", ANALYSIS, size=50_000, most=3_000_000),
+        Work("Analysis.report", "of.report(out / 'study', figures=['svg', 'png'])", ANALYSIS, size=50_000, most=3_000_000),
         Work("Analysis._repr_html_", "of._repr_html_()", ANALYSIS, size=50_000, most=3_000_000),
         Work("str(Analysis) from a pickle", "str(pickle.loads(text))", ANALYSIS + again, size=50_000, most=3_000_000),
         Work("Analysis.to_json", "of.to_json()", ANALYSIS, size=50_000, most=1_000_000),
@@ -236,7 +236,7 @@ def calls():
         Work("batch to CSV", "palpate.batch([shared / 'records'], out / 'table.csv')", prepare=RECORDS, size=50, most=20_000),
         Work("batch to Parquet", "palpate.batch([shared / 'records'], out / 'table.parquet', laws=['prony:2'])", prepare=RECORDS, size=50, most=20_000),
         Work("sweep", "palpate.sweep(shared / 'sweep.toml', out / 't.parquet', figure=out / 't.svg')", prepare=SWEEP, size=2000, most=4_000_000),
-        Work("reproduce", "palpate.reproduce(out / 'paper', png=True)", size=1, most=1),
+        Work("reproduce", "palpate.reproduce(out / 'paper', figures=['svg', 'png'])", size=1, most=1),
     ]
 
 

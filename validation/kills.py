@@ -276,7 +276,7 @@ def starts(palpate, job, scratch):
         arguments = list(job.arguments)
         if name != "nothing":
             job.prepare(folder, job.size, True)
-            png = ["--png"] if job.name == "analyze" else []
+            png = ["--figures", "svg,png"] if job.name == "analyze" else []
             assert run(palpate, [*arguments, *png], folder).returncode in (0, 1)
         job.prepare(folder, job.size, False)
         if name.endswith("parts"):

@@ -6,7 +6,7 @@ use palpate::segment::{ContactChoice, HoldStart};
 use palpate::watch::{Progress, Watch};
 use palpate_report::document::AnalysisDocument;
 use palpate_report::result::Input;
-use palpate_report::study::{Bundle, Pictures, analysis_bundle, analysis_text};
+use palpate_report::study::{Bundle, FileOptions, analysis_bundle, analysis_text};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -167,8 +167,8 @@ impl Analyzed {
     ///
     /// # Errors
     /// [`JobError`] where a figure or document cannot be made, or the watch ends it.
-    pub fn bundle(&self, pictures: Pictures, watch: &mut dyn Watch) -> Result<Bundle, JobError> {
-        Ok(analysis_bundle(&self.analysis, self.input.clone(), pictures, watch)?)
+    pub fn bundle(&self, options: &FileOptions, watch: &mut dyn Watch) -> Result<Bundle, JobError> {
+        Ok(analysis_bundle(&self.analysis, self.input.clone(), options, watch)?)
     }
 }
 

@@ -8,7 +8,7 @@ use palpate::watch::{Progress, Watch};
 use palpate_report::document::{ComparisonDocument, ComparisonSettingsDocument};
 use palpate_report::result::{ComparedRecord, LeftOut};
 use palpate_report::spelling::with_flags;
-use palpate_report::study::{Bundle, Pictures, comparison_bundle, comparison_markdown, comparison_text};
+use palpate_report::study::{Bundle, FileOptions, comparison_bundle, comparison_markdown, comparison_text};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -227,8 +227,8 @@ impl Compared {
     ///
     /// # Errors
     /// [`JobError`] where a figure or document cannot be made, or the watch ends it.
-    pub fn bundle(&self, pictures: Pictures, watch: &mut dyn Watch) -> Result<Bundle, JobError> {
-        Ok(comparison_bundle(&self.records, &self.left_out, self.settings(), pictures, watch)?)
+    pub fn bundle(&self, options: &FileOptions, watch: &mut dyn Watch) -> Result<Bundle, JobError> {
+        Ok(comparison_bundle(&self.records, &self.left_out, self.settings(), options, watch)?)
     }
 
     /// One table of all records and holds.

@@ -10,9 +10,14 @@ use palpate::watch::{Cancelled, Progress, Watch};
 use palpate_files::parquet_table::{Field, Kind, Rows, TableError, TableWriter, Values};
 use palpate_files::record::RecordFile;
 use palpate_report::document::Software;
+use palpate_report::table::CsvLocale;
+#[cfg(feature = "xlsx")]
+use palpate_report::table::{Cell, MOST_SHEET_ROWS, Table, Workbook};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+#[cfg(feature = "xlsx")]
+use crate::ErrorKind;
 use crate::input::{OpenedFile, averaged};
 use crate::output::{Stage, check_ending, unwritten_table};
 use crate::{JobError, Outcome};
@@ -22,8 +27,15 @@ const MARK: &str = "palpate_record";
 
 /// Convert a record of any format to a plain table in SI units, with its provenance.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
+#[cfg_attr(feature = "clap", derive(clap::Args))]
 #[serde(default, deny_unknown_fields)]
-pub struct Convert {}
+pub struct Convert {
+    /// Language of the readers of CSV: it decides decimal sign and separator.
+    #[cfg_attr(feature = "clap", arg(
+        long, value_name = "LANGUAGE", value_parser = crate::typed::one_of(crate::typed::CSV_LOCALES), default_value = "en",
+    ))]
+    pub csv_locale: CsvLocale,
+}
 
 /// A record in SI, with where it comes from.
 #[derive(Debug, Clone, PartialEq)]
@@ -31,6 +43,7 @@ pub struct Converted {
     /// The record, corrected as its description asks.
     pub file: RecordFile,
     origin: serde_json::Value,
+    csv_locale: CsvLocale,
 }
 
 impl Convert {
@@ -64,7 +77,13 @@ impl Convert {
             notes.extend(done(&file, before));
         }
         let origin = origin(&file, opened, watch)?;
-        Ok(Outcome::of(Converted { file, origin }).noted(notes))
+        let Self { csv_locale } = self;
+        Ok(Outcome::of(Converted {
+            file,
+            origin,
+            csv_locale,
+        })
+        .noted(notes))
     }
 }
 
@@ -72,10 +91,13 @@ impl Converted {
     /// Refuses a name that says no format.
     ///
     /// # Errors
-    /// [`JobError`] where it does not end in `.csv`, `.parquet` or `.json`.
+    /// [`JobError`] where it does not end in `.csv`, `.xlsx`, `.parquet` or `.json`.
     pub fn check_name(out: &Path) -> Result<(), JobError> {
-        let expected = "a file ending in .csv, .parquet or .json";
-        check_ending(out, &["csv", "parquet", "json"], expected, "name it FILE.csv, FILE.parquet or FILE.json")
+        let (expected, hint) = (
+            "a file ending in .csv, .xlsx, .parquet or .json",
+            "name it FILE.csv, FILE.xlsx, FILE.parquet or FILE.json",
+        );
+        check_ending(out, &["csv", "xlsx", "parquet", "json"], expected, hint)
     }
 
     /// Writes the table, in the format of its name.
@@ -85,6 +107,8 @@ impl Converted {
     pub fn write(&self, out: &Path, watch: &mut dyn Watch) -> Result<(), JobError> {
         Self::check_name(out)?;
         let (file, origin) = (&self.file, &self.origin);
+        let workbook =
+            out.extension().is_some_and(|ending| ending == "xlsx").then(|| self.workbook(out)).transpose()?;
         let mut stage = Stage::default();
         stage.file(out, |into| {
             let mut heard = HeardWriter {
@@ -92,14 +116,18 @@ impl Converted {
                 watch: &mut *watch,
                 cancelled: false,
             };
-            let written = match out.extension().and_then(|ending| ending.to_str()) {
-                Some("parquet") => {
+            let written = match (&workbook, out.extension().and_then(|ending| ending.to_str())) {
+                (Some(workbook), _) => heard.write_all(workbook).map_err(TableError::from),
+                (None, Some("parquet")) => {
                     write_parquet(&mut *heard.into, file, origin, &mut || look(heard.watch, &mut heard.cancelled))
                 }
-                Some("json") => {
+                (None, Some("json")) => {
                     write_json(BufWriter::with_capacity(AT_ONCE, &mut heard), file, origin).map_err(TableError::from)
                 }
-                _ => write_csv(BufWriter::with_capacity(AT_ONCE, &mut heard), file, origin).map_err(TableError::from),
+                _ => {
+                    let into = BufWriter::with_capacity(AT_ONCE, &mut heard);
+                    write_csv(into, file, origin, self.csv_locale).map_err(TableError::from)
+                }
             };
             match heard.cancelled {
                 true => Err(Cancelled.into()),
@@ -108,6 +136,35 @@ impl Converted {
         })?;
         watch.report(Progress::open("writing", 0))?;
         stage.commit()
+    }
+
+    /// Nothing: names of workbooks are refused before.
+    #[cfg(not(feature = "xlsx"))]
+    fn workbook(&self, _out: &Path) -> Result<Vec<u8>, JobError> {
+        Ok(Vec::new())
+    }
+
+    /// The record as a sheet of a workbook, with its provenance among the captions.
+    #[cfg(feature = "xlsx")]
+    fn workbook(&self, out: &Path) -> Result<Vec<u8>, JobError> {
+        let rows = self.file.record.len();
+        if rows > MOST_SHEET_ROWS {
+            let message = format!("expected at most {MOST_SHEET_ROWS} rows for one sheet, found {rows}");
+            return Err(JobError::option(message, "name it FILE.csv or FILE.parquet").of(out.display()));
+        }
+        let columns = columns(&self.file);
+        let titled = |table: Table, (name, _): &(&str, &[f64])| match *name {
+            "time_s" => table.column("Time", *name, "s"),
+            "displacement_m" => table.column("Displacement", *name, "m"),
+            _ => table.column("Force", *name, "N"),
+        };
+        let header = columns.iter().fold(Table::default(), titled);
+        let about = [format!("Record in SI units; {MARK}"), self.origin.to_string()];
+        let mut workbook = Workbook::default();
+        let written = workbook
+            .sheet("record", about, &header.columns, rows, |row, column| Cell::Number(columns[column].1[row], 6))
+            .and_then(|()| workbook.finish());
+        written.map_err(|error| JobError::new(ErrorKind::Report, error, None).of(out.display()))
     }
 }
 
@@ -157,15 +214,16 @@ fn columns(file: &RecordFile) -> Vec<(&'static str, &[f64])> {
     columns
 }
 
-fn write_csv(mut out: impl Write, file: &RecordFile, origin: &serde_json::Value) -> io::Result<()> {
+fn write_csv(mut out: impl Write, file: &RecordFile, origin: &serde_json::Value, locale: CsvLocale) -> io::Result<()> {
     let columns = columns(file);
+    let between = locale.separator().to_string();
     writeln!(out, "# {MARK}: {origin}")?;
     let names: Vec<&str> = columns.iter().map(|(name, _)| *name).collect();
-    writeln!(out, "{}", names.join(","))?;
+    writeln!(out, "{}", names.join(&between))?;
     for row in 0..file.record.len() {
         for (place, (_, values)) in columns.iter().enumerate() {
-            let gap = if place > 0 { "," } else { "" };
-            write!(out, "{gap}{}", values[row])?;
+            let gap = if place > 0 { between.as_str() } else { "" };
+            write!(out, "{gap}{}", locale.number(values[row].to_string()))?;
         }
         writeln!(out)?;
     }

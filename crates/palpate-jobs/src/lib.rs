@@ -45,7 +45,7 @@ mod watch_log;
 mod written_by_batch;
 
 pub use analyze::{Analyze, Analyzed};
-pub use batch::{Batch, BatchAnswer, Batched, Refused, Spread};
+pub use batch::{Batch, BatchAnswer, Batched, CurveMap, Refused, Spread};
 pub use calibrate::{Calibrate, Calibrated, Equilibrium};
 pub use calibrate_several::{CalibrateSeveral, CalibratedSeveral};
 pub use compare::{Compare, Compared};

@@ -8,6 +8,7 @@ use palpate::watch::Watch;
 use palpate_files::description::{MaterialFile, Protocol};
 use palpate_report::figure::Figure;
 use palpate_report::study::{prediction_figure, prediction_table, write_prediction};
+use palpate_report::table::CsvLocale;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -31,6 +32,11 @@ pub struct Predict {
         value_parser = crate::typed::coverage, allow_hyphen_values = true,
     ))]
     pub confidence: f64,
+    /// Language of the readers of CSV: it decides decimal sign and separator.
+    #[cfg_attr(feature = "clap", arg(
+        long, value_name = "LANGUAGE", value_parser = crate::typed::one_of(crate::typed::CSV_LOCALES), default_value = "en",
+    ))]
+    pub csv_locale: CsvLocale,
 }
 
 impl Default for Predict {
@@ -38,6 +44,7 @@ impl Default for Predict {
         Self {
             at_s: Vec::new(),
             confidence: 0.95,
+            csv_locale: CsvLocale::default(),
         }
     }
 }
@@ -50,6 +57,7 @@ pub struct Predicted {
     /// The whole course.
     course: Option<Prediction>,
     caption: String,
+    csv_locale: CsvLocale,
 }
 
 impl Predict {
@@ -91,6 +99,7 @@ impl Predict {
             prediction,
             course,
             caption,
+            csv_locale: self.csv_locale,
         };
         Ok(Outcome::of(predicted).noted(notes))
     }
@@ -108,7 +117,7 @@ impl Predicted {
     /// # Errors
     /// An error of the writer.
     pub fn write_series(&self, out: &mut dyn Write) -> io::Result<()> {
-        write_prediction(out, &self.prediction)
+        write_prediction(out, &self.prediction, self.csv_locale)
     }
 
     /// The course with its intervals.

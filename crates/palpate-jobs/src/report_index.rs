@@ -6,7 +6,7 @@ use palpate::watch::Watch;
 use palpate_report::document::SpecimensDocument;
 use palpate_report::result::LeftOut;
 use palpate_report::spelling::with_flags;
-use palpate_report::study::{Bundle, Pictures, SpecimenIndex};
+use palpate_report::study::{Bundle, FileOptions, SpecimenIndex};
 
 use crate::error::without;
 use crate::output::{Names, Stage};
@@ -61,8 +61,8 @@ impl ReportIndex {
     ///
     /// # Errors
     /// [`JobError`] where a figure or document cannot be made, or the watch ends it.
-    pub fn bundle(&self, pictures: Pictures, watch: &mut dyn Watch) -> Result<Bundle, JobError> {
-        Ok(self.index.bundle(pictures, watch)?)
+    pub fn bundle(&self, options: &FileOptions, watch: &mut dyn Watch) -> Result<Bundle, JobError> {
+        Ok(self.index.bundle(options, watch)?)
     }
 }
 
@@ -73,7 +73,7 @@ impl ReportIndex {
 pub fn write_reports<'a>(
     analyzed: impl IntoIterator<Item = &'a Analyzed>,
     folder: &Path,
-    pictures: Pictures,
+    options: &FileOptions,
     watch: &mut dyn Watch,
 ) -> Result<PathBuf, JobError> {
     let (mut index, mut names, mut stage) = (ReportIndex::default(), Names::default(), Stage::default());
@@ -82,9 +82,9 @@ pub fn write_reports<'a>(
         let name = one.input.part.as_ref().map_or_else(|| stem.clone(), |part| format!("{stem} {part}"));
         let own = names.folder_in(folder, &name);
         index.add(one, &own, folder, watch)?;
-        stage.bundle(&own, &one.bundle(pictures, watch)?)?;
+        stage.bundle(&own, &one.bundle(options, watch)?)?;
     }
-    stage.bundle(folder, &index.bundle(pictures, watch)?)?;
+    stage.bundle(folder, &index.bundle(options, watch)?)?;
     stage.commit()?;
     Ok(folder.join("index.html"))
 }

@@ -5,7 +5,7 @@ use palpate::paper::{Claim, LaboratoryOptions, PaperError, Published, Reproducti
 use palpate::watch::Watch;
 use palpate_report::document::{ReproducedRecordDocument, ReproductionDocument};
 use palpate_report::result::Input;
-use palpate_report::study::{Bundle, Pictures, claims_text, record_reproduction_bundle, reproduction_text};
+use palpate_report::study::{Bundle, FileOptions, claims_text, record_reproduction_bundle, reproduction_text};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -110,8 +110,8 @@ impl ReproducedRecord {
     ///
     /// # Errors
     /// [`JobError`] where a figure or document cannot be made, or the watch ends it.
-    pub fn bundle(&self, pictures: Pictures, watch: &mut dyn Watch) -> Result<Bundle, JobError> {
-        Ok(record_reproduction_bundle(&self.analysis, &self.claims, &self.input, pictures, watch)?)
+    pub fn bundle(&self, options: &FileOptions, watch: &mut dyn Watch) -> Result<Bundle, JobError> {
+        Ok(record_reproduction_bundle(&self.analysis, &self.claims, &self.input, options, watch)?)
     }
 }
 

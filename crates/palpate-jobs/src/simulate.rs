@@ -18,7 +18,7 @@ use palpate_report::result::word;
 use palpate_report::study::{
     cycle_table, hysteresis_figure, step_work_table, trajectory_figure, wave_figure, write_trajectory,
 };
-use palpate_report::table::{Cell, Table};
+use palpate_report::table::{Cell, CsvLocale, Table};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -37,6 +37,8 @@ pub struct Simulate {
     pub displacement_noise_m: Option<f64>,
     /// Seed of the noise; the same seed gives the same record.
     pub seed: u64,
+    /// Language of the readers of CSV: it decides decimal sign and separator.
+    pub csv_locale: CsvLocale,
 }
 
 /// What of a record drives a contact.
@@ -57,6 +59,7 @@ impl Default for Simulate {
             force_noise_n: None,
             displacement_noise_m: None,
             seed: 1,
+            csv_locale: CsvLocale::default(),
         }
     }
 }
@@ -144,7 +147,7 @@ impl Simulated {
     /// An error of the writer.
     pub fn write_series(&self, out: &mut dyn Write) -> io::Result<()> {
         match (self.job.force_noise_n, self.job.displacement_noise_m) {
-            (None, None) => write_trajectory(out, &self.trajectory),
+            (None, None) => write_trajectory(out, &self.trajectory, self.job.csv_locale),
             _ => out.write_all(self.record().as_bytes()),
         }
     }
@@ -171,7 +174,7 @@ impl Simulated {
     /// # Errors
     /// As for [`hysteresis`](Self::hysteresis).
     pub fn energy_by_step(&self, watch: &mut dyn Watch) -> Result<String, JobError> {
-        Ok(step_work_table(&self.scene.steps(watch)?).to_csv())
+        Ok(step_work_table(&self.scene.steps(watch)?).to_csv(self.job.csv_locale))
     }
 
     /// What every cycle cost, as CSV.
@@ -179,7 +182,7 @@ impl Simulated {
     /// # Errors
     /// As for [`hysteresis`](Self::hysteresis).
     pub fn energy_by_cycle(&self, watch: &mut dyn Watch) -> Result<String, JobError> {
-        Ok(cycle_table(&cycles(&self.scene.steps(watch)?)).to_csv())
+        Ok(cycle_table(&cycles(&self.scene.steps(watch)?)).to_csv(self.job.csv_locale))
     }
 
     /// Work over time, as CSV.
@@ -189,7 +192,7 @@ impl Simulated {
     pub fn energy(&self, watch: &mut dyn Watch) -> Result<String, JobError> {
         let scene = &self.scene;
         let energy = energy_watched(scene.drive(), &scene.contact, &scene.sampling, watch);
-        Ok(energy_table(&energy.map_err(|error| scene.refused(error))?).to_csv())
+        Ok(energy_table(&energy.map_err(|error| scene.refused(error))?).to_csv(self.job.csv_locale))
     }
 
     /// Strain of every layer over time.
@@ -208,7 +211,7 @@ impl Simulated {
 
     /// The strain of every layer as CSV.
     #[must_use]
-    pub fn wave_csv(wave: &StrainWave) -> String {
+    pub fn wave_csv(&self, wave: &StrainWave) -> String {
         let rows: Vec<usize> = (0..wave.time.len()).collect();
         let mut table = Table::of("wave", "Strain of each layer.", &rows)
             .column("Time", "time_s", "s", |row| Cell::Number(wave.time[*row], 6));
@@ -216,7 +219,7 @@ impl Simulated {
             let (heading, key) = (format!("Layer {}", index + 1), format!("strain_layer_{}", index + 1));
             table = table.column(heading, key, "", |row| Cell::Number(strain[*row], 6));
         }
-        table.table().to_csv()
+        table.table().to_csv(self.job.csv_locale)
     }
 
     /// The same as the figure in the file at `path`.
@@ -227,20 +230,24 @@ impl Simulated {
 
     /// The series as a machine would have recorded it: three columns, noise, and a preamble that says it is none.
     fn record(&self) -> String {
-        let Simulate { seed, .. } = self.job;
+        let Simulate { seed, csv_locale, .. } = self.job;
         let (force_noise, displacement_noise) =
             (self.job.force_noise_n.unwrap_or(0.0), self.job.displacement_noise_m.unwrap_or(0.0));
         let (mut noise, trajectory) = (Rng::new(seed), &self.trajectory);
+        let between = csv_locale.separator();
+        let number = |value: String| csv_locale.number(value);
         let mut out = format!(
-            "Origin,\"simulated by palpate {}, not measured\"\nForce noise,\"{force_noise}\",N\nDisplacement noise,\"{}\",mm\nSeed,\"{seed}\"\n",
+            "Origin{between}\"simulated by palpate {}, not measured\"\nForce noise{between}\"{}\"{between}N\nDisplacement noise{between}\"{}\"{between}mm\nSeed{between}\"{seed}\"\n",
             env!("CARGO_PKG_VERSION"),
-            1e3 * displacement_noise,
+            number(force_noise.to_string()),
+            number((1e3 * displacement_noise).to_string()),
         );
-        out.push_str("time_s,displacement_mm,force_n\n");
+        out.push_str(&format!("time_s{between}displacement_mm{between}force_n\n"));
         for i in 0..trajectory.len() {
             let displacement = 1e3 * (trajectory.displacement[i] + displacement_noise * noise.normal());
             let force = trajectory.force[i] + force_noise * noise.normal();
-            out.push_str(&format!("{:.6},{displacement:.6},{force:.6}\n", trajectory.time[i]));
+            let row = [trajectory.time[i], displacement, force].map(|value| number(format!("{value:.6}")));
+            out.push_str(&format!("{}\n", row.join(&between.to_string())));
         }
         out
     }

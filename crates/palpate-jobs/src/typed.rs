@@ -7,6 +7,7 @@ use palpate::grip::{Control, Objective};
 use palpate::laws::Law;
 use palpate::units::{Dimension, parse, split_number};
 use palpate_files::description::NamedColumns;
+use palpate_report::table::CsvLocale;
 
 /// A value of an option: its name, what it is, and what it says.
 pub type Choice<T> = (&'static str, &'static str, T);
@@ -48,6 +49,18 @@ pub(crate) const INTERVALS: &[Choice<IntervalMethod>] = &[
         "Refits to resampled residuals, which take long",
         IntervalMethod::Bootstrap(BootstrapOptions::USUAL),
     ),
+];
+
+/// Language of the readers of CSV files.
+pub const CSV_LOCALES: &[Choice<CsvLocale>] = &[
+    ("en", "English: decimal point, cells separated by commas", CsvLocale::En),
+    ("de", "German: decimal comma, cells separated by semicolons", CsvLocale::De),
+    ("es", "Spanish (Spain): decimal comma, cells separated by semicolons", CsvLocale::Es),
+    ("fr", "French: decimal comma, cells separated by semicolons", CsvLocale::Fr),
+    ("it", "Italian: decimal comma, cells separated by semicolons", CsvLocale::It),
+    ("nl", "Dutch: decimal comma, cells separated by semicolons", CsvLocale::Nl),
+    ("pl", "Polish: decimal comma, cells separated by semicolons", CsvLocale::Pl),
+    ("pt", "Portuguese: decimal comma, cells separated by semicolons", CsvLocale::Pt),
 ];
 
 /// Loss function of the residuals.

@@ -6,15 +6,18 @@ use palpate::laws::Law;
 use palpate_files::description::{NamedColumns, parse_test, read_material};
 use palpate_jobs::input::{Described, NamedFile, NamedRecords, OpenedFile};
 use palpate_jobs::output::write_bundle;
-use palpate_jobs::{Batch, BatchAnswer, Convert, HoldObserved, Inspect, Observed, Reproduce, Results, Sweep, WatchLog};
+use palpate_jobs::{
+    Batch, BatchAnswer, Convert, CurveMap, HoldObserved, Inspect, Observed, Reproduce, Results, Sweep, WatchLog,
+};
 use palpate_report::document::{WatchDocument, WatchSummaryDocument};
-use palpate_report::study::{Pictures, reproduction_bundle};
+use palpate_report::study::reproduction_bundle;
 use pyo3::prelude::*;
 use pyo3::types::{IntoPyDict, PyDict, PyMapping};
 use serde::{Deserialize, Serialize};
 
-use crate::errors::{OptionError, failed, of_mapping, refused_plainly, undescribed};
+use crate::errors::{OptionError, PalpateError, failed, of_mapping, refused_plainly, undescribed};
 use crate::fits::fit;
+use crate::report_files::{csv_locale as readers, file_options};
 use crate::shown::shown;
 use crate::table::{Table, columns};
 use crate::work::{job, plain, writing_job};
@@ -138,7 +141,9 @@ pub(crate) fn inspect(
 /// path, name, test, part, columns
 ///     As for `read`.
 /// out
-///     A file ending in .csv, .parquet or .json; it appears whole or not at all.
+///     A file ending in .csv, .xlsx, .parquet or .json; it appears whole or not at all.
+/// csv_locale
+///     Language of the readers of a CSV, as for `Analysis.report`.
 ///
 /// Returns
 /// -------
@@ -150,7 +155,8 @@ pub(crate) fn inspect(
 /// RecordError, OptionError, OSError
 ///     As for `read`; also a name that says no format.
 #[pyfunction]
-#[pyo3(signature = (path, out, *, name=None, test=None, part=None, columns=None))]
+#[pyo3(signature = (path, out, *, name=None, test=None, part=None, columns=None, csv_locale=None))]
+#[expect(clippy::too_many_arguments, reason = "keywords of Python")]
 pub(crate) fn convert(
     py: Python<'_>,
     path: &Bound<'_, PyAny>,
@@ -159,9 +165,13 @@ pub(crate) fn convert(
     test: Given<'_, '_>,
     part: Given<'_, '_>,
     columns: Given<'_, '_>,
+    csv_locale: Option<&str>,
 ) -> PyResult<PathBuf> {
     let (file, described) = (record_file(path, name)?, described_with(test, part, columns)?);
-    let read = job(py, move |watch| Convert {}.run(&OpenedFile::named(&file, &described)?, watch))?.result;
+    let convert = Convert {
+        csv_locale: readers(csv_locale)?,
+    };
+    let read = job(py, move |watch| convert.run(&OpenedFile::named(&file, &described)?, watch))?.result;
     writing_job(py, move |watch| {
         read.write(&out, watch)?;
         Ok(out)
@@ -189,6 +199,11 @@ pub(crate) fn convert(
 ///     Method of the intervals of fits: "automatic" (if left out), "curvature", "profile" or "bootstrap".
 /// fit_until_s
 ///     Fit only this long from the start of each hold, s.
+/// map
+///     Quantities to draw as maps over the positions of the curves, by the names that `BatchResult.map` takes; each goes into a file
+///     beside the table, or into FILE (.svg, .png or .pdf) of "NAME=FILE".
+/// csv_locale
+///     Language of the readers of a CSV, as for `Analysis.report`.
 /// restart
 ///     Whether all records are analysed again, whatever was done before.
 ///
@@ -202,7 +217,7 @@ pub(crate) fn convert(
 /// OptionError, OSError
 ///     A description or a law that is wrong, a table that cannot be written.
 #[pyfunction]
-#[pyo3(signature = (paths, out, *, test=None, columns=None, laws=None, intervals=None, fit_until_s=None, restart=false))]
+#[pyo3(signature = (paths, out, *, test=None, columns=None, laws=None, intervals=None, fit_until_s=None, map=None, csv_locale=None, restart=false))]
 #[expect(clippy::too_many_arguments, reason = "keywords of Python")]
 pub(crate) fn batch(
     py: Python<'_>,
@@ -213,6 +228,8 @@ pub(crate) fn batch(
     laws: Option<Vec<String>>,
     intervals: Option<&str>,
     fit_until_s: Option<f64>,
+    map: Option<Vec<String>>,
+    csv_locale: Option<&str>,
     restart: bool,
 ) -> PyResult<BatchResult> {
     let (files, described) = (record_files(paths)?, described_with(test, None, columns)?);
@@ -220,6 +237,8 @@ pub(crate) fn batch(
         laws: laws.map(|laws| all_laws(&laws)).transpose()?,
         intervals: intervals.map(fit::intervals).transpose()?,
         fit_until_s,
+        map: map.unwrap_or_default(),
+        csv_locale: readers(csv_locale)?,
         restart,
         ..Batch::default()
     };
@@ -227,6 +246,7 @@ pub(crate) fn batch(
     Ok(BatchResult {
         answer: done.answer,
         rows: done.rows,
+        map: done.map,
         failures: done.failures.into_iter().map(|refused| refused.message).collect(),
     })
 }
@@ -237,6 +257,7 @@ pub(crate) fn batch(
 pub(crate) struct BatchResult {
     answer: BatchAnswer,
     rows: usize,
+    map: CurveMap,
     failures: Vec<String>,
 }
 
@@ -269,6 +290,28 @@ shown! {
         failures: Vec<String> = self.failures.clone(),
     }
 
+    /// A map of a quantity over the positions of the curves, as SVG.
+    ///
+    /// Parameters
+    /// ----------
+    /// quantity : str
+    ///     A parameter of the law recommended for the first hold of each curve, or a column of the table, by its name; "v", "n" and "E"
+    ///     stand for ``rate_coefficient_per_s``, ``exponent`` and ``loading_modulus_pa``.
+    ///
+    /// Returns
+    /// -------
+    /// str
+    ///     Cells where the positions form a grid, otherwise points, with a bar of colours.
+    ///
+    /// Raises
+    /// ------
+    /// OptionError
+    ///     No curve has a position, or none a value of that name.
+    fn map(&self, quantity: &str) -> PyResult<String> {
+        let figure = self.map.figure(quantity, "map").map_err(failed)?;
+        figure.to_svg().map_err(refused_plainly::<PalpateError>)
+    }
+
     fn __str__(&self) -> String {
         self.answer.text()
     }
@@ -290,7 +333,7 @@ shown! {
 /// out
 ///     A table ending in .parquet.
 /// figure
-///     A figure ending in .svg or .png.
+///     A figure ending in .svg, .png or .pdf.
 /// show
 ///     Which result the figure shows, by the name of its column; the peak force if left out.
 /// restart
@@ -331,8 +374,8 @@ pub(crate) fn sweep(
 /// ----------
 /// folder
 ///     Made if it is not there.
-/// png
-///     Whether figures are written as PNG beside SVG.
+/// figures, column, csv_locale
+///     As for `Analysis.report`.
 /// seeds
 ///     Laboratories that repeat the tests with each ball, one seed each; 32 if left out. Not with a record.
 /// sample_rate_hz
@@ -361,13 +404,15 @@ pub(crate) fn sweep(
 /// ('Abstract', 'not_reproduced', -0.1661)
 #[pyfunction]
 #[pyo3(signature = (
-    folder, *, png=false, seeds=None, sample_rate_hz=None, record=None, name=None, test=None, part=None, columns=None,
+    folder, *, figures=None, column=None, csv_locale=None, seeds=None, sample_rate_hz=None, record=None, name=None, test=None, part=None, columns=None,
 ))]
 #[expect(clippy::too_many_arguments, reason = "keywords of Python")]
 pub(crate) fn reproduce<'py>(
     py: Python<'py>,
     folder: PathBuf,
-    png: bool,
+    figures: Option<Vec<String>>,
+    column: Option<&str>,
+    csv_locale: Option<&str>,
     seeds: Option<usize>,
     sample_rate_hz: Option<f64>,
     record: Given<'py, '_>,
@@ -376,7 +421,7 @@ pub(crate) fn reproduce<'py>(
     part: Given<'py, '_>,
     columns: Given<'py, '_>,
 ) -> PyResult<Bound<'py, PyAny>> {
-    let pictures = Pictures { png };
+    let options = file_options(figures, column, csv_locale)?;
     let Some(record) = record else {
         if name.is_some() || test.is_some() || part.is_some() || columns.is_some() {
             return Err(OptionError::new_err("name, test, part and columns describe a record: give the record too"));
@@ -388,7 +433,7 @@ pub(crate) fn reproduce<'py>(
         };
         let document = writing_job(py, move |watch| {
             let study = question.run(watch)?.result;
-            write_bundle(&folder, &reproduction_bundle(&study, pictures, watch)?)?;
+            write_bundle(&folder, &reproduction_bundle(&study, &options, watch)?)?;
             Ok(study.document())
         })?;
         return plain(py, &document);
@@ -403,7 +448,7 @@ pub(crate) fn reproduce<'py>(
         let opened = OpenedFile::named(&file, &described)?;
         let measured = opened.measurement(opened.only()?, watch)?;
         let found = Reproduce::of_record(measured, watch)?.result;
-        write_bundle(&folder, &found.bundle(pictures, watch)?)?;
+        write_bundle(&folder, &found.bundle(&options, watch)?)?;
         Ok(found.document())
     })?;
     plain(py, &document)

@@ -12,6 +12,7 @@
 //! | `arrays.rs` | numbers in |
 //! | `work.rs` | long work without the GIL, ended by Ctrl-C |
 //! | `errors.rs` | exceptions and warnings |
+//! | `report_files.rs` | how the files of a report are written |
 //! | `files.rs` | jobs from files to files |
 //! | `command.rs` | the command line |
 
@@ -26,6 +27,7 @@ mod materials;
 mod observers;
 mod pickles;
 mod records;
+mod report_files;
 mod shown;
 mod table;
 mod work;

@@ -6,9 +6,9 @@ use std::path::Path;
 
 use palpate::fit::Estimate;
 use palpate::paper::Verdict;
-use palpate_report::figure::{Arrangement, Axis, Figure, Layer, Map, Panel, Role};
+use palpate_report::figure::{Arrangement, Axis, Figure, Layer, Map, Panel, PictureFormat, Role};
 use palpate_report::page::{Block, ClaimLine, ClaimRow, Finding, Page, Section, Severity};
-use palpate_report::table::{Cell, Table};
+use palpate_report::table::{Cell, CsvLocale, Table};
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let folder = std::env::args().nth(1).ok_or("give a folder to write to")?;
@@ -29,10 +29,11 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     for figure in &figures {
         std::fs::write(folder.join(format!("{}.svg", figure.name)), figure.to_svg()?)?;
         std::fs::write(folder.join(format!("{}.png", figure.name)), figure.to_png(200.0)?)?;
+        std::fs::write(folder.join(format!("{}.pdf", figure.name)), figure.to_file(PictureFormat::Pdf)?)?;
         section = section.block(Block::figure(figure)?);
     }
     let table = law_table();
-    std::fs::write(folder.join("law.csv"), table.to_csv())?;
+    std::fs::write(folder.join("law.csv"), table.to_csv(CsvLocale::En))?;
     print!("{}", table.to_plain_text());
     std::fs::write(folder.join("gallery.html"), page(table, section).to_html())?;
     Ok(())

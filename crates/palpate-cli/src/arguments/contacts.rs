@@ -5,10 +5,11 @@ use std::path::PathBuf;
 use clap::Args;
 use palpate_files::description::NamedColumns;
 use palpate_jobs as jobs;
-use palpate_jobs::typed::{Choice, columns, force, length, one_of};
+use palpate_jobs::typed::{CSV_LOCALES, Choice, columns, force, length, one_of};
+use palpate_report::table::CsvLocale;
 
-use super::Format;
 use super::records::DescribedArguments;
+use super::{FilesArguments, Format};
 
 /// Judge every claim of the paper: simulate and analyse its tests, let laboratories repeat them, or analyse your own record.
 #[derive(Debug, Args)]
@@ -28,9 +29,8 @@ pub(crate) struct ReproduceArguments {
     /// Folder for the report, figures, tables and series
     #[arg(long, value_name = "DIR", default_value = "palpate-reproduction")]
     pub(crate) out: PathBuf,
-    /// Also write figures as PNG
-    #[arg(long)]
-    pub(crate) png: bool,
+    #[command(flatten)]
+    pub(crate) files: FilesArguments,
     /// Format of standard output
     #[arg(long, value_enum, default_value_t = Format::Text)]
     pub(crate) format: Format,
@@ -66,16 +66,16 @@ pub(crate) struct SimulateArguments {
     /// File for the series (CSV); standard output if not given
     #[arg(long, value_name = "FILE.csv")]
     pub(crate) out: Option<PathBuf>,
-    /// File for a figure (.svg or .png)
+    /// File for a figure (.svg, .png or .pdf)
     #[arg(long, value_name = "FILE.svg")]
     pub(crate) figure: Option<PathBuf>,
-    /// File for a figure of force against displacement, with the loss per cycle (.svg or .png)
+    /// File for a figure of force against displacement, with the loss per cycle (.svg, .png or .pdf)
     #[arg(long, value_name = "FILE.svg")]
     pub(crate) hysteresis: Option<PathBuf>,
     /// File for the strain of each layer (CSV); requires an integer number of layers
     #[arg(long, visible_alias = "layers-out", value_name = "FILE.csv")]
     pub(crate) wave: Option<PathBuf>,
-    /// File for a figure of the strain of each layer over time (.svg or .png); requires an integer number of layers
+    /// File for a figure of the strain of each layer over time (.svg, .png or .pdf); requires an integer number of layers
     #[arg(long, value_name = "FILE.svg")]
     pub(crate) strain_map: Option<PathBuf>,
     /// File for the work of the jaw over time (CSV): done, recovered and, at constant section, stored and dissipated
@@ -96,6 +96,9 @@ pub(crate) struct SimulateArguments {
     /// Seed of the noise; the same seed gives the same record
     #[arg(long, value_name = "N", default_value_t = jobs::Simulate::default().seed)]
     pub(crate) seed: u64,
+    /// Language of the readers of CSV: it decides decimal sign and separator
+    #[arg(long, value_name = "LANGUAGE", value_parser = one_of(CSV_LOCALES), default_value = "en")]
+    pub(crate) csv_locale: CsvLocale,
 }
 
 impl SimulateArguments {
@@ -105,6 +108,7 @@ impl SimulateArguments {
             force_noise_n: self.force_noise,
             displacement_noise_m: self.displacement_noise,
             seed: self.seed,
+            csv_locale: self.csv_locale,
         }
     }
 }
@@ -131,7 +135,7 @@ pub(crate) struct SweepArguments {
     /// File for the table (Parquet), one row per run; default: PROTOCOL.parquet in the current folder
     #[arg(long, value_name = "FILE.parquet")]
     pub(crate) out: Option<PathBuf>,
-    /// File for a figure (.svg or .png): a curve, a heat map, several heat maps, or points
+    /// File for a figure (.svg, .png or .pdf): a curve, a heat map, several heat maps, or points
     #[arg(long, value_name = "FILE.svg")]
     pub(crate) figure: Option<PathBuf>,
     #[command(flatten)]
@@ -160,7 +164,7 @@ pub(crate) struct PredictArguments {
     /// File for the series (CSV); standard output if neither this nor --at is given
     #[arg(long, value_name = "FILE.csv")]
     pub(crate) out: Option<PathBuf>,
-    /// File for a figure (.svg or .png)
+    /// File for a figure (.svg, .png or .pdf)
     #[arg(long, value_name = "FILE.svg")]
     pub(crate) figure: Option<PathBuf>,
 }
@@ -190,7 +194,9 @@ pub(crate) struct GripArguments {
     /// Folder for a report with figure, tables, series and JSON
     #[arg(long, value_name = "DIR")]
     pub(crate) out: Option<PathBuf>,
-    /// File for a figure (.svg or .png)
+    #[command(flatten)]
+    pub(crate) files: FilesArguments,
+    /// File for a figure (.svg, .png or .pdf)
     #[arg(long, value_name = "FILE.svg")]
     pub(crate) figure: Option<PathBuf>,
     /// Format of standard output

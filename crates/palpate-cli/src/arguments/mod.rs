@@ -3,9 +3,11 @@
 //! | file | what |
 //! |---|---|
 //! | `records.rs` | arguments of the commands that read records |
+//! | `files.rs` | how the files of a report are written |
 //! | `contacts.rs` | arguments of the commands that simulate, predict and plan |
 
 mod contacts;
+mod files;
 mod records;
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
@@ -17,10 +19,12 @@ use palpate_report::document::{
     AnalysisDocument, CalibrationDocument, ComparisonDocument, GripDocument, ReproducedRecordDocument,
     ReproductionDocument, SeveralCalibrationsDocument, Software, SpecimensDocument, WatchDocument,
 };
+use palpate_report::study::FileOptions;
 use schemars::{JsonSchema, schema_for};
 use serde_json::Value;
 
 pub(crate) use contacts::{GripArguments, PredictArguments, ReproduceArguments, SimulateArguments, SweepArguments};
+pub(crate) use files::FilesArguments;
 pub(crate) use records::{
     AnalyzeArguments, BatchArguments, CalibrateArguments, CompareArguments, ConvertArguments, InspectArguments,
     TableFormat, WatchArguments, WatchFormat,
@@ -40,6 +44,7 @@ fn build() -> String {
         ("arrow", cfg!(feature = "arrow")),
         ("png", cfg!(feature = "png")),
         ("robot-log", cfg!(feature = "robot-log")),
+        ("xlsx", cfg!(feature = "xlsx")),
     ];
     let enabled: Vec<&str> = features.iter().filter(|(_, enabled)| *enabled).map(|(name, _)| *name).collect();
     let features = if enabled.is_empty() { "none".to_owned() } else { enabled.join(", ") };
@@ -138,6 +143,7 @@ const SCHEMAS: &[Choice<fn() -> Value>] = &[
         "summary.json of `palpate reproduce --record`",
         schema::<ReproducedRecordDocument>,
     ),
+    ("report-files", "How the files of a report are written", schema::<FileOptions>),
     ("job-inspect", "Options of `palpate inspect` as a job", schema::<jobs::Inspect>),
     ("job-analyze", "Options of `palpate analyze` as a job", schema::<jobs::Analyze>),
     ("job-compare", "Options of `palpate compare` as a job", schema::<jobs::Compare>),

@@ -12,7 +12,7 @@ use palpate_jobs::JobError;
 use palpate_jobs::input::Described;
 use palpate_jobs::typed::{Choice, columns, coverage, exponent, force, law, number, one_of, seconds, time};
 
-use super::Format;
+use super::{FilesArguments, Format};
 
 /// How a record is described.
 #[derive(Debug, Args)]
@@ -80,7 +80,7 @@ pub(crate) struct InspectArguments {
     pub(crate) machines: bool,
     #[command(flatten)]
     pub(crate) described: DescribedArguments,
-    /// File for a figure of the phases (.svg or .png)
+    /// File for a figure of the phases (.svg, .png or .pdf)
     #[arg(long, value_name = "FILE.svg")]
     pub(crate) figure: Option<PathBuf>,
     /// File for a draft test description, with each guess commented; an existing file is not overwritten
@@ -97,14 +97,17 @@ the version of palpate (in a CSV as a first line that begins with #).
 
 Examples:
   palpate convert press.xlsx --part \"Specimen 3\" --out press-3.csv
+  palpate convert press.csv --out press.xlsx                         for a spreadsheet
   palpate convert cell.jpk-force --out cell.parquet")]
 pub(crate) struct ConvertArguments {
     /// Record in any supported format
     #[arg(value_name = "RECORD")]
     pub(crate) record: PathBuf,
-    /// File to write (.csv, .parquet or .json)
+    /// File to write (.csv, .xlsx, .parquet or .json)
     #[arg(long, value_name = "FILE")]
     pub(crate) out: PathBuf,
+    #[command(flatten)]
+    pub(crate) job: jobs::Convert,
     #[command(flatten)]
     pub(crate) described: DescribedArguments,
 }
@@ -117,6 +120,7 @@ Examples:
   palpate analyze press.csv --test ball.toml --out study  report, JSON, tables, figures
   palpate analyze tape.csv --fit-until \"600 s\"            held-out errors after 600 s
   palpate analyze *.csv --test strip.toml --out studies   one folder per record
+  palpate analyze press.csv --out study --figures pdf --column single --holds 1,3   for a journal
   palpate analyze press.csv --format json | jq '.holds[].fits[0]'")]
 pub(crate) struct AnalyzeArguments {
     /// Records with time, force and, if possible, displacement: files, folders, or patterns in quotes
@@ -127,12 +131,14 @@ pub(crate) struct AnalyzeArguments {
     /// Folder for report.html, analysis.json, tables and figures; of several records a folder each and index.html
     #[arg(long, value_name = "DIR")]
     pub(crate) out: Option<PathBuf>,
+    #[command(flatten)]
+    pub(crate) files: FilesArguments,
+    /// Numbers of the holds that the figure files show, from 1; all if not given
+    #[arg(long, value_name = "N,…", value_delimiter = ',', requires = "out")]
+    pub(crate) holds: Option<Vec<usize>>,
     /// Format of standard output
     #[arg(long, value_enum, default_value_t = Format::Text)]
     pub(crate) format: Format,
-    /// Also write figures as PNG
-    #[arg(long, requires = "out")]
-    pub(crate) png: bool,
     #[command(flatten)]
     pub(crate) job: jobs::Analyze,
     /// Record of the same motion without a body; its force is subtracted
@@ -154,7 +160,8 @@ code 1).
 Examples:
   palpate batch curves --out holds.parquet --test cell.toml        a folder and its subfolders
   palpate batch \"run-*/**/*.csv\" --out holds.csv                 a pattern
-  palpate batch curves --out laws.parquet --laws latency,prony:2   further laws")]
+  palpate batch curves --out laws.parquet --laws latency,prony:2   further laws
+  palpate batch cell.jpk-force-map --test cell.toml --out cell.csv --map E   a map of the modulus")]
 pub(crate) struct BatchArguments {
     /// Records: files, folders, or patterns in quotes
     #[arg(value_name = "RECORD", required = true)]
@@ -199,6 +206,8 @@ pub(crate) struct CompareArguments {
     /// Folder for report.html, comparison.json, tables and figures
     #[arg(long, value_name = "DIR")]
     pub(crate) out: Option<PathBuf>,
+    #[command(flatten)]
+    pub(crate) files: FilesArguments,
 }
 
 /// Calibrate a body on a whole record, ramps and holds: one set of parameters for prediction.
@@ -270,7 +279,7 @@ pub(crate) struct CalibrateArguments {
     /// File for the material (TOML)
     #[arg(long, value_name = "MATERIAL.toml")]
     pub(crate) out: Option<PathBuf>,
-    /// File for a figure of the record with the laws (.svg or .png)
+    /// File for a figure of the record with the laws (.svg, .png or .pdf)
     #[arg(long, value_name = "FILE.svg")]
     pub(crate) figure: Option<PathBuf>,
     /// Format of standard output

@@ -5,7 +5,7 @@ use std::path::Path;
 use palpate_jobs::input::{Measurement, NamedRecords, OpenedFile};
 use palpate_jobs::output::{check_folder, write_bundle};
 use palpate_jobs::{Analyze, Analyzed, ErrorKind, JobError, ReportIndex, Results, Verdict};
-use palpate_report::study::Pictures;
+use palpate_report::study::FileOptions;
 
 use crate::arguments::{AnalyzeArguments, Format};
 use crate::failure::tell;
@@ -14,6 +14,10 @@ use crate::terminal::{note, note_report, notes, print};
 
 pub(crate) fn run(arguments: &AnalyzeArguments) -> Result<Verdict, JobError> {
     arguments.out.as_deref().map_or(Ok(()), check_folder)?;
+    let options = FileOptions {
+        holds: arguments.holds.clone(),
+        ..arguments.files.options(arguments.out.is_some())?
+    };
     let described = arguments.described.read()?;
     let records = NamedRecords::find(arguments.records.clone(), described)?;
     let alone = records.described.clone().with_then(None);
@@ -29,7 +33,7 @@ pub(crate) fn run(arguments: &AnalyzeArguments) -> Result<Verdict, JobError> {
         tests += 1;
         let made = part
             .measurement
-            .and_then(|measured| one(arguments, &job, measured, air.as_ref(), part.folder.as_deref()))
+            .and_then(|measured| one(arguments, (&job, &options), measured, air.as_ref(), part.folder.as_deref()))
             .and_then(|analyzed| match (out, &part.folder) {
                 (Some(out), Some(folder)) => index.add(&analyzed, folder, out, &mut Bars::default()),
                 _ => Ok(()),
@@ -46,7 +50,7 @@ pub(crate) fn run(arguments: &AnalyzeArguments) -> Result<Verdict, JobError> {
         })
     })?;
     if let Some(out) = out.filter(|_| tests > 1 && !index.is_empty()) {
-        write_bundle(out, &index.bundle(Pictures { png: arguments.png }, &mut Bars::default())?)?;
+        write_bundle(out, &index.bundle(&options, &mut Bars::default())?)?;
         note(&format!("index written: {}", out.join("index.html").display()));
     }
     match failed {
@@ -60,7 +64,7 @@ pub(crate) fn run(arguments: &AnalyzeArguments) -> Result<Verdict, JobError> {
 
 fn one(
     arguments: &AnalyzeArguments,
-    job: &Analyze,
+    (job, options): (&Analyze, &FileOptions),
     measured: Measurement,
     air: Option<&Measurement>,
     folder: Option<&Path>,
@@ -69,7 +73,7 @@ fn one(
     let mut bars = Bars::default();
     let outcome = job.run(measured, air, &mut bars)?;
     if let Some(folder) = folder {
-        write_bundle(folder, &outcome.result.bundle(Pictures { png: arguments.png }, &mut bars)?)?;
+        write_bundle(folder, &outcome.result.bundle(options, &mut bars)?)?;
     }
     drop(bars);
     print(&match arguments.format {

@@ -3,7 +3,6 @@
 use palpate_jobs::input::NamedRecords;
 use palpate_jobs::output::{check_folder, write_bundle};
 use palpate_jobs::{JobError, Results, Verdict};
-use palpate_report::study::Pictures;
 
 use crate::arguments::{CompareArguments, TableFormat};
 use crate::progress::Bars;
@@ -11,12 +10,13 @@ use crate::terminal::{note_report, notes, print};
 
 pub(crate) fn run(arguments: &CompareArguments) -> Result<Verdict, JobError> {
     arguments.out.as_deref().map_or(Ok(()), check_folder)?;
+    let options = arguments.files.options(arguments.out.is_some())?;
     let described = arguments.described.read()?;
     let records = NamedRecords::find(arguments.records.clone(), described)?;
     let alone = arguments.records.iter().eq(records.names());
     let outcome = arguments.job.run(&records, alone, &mut Bars::default(), notes)?;
     if let Some(folder) = &arguments.out {
-        write_bundle(folder, &outcome.result.bundle(Pictures::default(), &mut Bars::default())?)?;
+        write_bundle(folder, &outcome.result.bundle(&options, &mut Bars::default())?)?;
     }
     print(&match arguments.format {
         TableFormat::Text => outcome.result.text(),

@@ -2,7 +2,7 @@
 
 use palpate_jobs::input::OpenedFile;
 use palpate_jobs::output::keep_apart;
-use palpate_jobs::{Convert, Converted, JobError, Verdict};
+use palpate_jobs::{Converted, JobError, Verdict};
 
 use crate::arguments::ConvertArguments;
 use crate::progress::Bars;
@@ -17,7 +17,7 @@ pub(crate) fn run(requested: &ConvertArguments) -> Result<Verdict, JobError> {
     let opened = OpenedFile::open(record, &described)?;
     notes(&opened.notes());
     let mut bars = Bars::default();
-    let outcome = Convert {}.run(&opened, &mut bars)?;
+    let outcome = requested.job.run(&opened, &mut bars)?;
     notes(&outcome.notes);
     outcome.result.write(out, &mut bars)?;
     note(&format!("{} rows written: {}", outcome.result.file.record.len(), out.display()));

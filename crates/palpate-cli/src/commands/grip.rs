@@ -2,7 +2,7 @@
 
 use palpate_jobs::output::{Stage, check_figure, check_folder, keep_apart, picture};
 use palpate_jobs::{JobError, MaterialSource, Results, Verdict};
-use palpate_report::study::{Pictures, grip_bundle, grip_figure};
+use palpate_report::study::{grip_bundle, grip_figure};
 
 use crate::arguments::{Format, GripArguments};
 use crate::progress::Bars;
@@ -11,6 +11,7 @@ use crate::terminal::{note_report, notes, print};
 pub(crate) fn run(requested: &GripArguments) -> Result<Verdict, JobError> {
     let (out, figure) = (&requested.out, &requested.figure);
     out.as_deref().map_or(Ok(()), check_folder)?;
+    let options = requested.files.options(out.is_some())?;
     keep_apart([&requested.material], figure)?;
     figure.as_deref().map_or(Ok(()), check_figure)?;
     let material = MaterialSource::read(&requested.material)?;
@@ -18,7 +19,7 @@ pub(crate) fn run(requested: &GripArguments) -> Result<Verdict, JobError> {
     let drawn = figure.as_ref().map(|path| picture(path, &grip_figure(&outcome.result, "grip"))).transpose()?;
     let mut stage = Stage::default();
     if let Some(folder) = out {
-        stage.bundle(folder, &grip_bundle(&outcome.result, Pictures::default())?)?;
+        stage.bundle(folder, &grip_bundle(&outcome.result, &options)?)?;
     }
     if let (Some(path), Some(bytes)) = (figure, drawn) {
         stage.bytes(path, &bytes)?;

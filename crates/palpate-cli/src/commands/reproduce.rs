@@ -3,7 +3,7 @@
 use palpate_jobs::input::OpenedFile;
 use palpate_jobs::output::{check_folder, write_bundle};
 use palpate_jobs::{JobError, Outcome, Reproduce, Results, Verdict};
-use palpate_report::study::{Bundle, Pictures, reproduction_bundle};
+use palpate_report::study::{Bundle, reproduction_bundle};
 
 use crate::arguments::{Format, ReproduceArguments};
 use crate::progress::Bars;
@@ -11,11 +11,11 @@ use crate::terminal::{notes, print};
 
 pub(crate) fn run(arguments: &ReproduceArguments) -> Result<Verdict, JobError> {
     check_folder(&arguments.out)?;
-    let pictures = Pictures { png: arguments.png };
+    let options = arguments.files.options(true)?;
     let Some(record) = &arguments.record else {
         arguments.described.refuse_without_record()?;
         let outcome = arguments.job.run(&mut Bars::default())?;
-        let bundle = reproduction_bundle(&outcome.result, pictures, &mut Bars::default())?;
+        let bundle = reproduction_bundle(&outcome.result, &options, &mut Bars::default())?;
         return finish(arguments, &outcome, &bundle);
     };
     let described = arguments.described.read()?;
@@ -24,7 +24,7 @@ pub(crate) fn run(arguments: &ReproduceArguments) -> Result<Verdict, JobError> {
     let measured = opened.measurement(opened.only()?, &mut Bars::default())?;
     notes(&measured.notes);
     let outcome = Reproduce::of_record(measured, &mut Bars::default())?;
-    let bundle = outcome.result.bundle(pictures, &mut Bars::default())?;
+    let bundle = outcome.result.bundle(&options, &mut Bars::default())?;
     finish(arguments, &outcome, &bundle)
 }
 

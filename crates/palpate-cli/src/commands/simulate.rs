@@ -2,7 +2,7 @@
 
 use palpate_jobs::input::{Described, OpenedFile};
 use palpate_jobs::output::{Stage, check_series, keep_apart, picture};
-use palpate_jobs::{JobError, Simulated, Verdict};
+use palpate_jobs::{JobError, Verdict};
 
 use crate::arguments::SimulateArguments;
 use crate::progress::Bars;
@@ -50,7 +50,7 @@ pub(crate) fn run(requested: &SimulateArguments) -> Result<Verdict, JobError> {
             made.push((path, picture(path, &simulated.wave_figure(&strains, path))?));
         }
         if let Some(path) = &requested.wave {
-            made.push((path, Simulated::wave_csv(&strains).into_bytes()));
+            made.push((path, simulated.wave_csv(&strains).into_bytes()));
         }
     }
     if let Some(path) = &requested.energy {

@@ -153,7 +153,7 @@ fn what_cannot_be_calibrated_or_predicted_is_stated_and_nothing_is_written() {
         (&["--equilibrium", "hertz", "--poisson-ratio", "0.7"], "Poisson"),
         (&["--fit-until", "200 s"], "within the record"),
         (&["--confidence", "95"], "between 0 and 1"),
-        (&["--figure", "x.pdf"], ".svg"),
+        (&["--figure", "x.eps"], ".svg"),
     ] {
         let reported = refused(
             folder,

@@ -20,7 +20,7 @@ fn the_version_says_which_build_it_is() {
     );
     let build = lines[2].trim_start_matches("build: ");
     assert!(build.len() == 32 && build.chars().all(|c| c.is_ascii_hexdigit()), "{reported}");
-    assert!(lines[3].contains("-") && lines[4] == "features: arrow, png, robot-log", "{reported}");
+    assert!(lines[3].contains("-") && lines[4] == "features: arrow, png, robot-log, xlsx", "{reported}");
     assert_eq!(done(&root(), &["-V"]), format!("{}\n", lines[0]));
 }
 

@@ -47,6 +47,7 @@ fn numbers(path: &Path, column: &str) -> Vec<Option<f64>> {
     match &rows.columns[at] {
         Values::Number(values) => values.clone(),
         Values::Count(values) => values.iter().map(|value| Some(*value as f64)).collect(),
+        Values::OptionalCount(values) => values.iter().map(|value| value.map(|count| count as f64)).collect(),
         Values::Text(_) => panic!("{column} holds texts"),
     }
 }
@@ -355,7 +356,7 @@ fn every_kind_of_figure() {
         refused(folder.path(), &["sweep", &sweep, "--out", "four.parquet", "--figure", "f.svg", "--show", "peak"]);
     assert!(error.contains("unknown result") && error.contains("peak_force_n"), "{error}");
     let error = refused(folder.path(), &["sweep", &sweep, "--out", "four.parquet", "--figure", "f.gif"]);
-    assert!(error.contains(".svg or .png"), "{error}");
+    assert!(error.contains(".svg, .png or .pdf"), "{error}");
     assert_eq!(names(folder.path()), ["ball.parquet", "ball.toml", "f.svg"]);
 }
 

@@ -15,6 +15,7 @@ impl Values {
     pub(super) fn empty(kind: Kind) -> Self {
         match kind {
             Kind::Count => Self::Count(Vec::new()),
+            Kind::OptionalCount => Self::OptionalCount(Vec::new()),
             Kind::Number => Self::Number(Vec::new()),
             Kind::Text => Self::Text(Vec::new()),
         }
@@ -24,6 +25,7 @@ impl Values {
     pub(super) fn extend(&mut self, column: &ArrayRef) {
         match self {
             Self::Count(values) => values.extend(column.as_primitive::<Int64Type>().values()),
+            Self::OptionalCount(values) => values.extend(column.as_primitive::<Int64Type>()),
             Self::Number(values) => values.extend(column.as_primitive::<Float64Type>()),
             Self::Text(values) => values.extend(column.as_string::<i32>().iter().map(|text| text.map(str::to_owned))),
         }
@@ -34,6 +36,7 @@ impl From<Values> for ArrayRef {
     fn from(values: Values) -> Self {
         match values {
             Values::Count(values) => Arc::new(Int64Array::from(values)),
+            Values::OptionalCount(values) => Arc::new(Int64Array::from(values)),
             Values::Number(values) => Arc::new(Float64Array::from(values)),
             Values::Text(values) => Arc::new(StringArray::from(values)),
         }

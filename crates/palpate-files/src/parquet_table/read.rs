@@ -39,6 +39,7 @@ impl TableReader {
         let fields = about.schema().fields().iter().map(|field| {
             let kind = match (field.data_type(), field.is_nullable()) {
                 (DataType::Int64, false) => Kind::Count,
+                (DataType::Int64, true) => Kind::OptionalCount,
                 (DataType::Float64, true) => Kind::Number,
                 (DataType::Utf8, true) => Kind::Text,
                 _ => return Err(TableError::Foreign(field.name().clone())),

@@ -5,6 +5,8 @@
 pub enum Kind {
     /// Whole numbers, none missing.
     Count,
+    /// Whole numbers, some of which may be missing.
+    OptionalCount,
     /// Numbers, some of which may be missing.
     Number,
     /// Texts, some of which may be missing.
@@ -36,6 +38,8 @@ impl Field {
 pub enum Values {
     /// Whole numbers.
     Count(Vec<i64>),
+    /// Whole numbers, some of which may be missing.
+    OptionalCount(Vec<Option<i64>>),
     /// Numbers.
     Number(Vec<Option<f64>>),
     /// Texts.

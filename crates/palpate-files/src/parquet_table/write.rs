@@ -31,6 +31,7 @@ impl<W: Write + Send> TableWriter<W> {
     pub fn new(out: W, fields: &[Field]) -> Result<Self, TableError> {
         let columns = fields.iter().map(|field| match field.kind {
             Kind::Count => Column::new(&field.name, DataType::Int64, false),
+            Kind::OptionalCount => Column::new(&field.name, DataType::Int64, true),
             Kind::Number => Column::new(&field.name, DataType::Float64, true),
             Kind::Text => Column::new(&field.name, DataType::Utf8, true),
         });

@@ -8,6 +8,7 @@
 //! | `choose.rs`, `chooser.rs`, `choose_units.rs` | chooses the columns and their units, from a description or by the header |
 //! | `conversion.rs`, `rate.rs` | strain, stress, torque and curves of a material made force and displacement; rows made time |
 //! | `column_use.rs`, `named.rs` | a column that was chosen, and one as messages name it |
+//! | `position.rs` | where in a map a curve was measured ([`MapPosition`]) |
 //! | `describe.rs`, `describe_body.rs` | a first description of a test ([`describe`]) |
 //! | `error.rs`, `snippet.rs`, `lever.rs` | what is not clear, and the lines of a description that would clear it up |
 
@@ -22,6 +23,7 @@ mod error;
 mod lever;
 mod named;
 mod parts;
+mod position;
 mod rate;
 mod read;
 mod signals;
@@ -32,4 +34,5 @@ pub use describe::{describe, describe_all};
 pub use error::{ColumnError, Counted, ReadError, UnitProblem};
 pub use named::NamedColumn;
 pub use parts::{Tests, tests};
+pub use position::MapPosition;
 pub use read::{RecordFile, read_part, read_record};

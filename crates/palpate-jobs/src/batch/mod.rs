@@ -3,18 +3,20 @@
 //! | file | what |
 //! |---|---|
 //! | `answer.rs` | what was found over all holds |
+//! | `map.rs` | curves that have a position |
 //! | `rows.rs` | an analysed record as rows |
 //! | `parameters.rs` | its parameters as rows of a tidy table |
 //! | `table.rs` | the rows as files |
 
 mod answer;
+mod map;
 mod parameters;
 mod rows;
 mod table;
 
 use std::num::NonZeroUsize;
 use std::ops::Range;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use palpate::analysis::{AnalysisOptions, examine};
@@ -25,18 +27,20 @@ use palpate::number::counted;
 use palpate::segment::HoldStart;
 use palpate::watch::{Progress, Watch};
 use palpate_report::document::{AnalysisDocument, Software};
+use palpate_report::table::CsvLocale;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
 use crate::depends::BUILD;
 use crate::input::{Described, NamedFile, NamedRecords, OpenedFile, Source};
-use crate::output::{is_same, keep_apart, sha256};
+use crate::output::{Stage, is_same, keep_apart, picture, sha256, stem};
 use crate::store::{Store, beside};
 use crate::threads::{Share, over_threads};
 use crate::written_by_batch::is_written_by_batch;
 use crate::{ErrorKind, JobError, Outcome};
 pub use answer::{BatchAnswer, Spread};
+pub use map::CurveMap;
 use table::Format;
 
 /// Analyse many records into one table, one row per hold and law.
@@ -75,6 +79,22 @@ pub struct Batch {
     /// Number of records analysed in parallel; all processors if not given. The table does not depend on it.
     #[cfg_attr(feature = "clap", arg(long, value_name = "N"))]
     pub threads: Option<NonZeroUsize>,
+    /// Maps over the positions of the curves, each a name or NAME=FILE: a parameter of the law recommended for the first hold, or a column of
+    /// the table; v, n and E stand for `rate_coefficient_per_s`, `exponent` and `loading_modulus_pa`. Without FILE a map goes beside the table.
+    #[cfg_attr(
+        feature = "clap",
+        arg(
+            long,
+            value_name = "NAME[=FILE]",
+            help = "Map of a quantity over the positions of the curves (.svg, .png or .pdf; beside the table if no file is given): v, n, E, a parameter of the recommended law, or a column of the table; may be repeated",
+        )
+    )]
+    pub map: Vec<String>,
+    /// Language of the readers of CSV: it decides decimal sign and separator.
+    #[cfg_attr(feature = "clap", arg(
+        long, value_name = "LANGUAGE", value_parser = crate::typed::one_of(crate::typed::CSV_LOCALES), default_value = "en",
+    ))]
+    pub csv_locale: CsvLocale,
     /// Analyse all records again, and ignore earlier results.
     #[cfg_attr(feature = "clap", arg(long))]
     pub restart: bool,
@@ -91,6 +111,8 @@ pub struct Batched {
     pub tests: usize,
     /// The tests without rows.
     pub failures: Vec<Refused>,
+    /// The curves that have a position.
+    pub map: CurveMap,
 }
 
 /// A test that could not be analysed.
@@ -125,7 +147,11 @@ impl Batch {
         let started = Instant::now();
         let NamedRecords { mut files, described } = records;
         let of_parameters = table::of_parameters(out);
-        keep_apart(&described.path, [out, &of_parameters])?;
+        let maps: Vec<(&str, PathBuf)> =
+            self.map.iter().map(|map| map::named(out, map)).collect::<Result<_, JobError>>()?;
+        let drawn = || maps.iter().map(|(_, path)| path.as_path());
+        keep_apart(&described.path, [out, &of_parameters].into_iter().chain(drawn()))?;
+        keep_apart(files.iter().filter_map(NamedFile::path), drawn())?;
         let format = Format::of(out)?;
         let options = self.options(&described);
         if !is_written_by_batch(out) {
@@ -148,7 +174,13 @@ impl Batch {
             Ok(place)
         })?;
         let how = (settings.as_str(), options.compare.is_some());
-        let batched = table::write(out, format, &store, places.iter().map(|(place, _)| place), how)?;
+        let batched = table::write(out, (format, self.csv_locale), &store, places.iter().map(|(place, _)| place), how)?;
+        // The table is there whatever the maps lack.
+        let mut stage = Stage::default();
+        for (quantity, path) in &maps {
+            stage.bytes(path, &picture(path, &batched.map.figure(quantity, &stem(path))?)?)?;
+        }
+        stage.commit()?;
         let before = places.iter().filter(|(_, before)| *before).count();
         let (all, notes) = (batched.failures.is_empty(), batched.notes(out, files.len(), before, started));
         Ok(Outcome::of(batched).answered(all).noted(notes))

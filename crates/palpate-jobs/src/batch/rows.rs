@@ -1,7 +1,7 @@
 //! An analysed record as rows of the table: one a hold and law, one for a hold to which no law was fitted, and one for a record without a
 //! hold.
 
-use palpate_files::parquet_table::Kind::{self, Count, Number, Text};
+use palpate_files::parquet_table::Kind::{self, Count, Number, OptionalCount, Text};
 use palpate_files::parquet_table::{Field, Rows, Values};
 use palpate_report::document::{
     AnalysisDocument, FitDocument, HoldDocument, LawDocument, LoadingModulusDocument, VerdictDocument,
@@ -36,10 +36,13 @@ enum LawRow<'a> {
 type Column = (Kind, &'static str, fn(&Line<'_>) -> Value);
 
 /// Columns of the record and the hold, and how the force changed.
-const HOLD: [Column; 16] = [
+const HOLD: [Column; 19] = [
     (Text, "record_sha256", |line| line.document.input.sha256.clone().into()),
     (Count, "rows", |line| line.document.input.rows.into()),
     (Count, "rows_averaged", |line| line.document.input.rows_averaged.into()),
+    (Number, "x_m", |line| line.document.input.x_m.into()),
+    (Number, "y_m", |line| line.document.input.y_m.into()),
+    (OptionalCount, "map_index", |line| line.document.input.map_index.into()),
     (Number, "start_s", |line| line.of_hold(|hold| hold.start_s.into())),
     (Number, "end_s", |line| line.of_hold(|hold| hold.end_s.into())),
     (Number, "fit_start_s", |line| line.of_hold(|hold| hold.fit_start_s.into())),
@@ -59,7 +62,7 @@ const HOLD: [Column; 16] = [
 const ANSWER: [Column; 9] = [
     (Text, "record", |line| line.document.input.path.clone().into()),
     (Text, "part", |line| line.document.input.part.clone().into()),
-    (Count, "hold", |line| line.of_hold(|hold| hold.index.into())),
+    (OptionalCount, "hold", |line| line.of_hold(|hold| hold.index.into())),
     (Text, "law", |line| line.name().into()),
     (Count, "recommended", |line| i64::from(line.is_recommended).into()),
     (Text, "formula", |line| {
@@ -123,6 +126,11 @@ pub(super) fn fields() -> Vec<Field> {
         ["", "_standard_error", "_low", "_high"].map(|end| Field::new(format!("{name}{end}"), Kind::Number))
     });
     plain(&ANSWER).chain(plain(&HOLD)).chain(plain(&FIT)).chain(uncertain).chain(plain(&LAST)).collect()
+}
+
+/// Whether a column is of the record or the hold, whatever law is fitted.
+pub(super) fn is_of_hold(name: &str) -> bool {
+    HOLD.iter().any(|(_, own, _)| *own == name) || name.starts_with("loading_")
 }
 
 /// The rows of a record, in the order of its holds; of each the recommended law first, then the latency law, n given before free.
@@ -257,6 +265,9 @@ pub(super) fn table_rows(fields: &[Field], lines: &[Vec<Value>]) -> Option<Rows>
     let columns = fields.iter().enumerate().map(|(index, field)| {
         Some(match field.kind {
             Kind::Count => Values::Count(column(index).map(|value| value?.as_i64()).collect::<Option<_>>()?),
+            Kind::OptionalCount => {
+                Values::OptionalCount(column(index).map(|value| Some(value?.as_i64())).collect::<Option<_>>()?)
+            }
             Kind::Number => Values::Number(column(index).map(|value| Some(value?.as_f64())).collect::<Option<_>>()?),
             Kind::Text => {
                 let text = |value: Option<&Value>| Some(value?.as_str().map(str::to_owned));

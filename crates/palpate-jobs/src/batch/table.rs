@@ -6,7 +6,7 @@ use std::ops::Range;
 use std::path::{Path, PathBuf};
 
 use palpate_files::parquet_table::{Field, TableError, TableWriter};
-use palpate_report::table::text_cell;
+use palpate_report::table::{CsvLocale, csv_writer, text_cell};
 use serde_json::Value;
 
 use super::answer::Tally;
@@ -38,7 +38,7 @@ impl Format {
 /// Writes the entries at `places`, one in memory at a time, with `settings` inside.
 pub(super) fn write<'a>(
     out: &Path,
-    format: Format,
+    (format, locale): (Format, CsvLocale),
     store: &Store,
     places: impl Iterator<Item = &'a Range<u64>>,
     (settings, compared): (&str, bool),
@@ -49,12 +49,14 @@ pub(super) fn write<'a>(
     let refused = |error: TableError| unwritten_table(out, &error);
     let mut stage = Stage::default();
     let (mut table, mut tidy) = (stage.open(out)?, stage.open(&of_parameters)?);
-    let mut sink = Sink::new(format, BufWriter::new(&mut table), rows::fields(), settings).map_err(refused)?;
+    let mut sink =
+        Sink::new((format, locale), BufWriter::new(&mut table), rows::fields(), settings).map_err(refused)?;
     let mut parameters =
-        Sink::new(format, BufWriter::new(&mut tidy), parameters::fields(), settings).map_err(refused)?;
+        Sink::new((format, locale), BufWriter::new(&mut tidy), parameters::fields(), settings).map_err(refused)?;
     for place in places {
         let entry: Entry = serde_json::from_slice(&store.read(place)?)?;
         tally.add(&entry);
+        batched.map.add(&entry);
         batched.rows += entry.rows.len();
         batched.tests += entry.tests;
         batched.failures.extend(entry.failures);
@@ -78,19 +80,24 @@ pub(super) fn of_parameters(out: &Path) -> PathBuf {
 
 /// A table that takes rows.
 enum Sink<W: Write + Send> {
-    Csv(Box<csv::Writer<W>>),
+    Csv(Box<csv::Writer<W>>, CsvLocale),
     Parquet(Box<TableWriter<W>>, Vec<Field>),
 }
 
 impl<W: Write + Send> Sink<W> {
-    fn new(format: Format, mut out: W, fields: Vec<Field>, settings: &str) -> Result<Self, TableError> {
+    fn new(
+        (format, locale): (Format, CsvLocale),
+        mut out: W,
+        fields: Vec<Field>,
+        settings: &str,
+    ) -> Result<Self, TableError> {
         match format {
             Format::Csv => {
                 // A comment, which readers of CSV can be set to pass over; palpate passes over it by itself.
                 writeln!(out, "# {MARK}: {settings}")?;
-                let mut writer = csv::Writer::from_writer(out);
+                let mut writer = csv_writer(locale).from_writer(out);
                 writer.write_record(fields.iter().map(|field| field.name.as_str())).map_err(io::Error::from)?;
-                Ok(Self::Csv(Box::new(writer)))
+                Ok(Self::Csv(Box::new(writer), locale))
             }
             Format::Parquet => Ok(Self::Parquet(Box::new(TableWriter::new(out, &fields)?), fields)),
         }
@@ -98,9 +105,9 @@ impl<W: Write + Send> Sink<W> {
 
     fn write(&mut self, lines: &[Vec<Value>]) -> Result<(), TableError> {
         match self {
-            Self::Csv(writer) => {
+            Self::Csv(writer, locale) => {
                 for line in lines {
-                    writer.write_record(line.iter().map(cell)).map_err(io::Error::from)?;
+                    writer.write_record(line.iter().map(|value| cell(value, *locale))).map_err(io::Error::from)?;
                 }
             }
             Self::Parquet(writer, fields) => {
@@ -113,7 +120,7 @@ impl<W: Write + Send> Sink<W> {
 
     fn finish(self, settings: &str) -> Result<(), TableError> {
         match self {
-            Self::Csv(mut writer) => writer.flush()?,
+            Self::Csv(mut writer, _) => writer.flush()?,
             Self::Parquet(writer, _) => writer.finish(&[(MARK, settings)])?,
         }
         Ok(())
@@ -121,10 +128,10 @@ impl<W: Write + Send> Sink<W> {
 }
 
 /// A value as a cell: what is missing is empty.
-fn cell(value: &Value) -> String {
+fn cell(value: &Value, locale: CsvLocale) -> String {
     match value {
         Value::Null => String::new(),
         Value::String(text) => text_cell(text).into_owned(),
-        other => other.to_string(),
+        other => locale.number(other.to_string()),
     }
 }

@@ -6,7 +6,7 @@ use palpate::analysis::AnalysisOptions;
 use palpate::record::Record;
 use palpate::watch::{Cancelled, Progress, Watch};
 use palpate_files::open::Contents;
-use palpate_files::record::{ReadError, RecordFile, Tests, read_part, tests};
+use palpate_files::record::{MapPosition, ReadError, RecordFile, Tests, read_part, tests};
 use palpate_files::table::SkippedPart;
 use palpate_report::result::Input;
 use sha2::{Digest, Sha256};
@@ -175,6 +175,7 @@ impl<'d> OpenedFile<'d> {
     ) -> Result<Input, JobError> {
         let path = file.path.as_path();
         let about = self.described.test.as_ref().and_then(|test| test.about.title.clone());
+        let position = MapPosition::of(&file.part.metadata);
         let title = about.unwrap_or_else(|| path.file_stem().unwrap_or_default().to_string_lossy().into_owned());
         Ok(Input {
             path: path.display().to_string(),
@@ -186,6 +187,9 @@ impl<'d> OpenedFile<'d> {
             depends_on_sha256: None,
             rows: file.rows,
             rows_averaged: file.averaged,
+            x_m: position.map(|position| position.x),
+            y_m: position.map(|position| position.y),
+            map_index: position.and_then(|position| position.index),
             test: self.described.shown(),
             title: part.map_or_else(|| title.clone(), |part| format!("{title} · {part}")),
         })

@@ -16,11 +16,11 @@ mod temporary;
 
 use std::path::Path;
 
-use palpate_report::figure::Figure;
+use palpate_report::figure::{Figure, PictureFormat};
 use sha2::{Digest, Sha256};
 
 pub use bundle::write_bundle;
-pub(crate) use names::Names;
+pub(crate) use names::{Names, file_name};
 pub use stage::{Stage, StagedFile};
 pub use target::check_folder;
 pub(crate) use target::{check_no_folder, unwritten, unwritten_table};
@@ -29,9 +29,6 @@ pub use temporary::abandon;
 use temporary::remove_stale;
 
 use crate::{ErrorKind, JobError};
-
-/// Resolution of PNG figures.
-const DPI: f64 = 300.0;
 
 /// Refuses to write a file that is read, for a measured record cannot be had again, and what is no regular file.
 ///
@@ -106,6 +103,10 @@ const NOT_IN_THIS_BUILD: &[(&str, &str)] = &[
     ("parquet", "arrow"),
     #[cfg(not(feature = "png"))]
     ("png", "png"),
+    #[cfg(not(feature = "png"))]
+    ("pdf", "png"),
+    #[cfg(not(feature = "xlsx"))]
+    ("xlsx", "xlsx"),
 ];
 
 /// Refuses a name without one of these endings, before any work is done; `expected` and `hint` say what is meant.
@@ -130,9 +131,11 @@ pub(crate) fn check_ending(path: &Path, endings: &[&str], expected: &str, hint: 
 /// Refuses names of figures that say no format.
 ///
 /// # Errors
-/// [`JobError`] where the name does not end in `.svg` or `.png`.
+/// [`JobError`] where the name does not end in `.svg`, `.png` or `.pdf`.
 pub fn check_figure(path: &Path) -> Result<(), JobError> {
-    check_ending(path, &["svg", "png"], "a figure ending in .svg or .png", "name the figure FILE.svg or FILE.png")
+    let endings = PictureFormat::ALL.map(PictureFormat::ending);
+    let hint = "name the figure FILE.svg, FILE.png or FILE.pdf";
+    check_ending(path, &endings, "a figure ending in .svg, .png or .pdf", hint)
 }
 
 /// Refuses names of series that do not end in `.csv`.
@@ -162,10 +165,7 @@ pub fn check_new(path: &Path) -> Result<(), JobError> {
 /// [`JobError`] where the name says no format, or the figure cannot be drawn.
 pub fn picture(path: &Path, figure: &Figure) -> Result<Vec<u8>, JobError> {
     check_figure(path)?;
-    let drawn = match path.extension().and_then(|extension| extension.to_str()) {
-        Some("png") => figure.to_png(DPI),
-        _ => figure.to_svg().map(String::into_bytes),
-    };
+    let drawn = figure.to_file(PictureFormat::of(path).unwrap_or(PictureFormat::Svg));
     drawn.map_err(|error| JobError::new(ErrorKind::Report, error, None).of(path.display()))
 }
 

@@ -336,8 +336,9 @@ mod tests {
     /// A kill before the last step left files of the run before, which no manifest knew any more.
     #[test]
     fn a_bundle_that_was_killed_at_any_step_leaves_nothing_to_the_next() {
-        let bundle = |names: &[&str]| Bundle {
-            files: names.iter().map(|name| ((*name).to_owned(), name.as_bytes().to_vec())).collect(),
+        let bundle = |names: &[&str]| {
+            let files: Vec<_> = names.iter().map(|name| ((*name).to_owned(), name.as_bytes().to_vec())).collect();
+            Bundle::from(files)
         };
         for steps in 0..8 {
             let folder = tempfile::tempdir().unwrap();

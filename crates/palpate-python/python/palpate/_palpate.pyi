@@ -143,6 +143,9 @@ class Record(_Series):
         title: str = "record",
     ) -> Self: ...
     title: Final[str]
+    x_m: Final[float | None]
+    y_m: Final[float | None]
+    map_index: Final[int | None]
     time_s: Final[_Doubles]
     displacement_m: Final[_Doubles | None]
     force_n: Final[_Doubles]
@@ -195,6 +198,7 @@ class BatchResult(_Value):
     loading_modulus_pa: Final[float | None]
     rows: Final[int]
     failures: Final[list[str]]
+    def map(self, quantity: str) -> str: ...
 
 @final
 class Finding(_Value):
@@ -212,13 +216,24 @@ class Analysis(_Reported):
     fits: Final[Table]
     parameter_table: Final[Table]
     budgets: Final[Table]
+    conditions: Final[dict[str, Any]]
+    constraint: Final[Table]
+    relaxation_at: Final[Table]
     loading_modulus_pa: Final[float | None]
     loading_modulus_standard_error_pa: Final[float | None]
     law: Final[str | None]
     sentence: Final[str]
     findings: Final[list[Finding]]
     def to_arrow(self) -> Table: ...
-    def report(self, folder: _Path, *, png: bool = False) -> os.PathLike[str]: ...
+    def report(
+        self,
+        folder: _Path,
+        *,
+        figures: Sequence[str] | None = None,
+        column: str | None = None,
+        holds: Sequence[int] | None = None,
+        csv_locale: str | None = None,
+    ) -> os.PathLike[str]: ...
     def _repr_html_(self) -> str | None: ...
 
 @final
@@ -443,7 +458,7 @@ class Prediction(_Series):
     confidence: Final[float]
     extrapolations: Final[list[str]]
     trajectory: Final[Trajectory]
-    def to_csv(self) -> str: ...
+    def to_csv(self, *, csv_locale: str | None = None) -> str: ...
     def _repr_html_(self) -> str: ...
 
 @final
@@ -524,7 +539,7 @@ class Trajectory(_Series):
     strain_rate_per_s: Final[_Doubles]
     in_contact: Final[NDArray[np.bool_]]
     events: Final[list[tuple[str, float, float]]]
-    def to_csv(self) -> str: ...
+    def to_csv(self, *, csv_locale: str | None = None) -> str: ...
 
 @final
 class ContactState(_Moved):
@@ -628,6 +643,7 @@ def convert(
     test: _Described | None = None,
     part: str | int | None = None,
     columns: _Columns | None = None,
+    csv_locale: str | None = None,
 ) -> Path: ...
 def batch(
     paths: Iterable[_File] | Mapping[str, _File],
@@ -638,16 +654,27 @@ def batch(
     laws: Sequence[str] | None = None,
     intervals: str | None = None,
     fit_until_s: float | None = None,
+    map: Sequence[str] | None = None,
+    csv_locale: str | None = None,
     restart: bool = False,
 ) -> BatchResult: ...
 def sweep(
     protocol: _Path, out: _Path, *, figure: _Path | None = None, show: str | None = None, restart: bool = False
 ) -> tuple[int, int]: ...
-def report_all(analyses: Sequence[Analysis], folder: _Path, *, png: bool = False) -> os.PathLike[str]: ...
+def report_all(
+    analyses: Sequence[Analysis],
+    folder: _Path,
+    *,
+    figures: Sequence[str] | None = None,
+    column: str | None = None,
+    csv_locale: str | None = None,
+) -> os.PathLike[str]: ...
 def reproduce(
     folder: _Path,
     *,
-    png: bool = False,
+    figures: Sequence[str] | None = None,
+    column: str | None = None,
+    csv_locale: str | None = None,
     seeds: int | None = None,
     sample_rate_hz: float | None = None,
     record: _File | None = None,

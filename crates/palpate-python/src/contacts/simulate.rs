@@ -11,6 +11,7 @@ use pyo3::prelude::*;
 use serde::{Deserialize, Serialize};
 
 use crate::errors::{ModelError, of_mapping, refused_plainly, undescribed};
+use crate::report_files::csv_locale as readers;
 use crate::shown::shown;
 use crate::table::{Column, Table};
 use crate::work::{Heard, Long, at_length};
@@ -75,9 +76,11 @@ shown! {
         self.series.len()
     }
 
-    /// All series as the CSV that ``palpate simulate`` prints.
-    fn to_csv(&self, py: Python<'_>) -> PyResult<String> {
-        Long::text(py, |out| write_trajectory(out, &self.series))
+    /// All series as the CSV that ``palpate simulate`` prints, for readers of this language as in `Analysis.report`.
+    #[pyo3(signature = (*, csv_locale=None))]
+    fn to_csv(&self, py: Python<'_>, csv_locale: Option<&str>) -> PyResult<String> {
+        let locale = readers(csv_locale)?;
+        Long::text(py, |out| write_trajectory(out, &self.series, locale))
     }
 
     /// All series as a table.

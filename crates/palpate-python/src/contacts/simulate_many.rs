@@ -87,6 +87,7 @@ fn joined<'a>(parts: impl Iterator<Item = &'a Values>) -> ArrayRef {
     for part in parts {
         match part {
             Values::Count(values) => counts.extend_from_slice(values),
+            Values::OptionalCount(values) => numbers.extend(values.iter().map(|value| value.map(|count| count as f64))),
             Values::Number(values) => numbers.extend_from_slice(values),
             Values::Text(values) => texts.extend_from_slice(values),
         }

@@ -7,7 +7,7 @@ use palpate_jobs::output::write_bundle;
 use palpate_jobs::{JobError, MaterialSource, PlanGrip, Results};
 use palpate_report::document::{GripDocument, PositionHoldDocument};
 use palpate_report::result::GrippedBody;
-use palpate_report::study::{Bundle, Pictures, StudyError, grip_bundle, grip_figure};
+use palpate_report::study::{Bundle, FileOptions, StudyError, grip_bundle, grip_figure};
 use pyo3::prelude::*;
 use pyo3::types::{IntoPyDict, PyDict};
 use serde::{Deserialize, Serialize};
@@ -29,7 +29,9 @@ pub(crate) struct Grip {
     question: String,
     text: String,
     svg: String,
-    files: Vec<(String, String)>,
+    /// The files of its report that are text, and the others.
+    texts: Vec<(String, String)>,
+    others: Vec<(String, Vec<u8>)>,
     squeeze: Option<Predicted>,
     back_off: Option<Predicted>,
     force_held: Option<Predicted>,
@@ -38,8 +40,13 @@ pub(crate) struct Grip {
 
 impl Grip {
     fn made(body: &GrippedBody<'_>) -> Result<Self, JobError> {
-        // All of them are text but for pictures, which are not requested.
-        let files = grip_bundle(body, Pictures::default())?.files.into_iter();
+        let (mut texts, mut others) = (Vec::new(), Vec::new());
+        for (path, content) in grip_bundle(body, &FileOptions::default())?.files {
+            match String::from_utf8(content) {
+                Ok(text) => texts.push((path, text)),
+                Err(other) => others.push((path, other.into_bytes())),
+            }
+        }
         let courses = body.grips().map(|made| made?.ok().cloned());
         let [squeeze, back_off, force_held, schedule] = courses;
         Ok(Self {
@@ -47,7 +54,8 @@ impl Grip {
             question: body.question(),
             text: body.text(),
             svg: grip_figure(body, "grip").to_svg().map_err(StudyError::from)?,
-            files: files.map(|(path, content)| (path, String::from_utf8_lossy(&content).into_owned())).collect(),
+            texts,
+            others,
             squeeze,
             back_off,
             force_held,
@@ -147,8 +155,8 @@ shown! {
     #[expect(clippy::needless_pass_by_value, reason = "arguments of Python")]
     fn report(&self, folder: PathBuf) -> PyResult<PathBuf> {
         let bytes = |(path, content): &(String, String)| (path.clone(), content.clone().into_bytes());
-        let files = self.files.iter().map(bytes).collect();
-        write_bundle(&folder, &Bundle { files }).map_err(unwritten)?;
+        let files: Vec<_> = self.texts.iter().map(bytes).chain(self.others.iter().cloned()).collect();
+        write_bundle(&folder, &Bundle::from(files)).map_err(unwritten)?;
         Ok(folder.join("report.html"))
     }
 
@@ -162,6 +170,6 @@ shown! {
 
     /// The report, for notebooks.
     fn _repr_html_(&self) -> Option<String> {
-        self.files.iter().find(|(path, _)| path == "report.html").map(|(_, page)| framed(page))
+        self.texts.iter().find(|(path, _)| path == "report.html").map(|(_, page)| framed(page))
     }
 }

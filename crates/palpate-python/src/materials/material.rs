@@ -267,7 +267,12 @@ shown! {
         };
         let protocol = protocol.map_err(undescribed)?;
         let at_s = rising_times(at_s)?;
-        let (question, source) = (Predict { at_s, confidence }, self.source.clone());
+        let question = Predict {
+            at_s,
+            confidence,
+            ..Predict::default()
+        };
+        let source = self.source.clone();
         let done = job(py, move |watch| {
             let place = place.display().to_string();
             question.run((&source.file, &source.name), (&protocol, &place), false, watch)

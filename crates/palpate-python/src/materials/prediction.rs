@@ -8,6 +8,7 @@ use serde::{Deserialize, Serialize};
 use crate::contacts::simulate::Trajectory;
 use crate::errors::{PalpateError, refused_plainly, warn};
 use crate::html::framed;
+use crate::report_files::csv_locale as readers;
 use crate::shown::shown;
 use crate::table::Table;
 use crate::work::{Long, at_length};
@@ -87,9 +88,11 @@ shown! {
         self.predicted.trajectory.len()
     }
 
-    /// All series as the CSV that ``palpate predict`` prints.
-    fn to_csv(&self, py: Python<'_>) -> PyResult<String> {
-        Long::text(py, |out| write_prediction(out, &self.predicted))
+    /// All series as the CSV that ``palpate predict`` prints, for readers of this language as in `Analysis.report`.
+    #[pyo3(signature = (*, csv_locale=None))]
+    fn to_csv(&self, py: Python<'_>, csv_locale: Option<&str>) -> PyResult<String> {
+        let locale = readers(csv_locale)?;
+        Long::text(py, |out| write_prediction(out, &self.predicted, locale))
     }
 
     /// All series as a table.

@@ -10,11 +10,11 @@ use palpate::watch::{Progress, Watch};
 use palpate_jobs::input::Measurement;
 use palpate_jobs::output::write_bundle;
 use palpate_jobs::{Analyze, Analyzed, Outcome, Results, write_reports};
-use palpate_report::document::{AnalysisDocument, FitDocument};
+use palpate_report::document::{AnalysisDocument, FitDocument, HoldDocument, StatedRelaxationDocument};
 use palpate_report::result::ParameterDocument;
 use palpate_report::result::{Input, word};
 use palpate_report::spelling::{spelled, with_flags};
-use palpate_report::study::Pictures;
+use palpate_report::study::FileOptions;
 use pyo3::prelude::*;
 use pyo3::types::PyType;
 use serde::{Deserialize, Serialize};
@@ -23,6 +23,7 @@ use crate::errors::{OptionError, PalpateError, keyword, refused_plainly, unwritt
 use crate::html::framed;
 use crate::pickles::{Made, Piece, Pieces, made_again, unpickled};
 use crate::records::kept::Kept;
+use crate::report_files::file_options;
 use crate::shown::shown;
 use crate::table::{Column, Table, budget_columns, columns, parameter_columns};
 use crate::work::{at_length, job, plain, printed, writing, writing_job};
@@ -191,6 +192,33 @@ shown! {
         /// ``distribution``, ``standard_uncertainty``, ``sensitivity``, ``contribution``, ``share``; empty where the test description has no
         /// ``[instrument]``.
         budgets: PyResult<Table> = Table::of(budget_columns(&self.document.budgets)),
+        /// Conditions of the test as its description states them in ``[conditions]``: ``temperature_k``, ``relative_humidity``, ``medium``,
+        /// ``conditioning``, ``specimen_form``, ``lubricant``, ``initial_force_after_s``; None is not stated.
+        conditions<'py>(py): PyResult<Bound<'py, PyAny>> = plain(py, &self.document.conditions),
+        /// How the displacement of each hold was applied and held, a row each: ``hold``, ``applied_in_s``, ``constraint_variation_m``,
+        /// ``relative_constraint_variation``, ``initial_force_n``, ``initial_force_standard_error_n``.
+        constraint: PyResult<Table> = Table::of(columns!(self.document.holds, found =>
+            hold = found.index, applied_in_s = found.report.applied_in_s,
+            constraint_variation_m = found.report.constraint_variation_m,
+            relative_constraint_variation = found.report.relative_constraint_variation,
+            initial_force_n = found.report.initial_force_n,
+            initial_force_standard_error_n = found.report.initial_force_standard_error_n
+        )),
+        /// Force and R(t) = (F₀ − F(t))/F₀ of holds of the displacement at the stated times that were measured, a row each: ``hold``,
+        /// ``time_s``, ``force_n``, ``force_standard_error_n``, ``relaxation``, ``relaxation_standard_error``, ``low``, ``high``.
+        relaxation_at: PyResult<Table> = {
+            let of = |hold: &HoldDocument| {
+                let index = hold.index;
+                hold.report.relaxation.clone().into_iter().map(move |stated| (index, stated))
+            };
+            let rows: Vec<(usize, StatedRelaxationDocument)> = self.document.holds.iter().flat_map(of).collect();
+            Table::of(columns!(rows, row =>
+                hold = row.0, time_s = row.1.time_s, force_n = row.1.force_n,
+                force_standard_error_n = row.1.force_standard_error_n, relaxation = row.1.relaxation,
+                relaxation_standard_error = row.1.relaxation_standard_error,
+                low = row.1.relaxation_interval.map(|ends| ends[0]), high = row.1.relaxation_interval.map(|ends| ends[1])
+            ))
+        },
         /// Young's modulus of the first loading ramp, Pa: an apparent one of a body that relaxes; None where the geometry is not known.
         loading_modulus_pa: Option<f64> = self.document.loading_modulus.as_ref().map(|found| found.modulus_pa),
         /// Its standard error, Pa: of the residuals, and of first touch where that has one.
@@ -233,8 +261,15 @@ shown! {
     /// ----------
     /// folder : path
     ///     Made if it is not there.
-    /// png : bool
-    ///     Whether figures are written as PNG beside SVG.
+    /// figures : sequence of str
+    ///     Formats of the figure files: "svg" (if left out), "png", "pdf" (with the typeface embedded).
+    /// column : str, optional
+    ///     "single" (85 mm) or "double" (174 mm): the figure files are as wide as a column of a journal; each has its own width if left out.
+    /// holds : sequence of int, optional
+    ///     Numbers of the holds that the figure files show, from 1; all if left out.
+    /// csv_locale : str
+    ///     Language of the readers of CSV files: "en" (if left out) has decimal points and commas between cells, "de", "es", "fr", "it", "nl",
+    ///     "pl" and "pt" have decimal commas and semicolons.
     ///
     /// Returns
     /// -------
@@ -245,11 +280,25 @@ shown! {
     /// ------
     /// PalpateError
     ///     The folder cannot be written to.
-    #[pyo3(signature = (folder, *, png=false))]
-    fn report(&self, py: Python<'_>, folder: PathBuf, png: bool) -> PyResult<PathBuf> {
+    /// OptionError
+    ///     A format, a width or a language that there is not.
+    #[pyo3(signature = (folder, *, figures=None, column=None, holds=None, csv_locale=None))]
+    fn report(
+        &self,
+        py: Python<'_>,
+        folder: PathBuf,
+        figures: Option<Vec<String>>,
+        column: Option<&str>,
+        holds: Option<Vec<usize>>,
+        csv_locale: Option<&str>,
+    ) -> PyResult<PathBuf> {
+        let options = FileOptions {
+            holds,
+            ..file_options(figures, column, csv_locale)?
+        };
         let done = self.done(py)?;
         let report = folder.join("report.html");
-        let bundle = at_length(py, move |mut heard| done.result.bundle(Pictures { png }, &mut heard))?;
+        let bundle = at_length(py, move |mut heard| done.result.bundle(&options, &mut heard))?;
         let bundle = bundle.map_err(unwritten)?;
         let written = writing(py, move |mut heard| {
             heard.report(Progress::open("writing", 0))?;
@@ -312,7 +361,7 @@ shown! {
     /// Tables and figures of the report, for notebooks.
     fn _repr_html_(&self, py: Python<'_>) -> PyResult<Option<String>> {
         let done = self.done(py)?;
-        let bundle = job(py, move |watch| done.result.bundle(Pictures { png: false }, watch))?;
+        let bundle = job(py, move |watch| done.result.bundle(&FileOptions::default(), watch))?;
         let report = bundle.files.into_iter().find(|(name, _)| name == "report.html");
         Ok(report.and_then(|(_, page)| String::from_utf8(page).ok()).map(|page| framed(&page)))
     }
@@ -328,8 +377,8 @@ shown! {
 ///     One a record; each report lies in a folder named after its record.
 /// folder : path
 ///     Made if it is not there.
-/// png : bool
-///     Whether figures are written as PNG beside SVG.
+/// figures, column, csv_locale
+///     As for `Analysis.report`.
 ///
 /// Returns
 /// -------
@@ -343,11 +392,19 @@ shown! {
 /// PalpateError
 ///     The folder cannot be written to.
 #[pyfunction]
-#[pyo3(signature = (analyses, folder, *, png=false))]
-pub(crate) fn report_all(py: Python<'_>, analyses: Vec<Py<Analysis>>, folder: PathBuf, png: bool) -> PyResult<PathBuf> {
+#[pyo3(signature = (analyses, folder, *, figures=None, column=None, csv_locale=None))]
+pub(crate) fn report_all(
+    py: Python<'_>,
+    analyses: Vec<Py<Analysis>>,
+    folder: PathBuf,
+    figures: Option<Vec<String>>,
+    column: Option<&str>,
+    csv_locale: Option<&str>,
+) -> PyResult<PathBuf> {
     if analyses.is_empty() {
         return Err(OptionError::new_err("analyses: expected one analysis or more, found none"));
     }
+    let options = file_options(figures, column, csv_locale)?;
     let done: Vec<_> = analyses.into_iter().map(|analysis| analysis.get().done(py)).collect::<PyResult<_>>()?;
-    writing_job(py, move |watch| write_reports(done.iter().map(|one| &one.result), &folder, Pictures { png }, watch))
+    writing_job(py, move |watch| write_reports(done.iter().map(|one| &one.result), &folder, &options, watch))
 }

@@ -137,6 +137,9 @@ impl Record {
             depends_on_sha256: None,
             rows: record.len(),
             rows_averaged: 1,
+            x_m: None,
+            y_m: None,
+            map_index: None,
             test: None,
             title: title.to_owned(),
         };
@@ -173,6 +176,12 @@ shown! {
     getters {
         /// Title of the record, for reports.
         title: &str = &self.input.title,
+        /// Where the curve was measured, m; None where its file states no position in a map.
+        x_m: Option<f64> = self.input.x_m,
+        /// Second coordinate of that position, m.
+        y_m: Option<f64> = self.input.y_m,
+        /// Number of the curve in its map; None where its file does not number it.
+        map_index: Option<u64> = self.input.map_index,
         /// Time, s.
         time_s<'py>(py): PyResult<Bound<'py, PyArray1<f64>>> = array(py, self.record.time().iter().copied()),
         /// Displacement of the jaw, m; None where it was not recorded.

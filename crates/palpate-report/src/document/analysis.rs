@@ -6,6 +6,7 @@ use palpate::segment::{After, Segment};
 
 use super::budget::BudgetDocument;
 use super::comparison::HoldComparisonDocument;
+use super::conditions::{ConditionsDocument, HoldReportDocument};
 use super::fit::FitDocument;
 use super::settings::SettingsDocument;
 use super::signals::{CorrectionDocument, SignalsDocument, TouchDocument};
@@ -31,7 +32,7 @@ documents! {
     }
 
     /// One hold.
-    HoldDocument(hold: &HoldAnalysis) with {
+    HoldDocument(analysis: &Analysis, hold: &HoldAnalysis) with {
         let delta = |i: usize| hold.order.as_ref().map(|order| order.candidates[i].delta_bic);
         let fits = hold.fits.iter().enumerate();
         let time = fits.map(|(i, fit)| FitDocument::new(fit, hold, delta(i), hold.predictions[i]));
@@ -68,6 +69,8 @@ documents! {
         force_start_n: f64 = hold.force_start,
         /// Force at the end, N.
         force_end_n: f64 = hold.force_end,
+        /// Application and variation of the displacement, and R(t) at stated times.
+        report: HoldReportDocument = HoldReportDocument::new(&analysis.hold_report(hold)),
         /// The fitted quantity: `strain` or `force`.
         signal: String = word(hold.signal),
         /// Fits, time domain first.
@@ -209,6 +212,8 @@ documents! {
         answer: Answer = Answer::new(&compared),
         /// The record.
         input: Input = input,
+        /// Conditions of the test.
+        conditions: ConditionsDocument = ConditionsDocument::new(&analysis.options.conditions),
         /// Settings of the analysis.
         settings: SettingsDocument = SettingsDocument::new(analysis),
         /// Properties of the columns.
@@ -224,7 +229,7 @@ documents! {
         segments: Vec<SegmentDocument> =
             analysis.segmentation.segments.iter().map(|segment| SegmentDocument::new(segment, time)).collect(),
         /// All holds.
-        holds: Vec<HoldDocument> = analysis.holds.iter().map(HoldDocument::new).collect(),
+        holds: Vec<HoldDocument> = analysis.holds.iter().map(|hold| HoldDocument::new(analysis, hold)).collect(),
         /// The paper's tables; `null` where the signal is not strain.
         tables: Option<TablesDocument> = tables(analysis),
         /// One law for several holds; empty where fewer than two holds gave strains.

@@ -5,6 +5,7 @@
 //! | `analysis.rs` | `palpate.analysis/1`, one analysed record |
 //! | `fit.rs` | one fit inside it |
 //! | `budget.rs` | uncertainty budgets inside others |
+//! | `conditions.rs` | conditions of a test, R(t) at stated times |
 //! | `settings.rs` | the resolved settings |
 //! | `signals.rs` | the columns of a record, their corrections, first touch |
 //! | `calibration.rs` | `palpate.calibration/1`, laws calibrated on a whole record |
@@ -50,6 +51,7 @@ mod analysis;
 mod budget;
 mod calibration;
 mod comparison;
+mod conditions;
 mod finding;
 mod fit;
 mod grip;
@@ -67,6 +69,7 @@ pub use calibration::{CalibratedLawDocument, CalibrationDocument};
 pub use comparison::{
     ComparisonDocument, ComparisonSettingsDocument, HoldComparisonDocument, LawDocument, VerdictDocument,
 };
+pub use conditions::{ConditionsDocument, HoldReportDocument, StatedRelaxationDocument};
 pub use fit::FitDocument;
 pub use grip::{
     BackOffDocument, ForceHoldDocument, GripDocument, PositionHoldDocument, ScheduleDocument, TimeToSlipDocument,

@@ -20,12 +20,14 @@
 //! |---|---|
 //! | `content/` | what is shown: figure, panels, axes, layers, roles |
 //! | `layout/` | where it stands: frames, scales, ticks, widths of text, room that is taken |
-//! | `draw/` | the marks on the page: SVG, PNG |
+//! | `draw/` | the marks on the page: SVG, PNG, PDF |
 
 mod content;
 mod draw;
 mod layout;
 
-pub use content::{Arrangement, Axis, Figure, FigureError, Layer, MOST_PANELS, Map, Mark, Panel, Role, Scale};
+pub use content::{
+    Arrangement, Axis, Column, Figure, FigureError, Layer, MOST_PANELS, Map, Mark, Panel, PictureFormat, Role, Scale,
+};
 pub(crate) use draw::Drawn;
 pub use draw::View;

@@ -4,7 +4,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// Where a record came from.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Input {
     /// Path as given.
     pub path: String,
@@ -16,6 +16,12 @@ pub struct Input {
     pub rows: usize,
     /// How many successive rows each sample is the mean of; 1 unless the file is very long.
     pub rows_averaged: usize,
+    /// Where the curve was measured, m, where the file states its position in a map.
+    pub x_m: Option<f64>,
+    /// Second coordinate of that position, m.
+    pub y_m: Option<f64>,
+    /// Number of the curve in its map, where the file numbers it.
+    pub map_index: Option<u64>,
     /// Path of the test description, if one was given.
     pub test: Option<String>,
     /// SHA-256 of the description as it was read, with the columns that were named beside it.

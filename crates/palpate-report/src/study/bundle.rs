@@ -4,15 +4,49 @@ use std::io;
 
 use palpate::watch::{Cancelled, Watch};
 
-use crate::figure::{Drawn, Figure, FigureError, View};
-use crate::page::Block;
-use crate::table::Table;
+use palpate::number::counted;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
 
-/// Which pictures to make.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub struct Pictures {
-    /// PNG beside SVG.
-    pub png: bool,
+use crate::figure::{Column, Drawn, Figure, FigureError, PictureFormat, View};
+use crate::page::Block;
+use crate::table::{CsvLocale, Table};
+#[cfg(feature = "xlsx")]
+use crate::table::{Workbook, WorkbookError};
+
+/// How the files of a study are written.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(default, deny_unknown_fields)]
+pub struct FileOptions {
+    /// Formats of the figures.
+    pub figures: Vec<PictureFormat>,
+    /// Width of the figures in a journal; each has its own if not given. The page shows its own in any case.
+    pub column: Option<Column>,
+    /// Numbers of the holds that the figures of an analysed record show, from 1; all if not given. The page shows all in any case.
+    pub holds: Option<Vec<usize>>,
+    /// Language of the readers of CSV files.
+    pub csv_locale: CsvLocale,
+}
+
+impl Default for FileOptions {
+    fn default() -> Self {
+        Self {
+            figures: vec![PictureFormat::Svg],
+            column: None,
+            holds: None,
+            csv_locale: CsvLocale::default(),
+        }
+    }
+}
+
+impl FileOptions {
+    /// Nothing but what the page needs.
+    pub(crate) fn without_figures(&self) -> Self {
+        Self {
+            figures: Vec::new(),
+            ..self.clone()
+        }
+    }
 }
 
 /// Why a study could not be put together.
@@ -22,6 +56,18 @@ pub enum StudyError {
     /// A figure.
     #[error(transparent)]
     Figure(FigureError),
+    /// The figures are to show a hold that the record does not have.
+    #[error("the figures are to show hold {hold}, found {} in the record", counted(*.holds, "hold"))]
+    NoHold {
+        /// Its number.
+        hold: usize,
+        /// How many the record has.
+        holds: usize,
+    },
+    /// The workbook of tables.
+    #[cfg(feature = "xlsx")]
+    #[error(transparent)]
+    Workbook(#[from] WorkbookError),
     /// Writing to memory.
     #[error(transparent)]
     Io(#[from] io::Error),
@@ -65,33 +111,57 @@ impl Drawing {
 pub struct Bundle {
     /// Path with forward slashes, and content.
     pub files: Vec<(String, Vec<u8>)>,
+    /// The tables in it, for the workbook.
+    #[cfg(feature = "xlsx")]
+    tables: Vec<Table>,
+    csv_locale: CsvLocale,
 }
 
 /// Writes a series as CSV.
-type WriteSeries<T> = fn(&mut dyn io::Write, &T) -> io::Result<()>;
+type WriteSeries<T> = fn(&mut dyn io::Write, &T, CsvLocale) -> io::Result<()>;
 
-/// Resolution of PNG pictures: print quality at the width of a journal's page.
-const DPI: f64 = 300.0;
+impl From<Vec<(String, Vec<u8>)>> for Bundle {
+    fn from(files: Vec<(String, Vec<u8>)>) -> Self {
+        Self {
+            files,
+            ..Self::default()
+        }
+    }
+}
 
 impl Bundle {
+    /// No files yet; those of tables and series are for these readers.
+    pub(crate) fn new(csv_locale: CsvLocale) -> Self {
+        Self {
+            csv_locale,
+            ..Self::default()
+        }
+    }
+
     pub(crate) fn text(&mut self, path: impl Into<String>, content: String) {
         self.files.push((path.into(), content.into_bytes()));
     }
 
-    /// The files of figures, each drawn once: pages show the same drawings.
+    /// The files of figures. Pages show the same drawings, unless the files are to have the width of a column.
     pub(crate) fn figures(
         &mut self,
         figures: &[Figure],
-        pictures: Pictures,
+        options: &FileOptions,
         watch: &mut dyn Watch,
     ) -> Result<Vec<Drawing>, StudyError> {
         let mut drawings = Vec::with_capacity(figures.len());
         for figure in figures {
             let Drawn { svg, view } = figure.drawing(watch)?;
-            if pictures.png {
-                self.files.push((format!("figures/{}.png", figure.name), figure.to_png_of(&svg, DPI)?));
+            match options.column {
+                None => self.pictures(figure, &svg, options)?,
+                Some(_) if options.figures.is_empty() => {}
+                Some(column) => {
+                    for printed in figure.for_column(column) {
+                        let svg = printed.to_svg_watched(watch)?;
+                        self.pictures(&printed, &svg, options)?;
+                    }
+                }
             }
-            self.text(format!("figures/{}.svg", figure.name), svg);
             drawings.push(Drawing {
                 name: figure.name.clone(),
                 view,
@@ -102,15 +172,43 @@ impl Bundle {
         Ok(drawings)
     }
 
+    /// The files of a figure once drawn, one in each format.
+    fn pictures(&mut self, figure: &Figure, svg: &str, options: &FileOptions) -> Result<(), StudyError> {
+        for format in &options.figures {
+            let path = format!("figures/{}.{}", figure.name, format.ending());
+            self.files.push((path, figure.to_file_of(svg.to_owned(), *format)?));
+        }
+        Ok(())
+    }
+
     pub(crate) fn series<T>(&mut self, name: &str, write: WriteSeries<T>, series: &T) -> Result<(), StudyError> {
         let mut content = Vec::new();
-        write(&mut content, series)?;
+        write(&mut content, series, self.csv_locale)?;
         self.files.push((format!("series/{name}.csv"), content));
         Ok(())
     }
 
     pub(crate) fn table(&mut self, table: &Table) {
-        self.text(format!("tables/{}.csv", table.name), table.to_csv());
+        self.text(format!("tables/{}.csv", table.name), table.to_csv(self.csv_locale));
+        #[cfg(feature = "xlsx")]
+        self.tables.push(table.clone());
+    }
+
+    /// The same with all its tables once more as the sheets of one workbook, `tables.xlsx`; without the feature `xlsx` as it is.
+    #[cfg(not(feature = "xlsx"))]
+    pub(crate) fn with_workbook(self) -> Result<Self, StudyError> {
+        Ok(self)
+    }
+
+    /// The same with all its tables once more as the sheets of one workbook, `tables.xlsx`.
+    #[cfg(feature = "xlsx")]
+    pub(crate) fn with_workbook(mut self) -> Result<Self, StudyError> {
+        let mut workbook = Workbook::default();
+        for table in std::mem::take(&mut self.tables) {
+            workbook.table(&table)?;
+        }
+        self.files.push(("tables.xlsx".to_owned(), workbook.finish()?));
+        Ok(self)
     }
 
     pub(crate) fn json(&mut self, path: &str, document: &impl serde::Serialize) -> Result<(), StudyError> {

@@ -3,7 +3,7 @@
 use palpate::analysis::{Analysis, Severity};
 use palpate::watch::Watch;
 
-use super::bundle::{Bundle, Drawing, Pictures, StudyError};
+use super::bundle::{Bundle, Drawing, FileOptions, StudyError};
 use super::grid::by_hold;
 use super::record::figures::force_panel;
 use crate::document::{Software, SpecimensDocument};
@@ -57,14 +57,14 @@ impl SpecimenIndex {
         &self.results
     }
 
-    /// The files of the index: `index.html`, `specimens.json`, `tables/*.csv`, `figures/*.svg`.
+    /// The files of the index: `index.html`, `specimens.json`, `tables/*.csv`, `tables.xlsx`, `figures/*.svg`.
     ///
     /// # Errors
     /// [`StudyError`] when a figure or document cannot be made, or the watch ends it.
-    pub fn bundle(&self, pictures: Pictures, watch: &mut dyn Watch) -> Result<Bundle, StudyError> {
+    pub fn bundle(&self, options: &FileOptions, watch: &mut dyn Watch) -> Result<Bundle, StudyError> {
         let results = &self.results;
-        let mut bundle = Bundle::default();
-        let drawings = bundle.figures(&by_specimen(results), pictures, watch)?;
+        let mut bundle = Bundle::new(options.csv_locale);
+        let drawings = bundle.figures(&by_specimen(results), options, watch)?;
         let between = between_table(results);
         between.iter().for_each(|table| bundle.table(table));
         bundle.table(&records_table(results));
@@ -88,7 +88,7 @@ impl SpecimenIndex {
         }
         bundle.text("index.html", page.provenance("Software", Software::this().to_string()).to_html());
         bundle.json("specimens.json", &SpecimensDocument::new(results))?;
-        Ok(bundle)
+        bundle.with_workbook()
     }
 }
 

@@ -12,6 +12,7 @@
 //! | `calibration/` | a whole record calibrated, and what the material predicts |
 //! | `grip/` | a planned grip |
 //! | `comparison/` | laws compared on the holds of records |
+//! | `map.rs` | a quantity over the positions of many curves |
 //! | `record/` | an analysed record |
 //! | `index.rs` | the index of the reports of several specimens |
 //! | `reproduction/` | the paper's study |
@@ -27,11 +28,12 @@ mod forecast;
 mod grid;
 mod grip;
 mod index;
+mod map;
 mod record;
 mod reproduction;
 mod simulate;
 
-pub use bundle::{Bundle, Pictures, StudyError};
+pub use bundle::{Bundle, FileOptions, StudyError};
 pub use calibration::{
     batch_figure, batch_page, batch_text, calibration_figure, calibration_page, calibration_text, material_table,
     prediction_figure, prediction_table, write_prediction,
@@ -39,6 +41,7 @@ pub use calibration::{
 pub use comparison::{comparison_bundle, comparison_markdown, comparison_text};
 pub use grip::{grip_bundle, grip_figure, grip_table, grip_text, neighbour_table, schedule_table, sensitivity_table};
 pub use index::SpecimenIndex;
+pub use map::{MapPoint, map_figure};
 pub use record::{analysis_bundle, analysis_text, cut_figure};
 pub use reproduction::{claims_text, record_reproduction_bundle, reproduction_bundle, reproduction_text};
 pub use simulate::{

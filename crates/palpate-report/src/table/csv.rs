@@ -1,21 +1,35 @@
-//! Tables as CSV after RFC 4180.
+//! Tables as CSV after RFC 4180, or as the readers of another language write it.
 
 use std::borrow::Cow;
 
-use super::{Cell, Table};
+use super::{Cell, CsvLocale, Table};
+
+/// What a spreadsheet takes for the beginning of a formula (OWASP, CSV injection), also as wide letters.
+const FORMULA: [char; 11] = ['=', '+', '-', '@', '\t', '\r', '\n', '＝', '＋', '－', '＠'];
+
+/// Whether a spreadsheet would compute a text as a formula.
+pub(crate) fn is_formula(text: &str) -> bool {
+    text.starts_with(FORMULA)
+}
 
 /// A text as a cell of CSV: one that a spreadsheet would compute as a formula is marked as text by an apostrophe. Titles and names of files
 /// come from anywhere.
 #[must_use]
 pub fn text_cell(text: &str) -> Cow<'_, str> {
-    match text.starts_with(['=', '+', '-', '@', '\t', '\r']) {
-        true => Cow::Owned(format!("'{text}")),
-        false => Cow::Borrowed(text),
-    }
+    if is_formula(text) { Cow::Owned(format!("'{text}")) } else { Cow::Borrowed(text) }
 }
 
-pub(crate) fn write(table: &Table) -> String {
-    let mut writer = csv::WriterBuilder::new().terminator(csv::Terminator::CRLF).from_writer(Vec::new());
+/// What writes CSV for the readers of a language.
+#[must_use]
+pub fn csv_writer(locale: CsvLocale) -> csv::WriterBuilder {
+    let mut builder = csv::WriterBuilder::new();
+    // Every separator is one byte.
+    builder.delimiter(locale.separator() as u8);
+    builder
+}
+
+pub(crate) fn write(table: &Table, locale: CsvLocale) -> String {
+    let mut writer = csv_writer(locale).terminator(csv::Terminator::CRLF).from_writer(Vec::new());
     // Nothing refuses to be written to memory.
     let _ = writer.write_record(table.columns.iter().flat_map(|column| {
         let errors = ["standard_error", "low", "high"].map(|what| format!("{}_{what}", column.key));
@@ -24,8 +38,12 @@ pub(crate) fn write(table: &Table) -> String {
     for row in 0..table.rows.len() {
         let _ = writer.write_record(table.columns.iter().enumerate().flat_map(|(index, column)| {
             let cell = table.cell(row, index);
-            let own = if let Cell::Text(text) = cell { text_cell(text).into_owned() } else { cell.stored() };
-            [own].into_iter().chain(cell.stored_errors().into_iter().filter(|_| column.is_estimate))
+            let own = match cell {
+                Cell::Text(text) => text_cell(text).into_owned(),
+                number => locale.number(number.stored()),
+            };
+            let errors = cell.stored_errors().into_iter().map(move |error| locale.number(error));
+            [own].into_iter().chain(errors.filter(|_| column.is_estimate))
         }));
     }
     let bytes = writer.into_inner().unwrap_or_default();
@@ -46,7 +64,7 @@ mod tests {
         }
         table = table.row(vec![Cell::missing("lost"), Cell::Integer(-7)]);
 
-        let text = table.to_csv();
+        let text = table.to_csv(CsvLocale::En);
         let mut reader = csv::Reader::from_reader(text.as_bytes());
         assert_eq!(reader.headers().expect("a header"), vec!["value_n", "remark"]);
         let rows: Vec<csv::StringRecord> = reader.records().flatten().collect();
@@ -64,12 +82,28 @@ mod tests {
             table = table.row(vec![Cell::text(title), Cell::Number(-1.0, 3)]);
         }
         let rows = "title,force_n\r\n'=1+1,-1\r\n'+1,-1\r\n'-1,-1\r\n'@SUM(A1),-1\r\n1=1,-1\r\n";
-        assert_eq!(table.to_csv(), rows);
+        assert_eq!(table.to_csv(CsvLocale::En), rows);
     }
 
     #[test]
     fn a_lone_missing_value_is_not_a_blank_line() {
         let table = Table::new("t", "").column("A", "a", "").row(vec![Cell::missing("none")]);
-        assert_eq!(table.to_csv(), "a\r\n\"\"\r\n");
+        assert_eq!(table.to_csv(CsvLocale::En), "a\r\n\"\"\r\n");
+    }
+
+    #[test]
+    fn readers_with_a_decimal_comma_get_semicolons() {
+        let table =
+            Table::new("t", "").estimates("Force", "force_n", "N").column("Title, free", "title", "").row(vec![
+                Cell::Estimate(palpate::fit::Estimate {
+                    standard_error: Some(0.25),
+                    interval: Some((-2.0, f64::INFINITY)),
+                    ..palpate::fit::Estimate::fixed(-1.5)
+                }),
+                Cell::text("a;b 1.5, c"),
+            ]);
+        let expected =
+            "force_n;force_n_standard_error;force_n_low;force_n_high;title\r\n-1,5;0,25;-2;;\"a;b 1.5, c\"\r\n";
+        assert_eq!(table.to_csv(CsvLocale::De), expected);
     }
 }

@@ -1,24 +1,30 @@
-//! Tables: written once, read as CSV by machines and as text or HTML by people.
+//! Tables: written once, read as CSV and as sheets of a workbook by machines and as text or HTML by people.
 //!
 //! ```
-//! use palpate_report::table::{Cell, Table};
+//! use palpate_report::table::{Cell, CsvLocale, Table};
 //!
 //! let holds = [(1, Some(0.012_345)), (2, None)];
 //! let table = Table::of("law", "Fitted law.", &holds)
 //!     .column("Hold", "hold", "", |(number, _)| Cell::Integer(*number))
 //!     .column("Rate coefficient", "rate_coefficient_per_s", "s⁻¹", |(_, v)| Cell::number_or(*v, 3, "hold too short"))
 //!     .table();
-//! assert_eq!(table.to_csv(), "hold,rate_coefficient_per_s\r\n1,0.012345\r\n2,\r\n");
+//! assert_eq!(table.to_csv(CsvLocale::En), "hold,rate_coefficient_per_s\r\n1,0.012345\r\n2,\r\n");
 //! ```
 
 mod cell;
 mod csv;
+mod locale;
 mod markdown;
 mod plain;
+#[cfg(feature = "xlsx")]
+mod xlsx;
 
 pub use cell::Cell;
-pub use csv::text_cell;
+pub use csv::{csv_writer, text_cell};
+pub use locale::CsvLocale;
 use palpate::units::suited;
+#[cfg(feature = "xlsx")]
+pub use xlsx::{MOST_SHEET_ROWS, Workbook, WorkbookError};
 
 /// One column of a table.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -115,10 +121,10 @@ impl Table {
         self
     }
 
-    /// The table as CSV after RFC 4180: keys as header, numbers that read back exactly.
+    /// The table as CSV: keys as header, numbers that read back exactly, written as the language of its readers has it.
     #[must_use]
-    pub fn to_csv(&self) -> String {
-        csv::write(self)
+    pub fn to_csv(&self, locale: CsvLocale) -> String {
+        csv::write(self, locale)
     }
 
     /// The table as aligned text for a terminal, no wider than that is where words can be broken and columns set below each other.
@@ -266,7 +272,7 @@ mod tests {
             text.contains("Force (nN)") && text.contains("2.00 [1.80, 2.20]") && text.contains("0.015"),
             "{text}"
         );
-        let csv = table.to_csv();
+        let csv = table.to_csv(CsvLocale::En);
         assert!(csv.starts_with("force_n,force_n_standard_error,force_n_low,force_n_high,noise_n\r\n"), "{csv}");
         assert!(csv.contains("2e-09,1e-10,1.8e-09,2.2e-09,1.5e-11\r\n,,,,0\r\n"), "{csv}");
     }

@@ -2,3 +2,5 @@
 
 mod figures;
 mod pages;
+#[cfg(feature = "png")]
+mod print;

@@ -6,6 +6,7 @@
 //! | file | what |
 //! |---|---|
 //! | `options.rs` | all options, with defaults |
+//! | `conditions.rs` | temperature, conditioning and the like, as a report states them |
 //! | `error.rs` | why a record could not be analysed |
 //! | `finding.rs` | findings for the user |
 //! | `prepare/` | the record corrected, cut and zero at first touch, with findings on its columns |
@@ -13,7 +14,9 @@
 //! | `together/` | several holds: joint laws, trends, modulus, overlay |
 //! | `effects.rs` | what the uncertainty of the instrument and of the body adds to the parameters |
 //! | `pipeline.rs` | the order of the steps |
+//! | `stated.rs` | variation of the constraint of a hold and R(t) at stated times |
 
+mod conditions;
 mod effects;
 mod error;
 mod finding;
@@ -21,8 +24,10 @@ mod holds;
 mod options;
 mod pipeline;
 mod prepare;
+mod stated;
 mod together;
 
+pub use conditions::Conditions;
 pub use error::AnalysisError;
 pub use finding::{Finding, Severity};
 pub use holds::{CreepError, CreepHold, HoldAnalysis, HoldoutError, RateBias, Signal, creep_holds};
@@ -32,6 +37,7 @@ pub(crate) use prepare::measured_motion;
 pub use prepare::{
     ClockSkew, Corrected, Prepared, clock_skew, corrected, corrected_watched, prepared, suspicious_signs,
 };
+pub use stated::{HoldReport, StatedRelaxation};
 pub use together::{
     Across, EstimatedModulus, JointAnalysis, JointHolds, LevelAgreement, LoadingModulus, ModulusSource, Overlay, Trend,
 };

@@ -2,6 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
+use super::Conditions;
 use crate::contact::{Equilibrium, Layers, LayersError, Shape, Sides, Specimen, SpecimenError};
 use crate::fit::{ExponentChoice, FitOptions};
 use crate::forecast::CompareOptions;
@@ -78,6 +79,8 @@ pub struct AnalysisOptions {
     pub corrections: CorrectionOptions,
     /// Holds with given limits; where there are any, no others are sought.
     pub given_holds: Vec<GivenHold>,
+    /// The conditions of the test, and the times at which its relaxation is stated.
+    pub conditions: Conditions,
     /// Method for first touch; as recorded by default, since a strip in grips has no first touch.
     pub touch: ContactChoice,
     /// Whether the jaw can pull (for the overlay).
@@ -121,6 +124,7 @@ impl Default for AnalysisOptions {
             instrument: Instrument::default(),
             corrections: CorrectionOptions::default(),
             given_holds: Vec::new(),
+            conditions: Conditions::default(),
             touch: ContactChoice::AsRecorded,
             separation: Separation::default(),
             layers: None,

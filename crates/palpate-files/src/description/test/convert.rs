@@ -10,7 +10,7 @@ use palpate::{
 };
 
 use super::{
-    corrections,
+    conditions, corrections,
     description::{TestDescription, Torsion},
     instrument, preset, settings,
     tables::{ContactTable, TestTables},
@@ -88,6 +88,7 @@ pub fn parse_test(text: &str, path: &Path) -> Result<TestDescription, Descriptio
         touch,
         segment: settings::segment(&source, &tables.phases)?,
         given_holds: settings::given_holds(&source, &tables.phases)?,
+        conditions: conditions::checked(&source, &tables.conditions)?,
         fit,
         exponents,
         free_exponent: tables.fit.free_exponent.unwrap_or(true),

@@ -7,6 +7,7 @@
 //! | `convert.rs` | the one to the other |
 //! | `columns.rs` | which column of a file holds what ([`ColumnChoices`]) |
 //! | `instrument.rs` | the uncertainty of instrument and body |
+//! | `conditions.rs` | temperature, conditioning and the like; times at which relaxation is stated |
 //! | `corrections.rs`, `settings.rs` | corrections of the record; settings of phases and fit |
 //! | `choices.rs`, `named_columns.rs` | choices that a command line offers too |
 //! | `preset.rs`, `machines/`, `machines.rs` | grippers and machines whose conventions are known, and telling them by a file |
@@ -14,6 +15,7 @@
 mod choices;
 mod column_tables;
 mod columns;
+mod conditions;
 mod convert;
 mod corrections;
 mod description;

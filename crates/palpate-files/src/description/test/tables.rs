@@ -3,7 +3,9 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, de::IgnoredAny};
 
-use super::{column_tables::ColumnsTable, description::About, instrument::InstrumentTable};
+use super::{
+    column_tables::ColumnsTable, conditions::ConditionsTable, description::About, instrument::InstrumentTable,
+};
 use crate::{
     description::{
         body::tables::{SidesName, SpecimenTable},
@@ -32,6 +34,8 @@ pub(crate) struct TestTables {
     pub(crate) machine: MachineTable,
     pub(crate) specimen: Option<SpecimenTable>,
     pub(crate) instrument: Option<InstrumentTable>,
+    #[serde(default)]
+    pub(crate) conditions: ConditionsTable,
     #[serde(default)]
     pub(crate) contact: ContactTable,
     #[serde(default)]

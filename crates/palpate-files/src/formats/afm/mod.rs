@@ -49,7 +49,7 @@ fn metadata(name: &str, value: &str) -> Metadata {
     let unit = match name {
         "springConstant" | "spring constant" => Some("N/m"),
         "sensitivity" => Some("m/V"),
-        "position x" | "position y" => Some("m"),
+        "position x" | "position y" | "xPosition" | "yPosition" => Some("m"),
         "duration" | "duration approach" | "duration intermediate" | "duration retract" => Some("s"),
         _ => None,
     };

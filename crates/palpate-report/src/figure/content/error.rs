@@ -34,6 +34,14 @@ pub enum FigureError {
         /// What the renderer stated.
         reason: String,
     },
+    /// The figure could not be written as PDF.
+    #[error("figure {figure:?} could not be written as PDF: {reason}")]
+    Pdf {
+        /// Name of the figure.
+        figure: String,
+        /// What it contains that a PDF of ours does not.
+        reason: String,
+    },
     /// The watch ended it.
     #[error(transparent)]
     Cancelled(#[from] Cancelled),

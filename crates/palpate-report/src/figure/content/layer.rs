@@ -52,6 +52,17 @@ pub enum Mark {
     Vertical(f64),
     /// Values over two coordinates, as colours.
     Map(Map),
+    /// Separate points with their values as colours; a point without a value is left out.
+    Spots {
+        /// Horizontal positions.
+        x: Vec<f64>,
+        /// Vertical positions.
+        y: Vec<f64>,
+        /// Values.
+        values: Vec<f64>,
+        /// The quantity, as for a [`Map`].
+        colours: Axis,
+    },
 }
 
 /// A heat map with its colour bar.
@@ -116,6 +127,12 @@ impl Layer {
         Self::of(Role::Measured, Mark::Map(map))
     }
 
+    /// Points with their values as colours.
+    #[must_use]
+    pub fn spots(x: Vec<f64>, y: Vec<f64>, values: Vec<f64>, colours: Axis) -> Self {
+        Self::of(Role::Measured, Mark::Spots { x, y, values, colours })
+    }
+
     /// The same layer with a label; layers of one panel with equal labels share a legend entry.
     #[must_use]
     pub fn label(mut self, text: impl Into<String>) -> Self {
@@ -168,6 +185,10 @@ impl Layer {
                 need("upper edge of a band", high.len(), x.len())
             }
             Mark::Map(map) => need("values of a map", map.values.len(), map.x.len() * map.y.len()),
+            Mark::Spots { x, y, values, .. } => {
+                need("y of points", y.len(), x.len())?;
+                need("values of points", values.len(), x.len())
+            }
             Mark::Span(..) | Mark::Horizontal(_) | Mark::Vertical(_) => Ok(()),
         }
     }
@@ -178,6 +199,7 @@ impl Layer {
         match &self.mark {
             Mark::Line { x, y } | Mark::Points { x, y, .. } => none(x, y),
             Mark::Band { x, low, high } => none(x, low) && none(x, high),
+            Mark::Spots { x, y, values, .. } => none(x, y) || !values.iter().any(|v| v.is_finite()),
             Mark::Map(map) => {
                 !map.values.iter().any(|v| v.is_finite())
                     || !map.x.iter().any(|v| shows(*v, x_scale))

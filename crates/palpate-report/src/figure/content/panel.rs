@@ -81,6 +81,15 @@ impl Panel {
         self.layers.iter().all(|layer| layer.is_empty(self.x.scale, self.y.scale))
     }
 
+    /// The values that are shown as colours, with their quantity.
+    pub(crate) fn colours(&self) -> Option<(&[f64], &Axis)> {
+        self.layers.iter().find_map(|layer| match &layer.mark {
+            Mark::Map(map) => Some((&map.values[..], &map.colours)),
+            Mark::Spots { values, colours, .. } => Some((&values[..], colours)),
+            _ => None,
+        })
+    }
+
     pub(crate) fn map(&self) -> Option<&Map> {
         self.layers.iter().find_map(|layer| match &layer.mark {
             Mark::Map(map) => Some(map),

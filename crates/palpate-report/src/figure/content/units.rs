@@ -14,8 +14,8 @@ enum Along {
 }
 
 impl Figure {
-    /// The same figure with linear axes in nN to kN, nm to m, Pa to GPa, s to days; axes of one quantity share a unit. Logarithmic axes keep
-    /// theirs: they show many sizes at once.
+    /// The same figure with linear axes in nN to kN, nm to m, Pa to GPa, s to days; axes of one quantity share a unit, and so do the two axes
+    /// of a panel that have the same. Logarithmic axes keep theirs: they show many sizes at once.
     pub(crate) fn in_suited_units(&self) -> Self {
         let mut figure = self.clone();
         if std::mem::replace(&mut figure.has_suited_units, true) {
@@ -54,7 +54,8 @@ impl Figure {
         for (index, panel) in self.panels.iter().enumerate() {
             for along in [Along::X, Along::Y] {
                 let axis = self.axis(index, along);
-                if (&axis.label, &axis.unit, axis.scale) != (&like.label, &like.unit, like.scale) {
+                let is_plane = panel.x.unit == panel.y.unit;
+                if (&axis.unit, axis.scale) != (&like.unit, like.scale) || (axis.label != like.label && !is_plane) {
                     continue;
                 }
                 let of_data = || panel.layers.iter().map(|layer| layer.largest(along)).fold(0.0, f64::max);
@@ -70,12 +71,15 @@ impl Layer {
     /// The columns of a layer along an axis.
     fn columns(&mut self, along: Along) -> Vec<&mut [f64]> {
         match (&mut self.mark, along) {
-            (Mark::Line { x, .. } | Mark::Points { x, .. } | Mark::Band { x, .. }, Along::X) => vec![x],
+            (
+                Mark::Line { x, .. } | Mark::Points { x, .. } | Mark::Band { x, .. } | Mark::Spots { x, .. },
+                Along::X,
+            ) => vec![x],
             (Mark::Map(map), Along::X) => vec![&mut map.x],
             (Mark::Map(map), Along::Y) => vec![&mut map.y],
             (Mark::Span(from, to), Along::X) => vec![std::slice::from_mut(from), std::slice::from_mut(to)],
             (Mark::Vertical(at), Along::X) | (Mark::Horizontal(at), Along::Y) => vec![std::slice::from_mut(at)],
-            (Mark::Line { y, .. }, Along::Y) => vec![y],
+            (Mark::Line { y, .. } | Mark::Spots { y, .. }, Along::Y) => vec![y],
             (Mark::Points { y, error, .. }, Along::Y) => {
                 let ends = error.iter_mut().flat_map(|(low, high)| [low.as_mut_slice(), high.as_mut_slice()]);
                 std::iter::once(y.as_mut_slice()).chain(ends).collect()
@@ -92,8 +96,11 @@ impl Layer {
     fn largest(&self, along: Along) -> f64 {
         let most = |values: &[f64]| values.iter().filter(|v| v.is_finite()).fold(0.0, |most: f64, v| most.max(v.abs()));
         match (&self.mark, along) {
-            (Mark::Line { x, .. } | Mark::Points { x, .. } | Mark::Band { x, .. }, Along::X) => most(x),
-            (Mark::Line { y, .. } | Mark::Points { y, .. }, Along::Y) => most(y),
+            (
+                Mark::Line { x, .. } | Mark::Points { x, .. } | Mark::Band { x, .. } | Mark::Spots { x, .. },
+                Along::X,
+            ) => most(x),
+            (Mark::Line { y, .. } | Mark::Points { y, .. } | Mark::Spots { y, .. }, Along::Y) => most(y),
             (Mark::Band { low, high, .. }, Along::Y) => most(low).max(most(high)),
             (Mark::Map(map), Along::X) => most(&map.x),
             (Mark::Map(map), Along::Y) => most(&map.y),

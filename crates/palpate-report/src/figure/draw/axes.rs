@@ -115,7 +115,7 @@ fn shortened(title: &str, room: f64) -> String {
 
 /// The bar that explains the colours of a map.
 pub(crate) fn draw_colour_bar(svg: &mut Svg, frame: &Frame<'_>) {
-    let (Some((bar, ticks)), Some(map)) = (&frame.bar, frame.panel.map()) else {
+    let (Some((bar, ticks)), Some((_, colours))) = (&frame.bar, frame.panel.colours()) else {
         return;
     };
     let area = Rect::new(frame.area.right() + BAR_GAP, frame.area.y, BAR, frame.area.h);
@@ -137,7 +137,7 @@ pub(crate) fn draw_colour_bar(svg: &mut Svg, frame: &Frame<'_>) {
         svg.text(x, y + 0.36 * TICK, Anchor::Start, font(TICK), label);
     }
     svg.path(&d, "stroke=\"#222\" stroke-width=\"0.6\"");
-    let caption = map.colours.caption(ticks.exponent);
+    let caption = colours.caption(ticks.exponent);
     let x = area.right() + TICK_LENGTH + 2.0 + Frame::widest(ticks) + 3.0 + CAPTION;
     svg.upward_text(x, area.y + area.h / 2.0, font(CAPTION), &caption);
 }

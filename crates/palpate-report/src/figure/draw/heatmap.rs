@@ -44,7 +44,7 @@ pub(crate) fn picture(map: &Map, frame: &Frame<'_>) -> Result<String, String> {
     let (w, h) = (size(area.w), size(area.h));
     let across = cells(map.x.iter().map(|x| (frame.x.at(*x) - area.x) / area.w), w);
     let down = cells(map.y.iter().map(|y| (frame.y.at(*y) - area.y) / area.h), h);
-    let (low, high) = colour_limits(map);
+    let (low, high) = colour_limits(&map.values, &map.colours);
     let mut pixels = Vec::with_capacity(w * h);
     let mut line = vec![LEVELS; w];
     let mut before = None;

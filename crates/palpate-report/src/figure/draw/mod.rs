@@ -1,4 +1,4 @@
-//! Marks on the page: a figure in, SVG or PNG out.
+//! Marks on the page: a figure in, SVG, PNG or PDF out.
 //!
 //! | file | what |
 //! |---|---|
@@ -9,7 +9,8 @@
 //! | `reference.rs` | reference lines and shaded stretches with their names |
 //! | `legend.rs` | legends, and where they cover nothing |
 //! | `drawn.rs` | a figure once drawn: a document, or what a page shows |
-//! | `raster.rs` | SVG to PNG |
+//! | `tree.rs` | a drawn figure as renderers understand it |
+//! | `raster.rs`, `pdf/` | SVG to PNG, and to PDF |
 
 mod axes;
 mod decimate;
@@ -17,10 +18,14 @@ mod drawn;
 mod heatmap;
 mod legend;
 #[cfg(feature = "png")]
+mod pdf;
+#[cfg(feature = "png")]
 mod raster;
 mod reference;
 mod series;
 mod svg;
+#[cfg(feature = "png")]
+mod tree;
 
 pub(crate) use drawn::Drawn;
 use drawn::NARROW_MM;
@@ -28,8 +33,12 @@ pub use drawn::View;
 use palpate::watch::{Cancelled, Progress, Unwatched, Watch};
 use svg::Svg;
 
-use super::content::{Figure, FigureError, Mark};
+use super::content::{Figure, FigureError, Mark, PictureFormat};
 use super::layout::{Frame, INSET, LEGEND_ROW, Occupancy, Rect, arrange};
+
+#[cfg(not(feature = "png"))]
+const NOT_IN_THIS_BUILD: &str =
+    "this build draws SVG; build palpate with its feature `png`, or name the figure FILE.svg";
 
 impl Figure {
     /// The figure as an SVG document with real text and no ids, fit for a file or for a page.
@@ -98,16 +107,49 @@ impl Figure {
         self.to_png_of(&self.to_svg()?, dpi)
     }
 
-    /// [`Self::to_png`] of the figure once drawn.
-    #[cfg_attr(not(feature = "png"), expect(unused_variables, reason = "nothing is drawn"))]
-    pub(crate) fn to_png_of(&self, svg: &str, dpi: f64) -> Result<Vec<u8>, FigureError> {
-        #[cfg(feature = "png")]
-        return raster::png(&self.name, svg, dpi);
-        #[cfg(not(feature = "png"))]
+    /// The bytes of a file with the figure.
+    ///
+    /// # Errors
+    ///
+    /// As for [`Self::to_svg`]; of a PNG also when the picture would be far too large; of PNG and PDF without the feature `png`.
+    pub fn to_file(&self, format: PictureFormat) -> Result<Vec<u8>, FigureError> {
+        self.to_file_of(self.to_svg()?, format)
+    }
+
+    /// [`Self::to_file`] of the figure once drawn.
+    pub(crate) fn to_file_of(&self, svg: String, format: PictureFormat) -> Result<Vec<u8>, FigureError> {
+        /// Print quality at the width of a journal's page.
+        const DPI: f64 = 300.0;
+        match format {
+            PictureFormat::Svg => Ok(svg.into_bytes()),
+            PictureFormat::Png => self.to_png_of(&svg, DPI),
+            PictureFormat::Pdf => self.to_pdf_of(&svg),
+        }
+    }
+
+    #[cfg(feature = "png")]
+    fn to_png_of(&self, svg: &str, dpi: f64) -> Result<Vec<u8>, FigureError> {
+        raster::png(&self.name, svg, dpi)
+    }
+
+    #[cfg(feature = "png")]
+    fn to_pdf_of(&self, svg: &str) -> Result<Vec<u8>, FigureError> {
+        pdf::pdf(&self.name, svg)
+    }
+
+    #[cfg(not(feature = "png"))]
+    fn to_png_of(&self, _svg: &str, _dpi: f64) -> Result<Vec<u8>, FigureError> {
         Err(FigureError::Raster {
             figure: self.name.clone(),
-            reason: "this build draws SVG; build palpate with its feature `png`, or name the figure FILE.svg"
-                .to_owned(),
+            reason: NOT_IN_THIS_BUILD.to_owned(),
+        })
+    }
+
+    #[cfg(not(feature = "png"))]
+    fn to_pdf_of(&self, _svg: &str) -> Result<Vec<u8>, FigureError> {
+        Err(FigureError::Pdf {
+            figure: self.name.clone(),
+            reason: NOT_IN_THIS_BUILD.to_owned(),
         })
     }
 
@@ -174,6 +216,7 @@ impl Figure {
                     series::draw_points(svg, frame, (x, y), ends, layer.role);
                     svg.close_group();
                 }
+                Mark::Spots { x, y, values, colours } => series::draw_spots(svg, frame, (x, y), (values, colours)),
                 _ => {}
             }
         }

@@ -1,24 +1,12 @@
 //! Pixels from a drawn figure.
 
-use std::sync::{Arc, LazyLock};
-
 use resvg::tiny_skia::{Pixmap, Transform};
-use resvg::usvg::{Options, Tree, fontdb};
 
+use super::tree::tree;
 use crate::figure::content::FigureError;
 
 /// Most picture elements along one side.
 const MOST: f64 = 16_000.0;
-
-/// The typeface of all figures, carried along so that pictures look alike on every machine.
-static FONTS: LazyLock<Arc<fontdb::Database>> = LazyLock::new(|| {
-    let mut fonts = fontdb::Database::new();
-    fonts.load_font_data(include_bytes!("../../../fonts/Arimo-Regular-subset.ttf").to_vec());
-    fonts.load_font_data(include_bytes!("../../../fonts/Arimo-Bold-subset.ttf").to_vec());
-    fonts.set_sans_serif_family("Arimo");
-    fonts.set_serif_family("Arimo");
-    Arc::new(fonts)
-});
 
 /// PNG bytes of an SVG document at `dpi` picture elements per inch.
 pub(crate) fn png(name: &str, svg: &str, dpi: f64) -> Result<Vec<u8>, FigureError> {
@@ -26,11 +14,7 @@ pub(crate) fn png(name: &str, svg: &str, dpi: f64) -> Result<Vec<u8>, FigureErro
         figure: name.to_owned(),
         reason,
     };
-    let options = Options {
-        fontdb: Arc::clone(&FONTS),
-        ..Options::default()
-    };
-    let tree = Tree::from_str(svg, &options).map_err(|error| fail(error.to_string()))?;
+    let tree = tree(svg).map_err(|error| fail(error.to_string()))?;
     // Lengths of a document are picture elements of a screen, 96 to an inch.
     let (size, scale) = (tree.size(), dpi / 96.0);
     let (width, height) = ((f64::from(size.width()) * scale).round(), (f64::from(size.height()) * scale).round());

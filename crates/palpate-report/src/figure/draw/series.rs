@@ -2,10 +2,10 @@
 
 use std::fmt::Write as _;
 
-use super::decimate;
 use super::svg::{Svg, polyline, short};
-use crate::figure::content::{Mark, Marker, Role, Style};
-use crate::figure::layout::{Frame, Occupancy, Position};
+use super::{decimate, heatmap};
+use crate::figure::content::{Axis, Mark, Marker, Role, Style};
+use crate::figure::layout::{Frame, Occupancy, Position, colour_limits};
 
 /// Beyond this many points, simple dots replace the marker shapes.
 pub(crate) const CROWD: usize = 60;
@@ -75,6 +75,27 @@ pub(crate) fn draw_points(
         draw_dots(svg, &positions, style);
     } else {
         draw_markers(svg, &positions, style, 2.0);
+    }
+}
+
+/// Draws points with their values as colours, as large as they can be beside each other.
+pub(crate) fn draw_spots(
+    svg: &mut Svg,
+    frame: &Frame<'_>,
+    (x, y): (&[f64], &[f64]),
+    (values, colours): (&[f64], &Axis),
+) {
+    let (low, high) = colour_limits(values, colours);
+    let room = (frame.area.w * frame.area.h / x.len().max(1) as f64).sqrt();
+    let radius = (0.3 * room).clamp(1.0, 5.0);
+    for ((x, y), value) in x.iter().zip(y).zip(values) {
+        if !(value.is_finite() && frame.x.contains(*x) && frame.y.contains(*y)) {
+            continue;
+        }
+        let [r, g, b] = heatmap::colour((value - low) / (high - low));
+        let mut d = String::new();
+        marker(&mut d, Marker::Circle, (frame.x.at(*x), frame.y.at(*y)), radius);
+        svg.path(&d, &format!("fill=\"#{r:02x}{g:02x}{b:02x}\""));
     }
 }
 
@@ -167,7 +188,7 @@ pub(crate) fn occupy(frame: &Frame<'_>, taken: &mut Occupancy) {
                     taken.mark_line(&piece);
                 }
             }
-            Mark::Points { x, y, .. } => {
+            Mark::Points { x, y, .. } | Mark::Spots { x, y, .. } => {
                 for (x, y) in visible(frame, x, y) {
                     taken.mark_line(&[(x - 2.0, y), (x + 2.0, y)]);
                     taken.mark_line(&[(x, y - 2.0), (x, y + 2.0)]);

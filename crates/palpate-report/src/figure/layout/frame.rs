@@ -150,8 +150,8 @@ impl Frame<'_> {
         self.y_ticks = Ticks::new(y.scale, y.low, y.high, (area.h / 15.0).clamp(2.0, 8.0));
         self.x_ticks.thin_out(area.w);
         self.y_ticks.thin_out(area.h);
-        self.bar = self.panel.map().map(|map| {
-            let range = colour_limits(map);
+        self.bar = self.panel.colours().map(|(values, colours)| {
+            let range = colour_limits(values, colours);
             let bar = Transform::new(Scale::Linear, range, area.bottom(), area.y);
             let count = (area.h / 15.0).clamp(2.0, 8.0);
             (bar, Ticks::new(Scale::Linear, range.0, range.1, count))
@@ -195,6 +195,7 @@ impl Frame<'_> {
 }
 
 impl Figure {
+    /// How many panels stand beside each other.
     pub(in crate::figure) fn columns(&self) -> usize {
         match self.arrangement {
             Arrangement::Stacked => 1,

@@ -1,6 +1,6 @@
 //! From values to positions on the page, and the limits of an axis.
 
-use crate::figure::content::{Axis, Layer, Map, Mark, Panel, Scale, shows};
+use crate::figure::content::{Axis, Layer, Mark, Panel, Scale, shows};
 
 /// Positions beyond the plot are held to this, so that every number stays short.
 const FAR: f64 = 20_000.0;
@@ -131,6 +131,10 @@ impl Extent {
                     self.take(high, scale);
                 }
             }
+            Mark::Spots { x, y, .. } => {
+                self.fit = self.fit.max(Fit::Loose);
+                self.take(if vertical { y } else { x }, scale);
+            }
             Mark::Band { x, .. } if !vertical => self.take(x, scale),
             Mark::Band { low, high, .. } => {
                 self.take(low, scale);
@@ -199,11 +203,11 @@ pub(crate) fn edges(centres: &[f64], scale: Scale) -> Vec<f64> {
 }
 
 /// Values at the two ends of the colours.
-pub(crate) fn colour_limits(map: &Map) -> (f64, f64) {
-    if let Some(range) = map.colours.range.filter(|range| usable(*range)) {
+pub(crate) fn colour_limits(values: &[f64], colours: &Axis) -> (f64, f64) {
+    if let Some(range) = colours.range.filter(|range| usable(*range)) {
         return range;
     }
-    let finite = map.values.iter().copied().filter(|v| v.abs() < 1e300);
+    let finite = values.iter().copied().filter(|v| v.abs() < 1e300);
     let (low, high) = finite.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), v| (low.min(v), high.max(v)));
     match (low, high) {
         (low, high) if low > high => (0.0, 1.0),

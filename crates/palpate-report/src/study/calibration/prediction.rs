@@ -9,14 +9,14 @@ use crate::number::significant;
 use crate::result::percent;
 use crate::study::grid::displacement_panel;
 use crate::study::simulate::write_series;
-use crate::table::{Cell, Table};
+use crate::table::{Cell, CsvLocale, Table};
 
 /// Writes the course as CSV, one row a sample: force and displacement with the intervals of their means and of one reading, in SI; an interval
 /// that is not known is empty.
 ///
 /// # Errors
 /// Whatever the writer says.
-pub fn write_prediction(out: &mut dyn Write, prediction: &Prediction) -> io::Result<()> {
+pub fn write_prediction(out: &mut dyn Write, prediction: &Prediction, locale: CsvLocale) -> io::Result<()> {
     let course = &prediction.trajectory;
     let (low, high) = (
         |ends: Option<(f64, f64)>| ends.map_or(f64::NAN, |ends| ends.0),
@@ -37,7 +37,7 @@ pub fn write_prediction(out: &mut dyn Write, prediction: &Prediction) -> io::Res
         }),
         ("noise_n", &|_| prediction.noise),
     ];
-    write_series(out, course.len(), &columns)
+    write_series(out, course.len(), &columns, locale)
 }
 
 /// The forces at each sample: a row each, for people.

@@ -6,10 +6,10 @@ use palpate::watch::Watch;
 use crate::document::{ComparisonDocument, ComparisonSettingsDocument, Software};
 use crate::page::{Block, Page, Section};
 use crate::result::{Answer, ComparedRecord, LeftOut, parameters_table};
-use crate::study::bundle::{Bundle, Drawing, Pictures, StudyError, named};
+use crate::study::bundle::{Bundle, Drawing, FileOptions, StudyError, named};
 use crate::study::{answer, findings, first_page};
 
-/// All files of compared records: `report.html`, `comparison.json`, `comparison.md`, `tables/*.csv`, `figures/*.svg`.
+/// All files of compared records: `report.html`, `comparison.json`, `comparison.md`, `tables/*.csv`, `tables.xlsx`, `figures/*.svg`.
 ///
 /// # Errors
 /// [`StudyError`] when a figure or document cannot be made, or the watch ends it.
@@ -17,19 +17,19 @@ pub fn comparison_bundle(
     records: &[ComparedRecord],
     left_out: &[LeftOut],
     settings: ComparisonSettingsDocument,
-    pictures: Pictures,
+    options: &FileOptions,
     watch: &mut dyn Watch,
 ) -> Result<Bundle, StudyError> {
-    let mut bundle = Bundle::default();
+    let mut bundle = Bundle::new(options.csv_locale);
     let mut page = Page::new("Laws compared", "Law of relaxation or creep to use, and its certainty");
     for (index, record) in records.iter().enumerate() {
         let suffix = if records.len() == 1 { String::new() } else { format!("_{}", index + 1) };
         let summary = bundle.figures(
             first_page::figure_of_hold(record, &format!("summary{suffix}")).as_slice(),
-            pictures,
+            options,
             watch,
         )?;
-        let drawings = bundle.figures(&figures::all(record, &suffix), pictures, watch)?;
+        let drawings = bundle.figures(&figures::all(record, &suffix), options, watch)?;
         let found = findings::gathered_of(record, findings::MOST_LINES);
         let answer = Answer::new(record);
         let first = first_page::of_comparison(record, &answer, summary.iter().map(Drawing::block), &found);
@@ -64,7 +64,7 @@ pub fn comparison_bundle(
     let document = ComparisonDocument::new(records, left_out, settings);
     bundle.table(&parameters_table(&document.parameter_rows()));
     bundle.json("comparison.json", &document)?;
-    Ok(bundle)
+    bundle.with_workbook()
 }
 
 /// Which law to use on the holds of a record: sentences, tables, figures.

@@ -7,21 +7,21 @@ use palpate::watch::Unwatched;
 use crate::document::{GripDocument, Software};
 use crate::page::{Block, Page, Section};
 use crate::result::GrippedBody;
-use crate::study::bundle::{Bundle, Drawing, Pictures, StudyError};
+use crate::study::bundle::{Bundle, Drawing, FileOptions, StudyError};
 use crate::study::calibration::{material_table, write_prediction};
 
-/// All files of a planned grip: `report.html`, `grip.json`, `tables/*.csv`, `figures/grip.svg`, `series/*.csv`.
+/// All files of a planned grip: `report.html`, `grip.json`, `tables/*.csv`, `tables.xlsx`, `figures/grip.svg`, `series/*.csv`.
 ///
 /// # Errors
 /// [`StudyError`] when the figure or document cannot be made.
-pub fn grip_bundle(body: &GrippedBody<'_>, pictures: Pictures) -> Result<Bundle, StudyError> {
-    let mut bundle = Bundle::default();
+pub fn grip_bundle(body: &GrippedBody<'_>, options: &FileOptions) -> Result<Bundle, StudyError> {
+    let mut bundle = Bundle::new(options.csv_locale);
     let mut verdict = Section::new("Will it hold?")
         .block(Block::Paragraph(body.question()))
         .block(Block::Paragraph(body.verdict()));
     let grips = grip_table(body);
     if !grips.rows.is_empty() {
-        let drawings = bundle.figures(&[grip_figure(body, "grip")], pictures, &mut Unwatched)?;
+        let drawings = bundle.figures(&[grip_figure(body, "grip")], options, &mut Unwatched)?;
         bundle.table(&grips);
         verdict = verdict.blocks(drawings.iter().map(Drawing::block)).block(Block::Table(grips));
     }
@@ -48,5 +48,5 @@ pub fn grip_bundle(body: &GrippedBody<'_>, pictures: Pictures) -> Result<Bundle,
         .provenance("Software", Software::this().to_string());
     bundle.text("report.html", page.to_html());
     bundle.json("grip.json", &GripDocument::new(body))?;
-    Ok(bundle)
+    bundle.with_workbook()
 }

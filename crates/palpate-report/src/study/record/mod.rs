@@ -4,10 +4,12 @@
 //! |---|---|
 //! | `figures.rs` | the record, its holds, strain rates and trend |
 //! | `tables.rs` | its tables and text |
+//! | `conditions.rs` | conditions of the test, R(t) at stated times |
 //! | `method.rs` | the settings that a page tells |
 //! | `cut.rs` | how a record was cut into phases |
 //! | `page.rs` | the page, and all files |
 
+mod conditions;
 mod cut;
 pub(super) mod figures;
 mod method;

@@ -6,36 +6,38 @@ use palpate::analysis::{Analysis, JointHolds};
 use palpate::fit::TrendVerdict;
 use palpate::segment::{After, Phase};
 
-use super::{figures, method, tables};
+use super::{conditions, figures, method, tables};
 use palpate::watch::{Progress, Watch};
 
 use crate::document::{AnalysisDocument, Software};
 use crate::number::significant;
 use crate::page::{Block, Page, Section};
 use crate::result::{Answer, ComparedRecord, Input, budgets_of_analysis, parameters_table};
-use crate::study::bundle::{Bundle, Drawing, Pictures, StudyError, named};
+use crate::study::bundle::{Bundle, Drawing, FileOptions, StudyError, named};
 use crate::study::{answer, budget, comparison, findings, first_page};
 use crate::table::Table;
 use crate::word::capitalised;
 
-/// All files of an analysed record: `report.html`, `analysis.json`, `tables/*.csv`, `figures/*.svg`.
+/// All files of an analysed record: `report.html`, `analysis.json`, `tables/*.csv`, `tables.xlsx`, `figures/*.svg`.
 ///
 /// # Errors
 /// [`StudyError`] when a figure or document cannot be made, or the watch ends it.
 pub fn analysis_bundle(
     analysis: &Analysis,
     input: Input,
-    pictures: Pictures,
+    options: &FileOptions,
     watch: &mut dyn Watch,
 ) -> Result<Bundle, StudyError> {
-    let mut bundle = Bundle::default();
-    // A figure of millions of samples takes a while.
+    let mut bundle = Bundle::new(options.csv_locale);
     let look = |watch: &mut dyn Watch, done: usize| watch.report(Progress::open("making the report", done));
-    let figures = figures::all(analysis, |done| look(watch, done))?;
     let compared = ComparedRecord::of_analysis(analysis, input.clone());
-    let summary = bundle.figures(&[figures::summary(analysis, &compared, "summary")], pictures, watch)?;
-    let drawings = bundle.figures(&figures, pictures, watch)?;
-    let of_laws = bundle.figures(&comparison::figures::all(&compared, ""), pictures, watch)?;
+    let of_page = if options.holds.is_none() { options } else { &options.without_figures() };
+    let [summary, drawings, of_laws] = drawn(&mut bundle, analysis, &compared, of_page, watch)?;
+    if let Some(holds) = &options.holds {
+        let chosen = with_holds(analysis, holds)?;
+        let compared = ComparedRecord::of_analysis(&chosen, input.clone());
+        drawn(&mut bundle, &chosen, &compared, options, watch)?;
+    }
     let answer = analysis.options.compare.as_ref().map(|_| Answer::new(&compared));
     let which_law = answer.as_ref().map(|answer| WhichLaw {
         answer: answer::answer_blocks(&compared, answer),
@@ -59,6 +61,9 @@ pub fn analysis_bundle(
     let budgets = budget::tables(&budgets_of_analysis(analysis, &compared), analysis.options.fit.confidence);
     budgets.iter().for_each(|table| bundle.table(table));
     tables::all(analysis).iter().for_each(|table| bundle.table(table));
+    if !analysis.holds.is_empty() {
+        conditions::tables(analysis).iter().for_each(|table| bundle.table(table));
+    }
     look(watch, 1)?;
     let page = page(analysis, &input, &drawings, which_law, (&gathered, budgets)).first(first);
     look(watch, 2)?;
@@ -66,7 +71,38 @@ pub fn analysis_bundle(
     bundle.table(&parameters_table(&document.parameter_rows()));
     bundle.text("report.html", page.to_html());
     bundle.json("analysis.json", &document)?;
-    Ok(bundle)
+    bundle.with_workbook()
+}
+
+/// The same analysis with these of its holds only.
+fn with_holds(analysis: &Analysis, holds: &[usize]) -> Result<Analysis, StudyError> {
+    let is_there = |hold: &usize| analysis.holds.iter().any(|known| known.number == *hold);
+    if let Some(hold) = holds.iter().find(|hold| !is_there(hold)) {
+        return Err(StudyError::NoHold {
+            hold: *hold,
+            holds: analysis.holds.len(),
+        });
+    }
+    let mut chosen = analysis.clone();
+    chosen.holds.retain(|hold| holds.contains(&hold.number));
+    Ok(chosen)
+}
+
+/// The figure of the first page, those of the record with its holds, and those of the laws.
+fn drawn(
+    bundle: &mut Bundle,
+    analysis: &Analysis,
+    compared: &ComparedRecord,
+    options: &FileOptions,
+    watch: &mut dyn Watch,
+) -> Result<[Vec<Drawing>; 3], StudyError> {
+    // A figure of millions of samples takes a while.
+    let figures = figures::all(analysis, |done| watch.report(Progress::open("making the report", done)))?;
+    Ok([
+        bundle.figures(&[figures::summary(analysis, compared, "summary")], options, watch)?,
+        bundle.figures(&figures, options, watch)?,
+        bundle.figures(&comparison::figures::all(compared, ""), options, watch)?,
+    ])
 }
 
 /// What the page says about the choice of a law: first of all, and in full.
@@ -121,6 +157,7 @@ fn page(
     }
     page = page
         .section(Section::new("All fits").block(Block::Table(tables::fits(analysis))))
+        .section(conditions::section(analysis))
         .section(method(analysis));
     with_provenance(page, input)
 }

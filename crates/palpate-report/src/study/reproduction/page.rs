@@ -10,7 +10,7 @@ use super::{claims, hold_figures, hold_tables, law_figures, study_figures, study
 use crate::document::{ReproductionDocument, Software};
 use crate::figure::{Figure, Role};
 use crate::page::{Block, Page, Section};
-use crate::study::bundle::{Bundle, Pictures, StudyError};
+use crate::study::bundle::{Bundle, FileOptions, StudyError};
 use crate::study::simulate::{wave_figure, write_trajectory};
 use crate::table::Table;
 
@@ -134,11 +134,11 @@ fn page(study: &Reproduction, placed: &mut Placed<'_>) -> (Page, Table) {
 /// [`StudyError`] when a figure or document cannot be made, or the watch ends it.
 pub fn reproduction_bundle(
     study: &Reproduction,
-    pictures: Pictures,
+    options: &FileOptions,
     watch: &mut dyn Watch,
 ) -> Result<Bundle, StudyError> {
-    let mut bundle = Bundle::default();
-    let drawings = bundle.figures(&figures(study), pictures, watch)?;
+    let mut bundle = Bundle::new(options.csv_locale);
+    let drawings = bundle.figures(&figures(study), options, watch)?;
     let tables = tables(study);
     tables.iter().for_each(|table| bundle.table(table));
     for (name, test) in [("a", &study.test_a), ("b", &study.test_b)] {
@@ -149,7 +149,7 @@ pub fn reproduction_bundle(
     bundle.table(&claims);
     bundle.text("report.html", page.to_html());
     bundle.json("summary.json", &ReproductionDocument::new(study))?;
-    Ok(bundle)
+    bundle.with_workbook()
 }
 
 /// Every claim, and what laboratories conclude.

@@ -11,7 +11,7 @@ use crate::document::{ReproducedRecordDocument, Software};
 use crate::figure::{Figure, Role};
 use crate::page::{Block, Page, Section};
 use crate::result::Input;
-use crate::study::bundle::{Bundle, Pictures, StudyError};
+use crate::study::bundle::{Bundle, FileOptions, StudyError};
 use crate::table::Table;
 
 /// The holds after loading or after unloading.
@@ -101,16 +101,16 @@ pub fn record_reproduction_bundle(
     analysis: &Analysis,
     judged: &[Claim],
     input: &Input,
-    pictures: Pictures,
+    options: &FileOptions,
     watch: &mut dyn Watch,
 ) -> Result<Bundle, StudyError> {
-    let mut bundle = Bundle::default();
-    let drawings = bundle.figures(&figures(analysis), pictures, watch)?;
+    let mut bundle = Bundle::new(options.csv_locale);
+    let drawings = bundle.figures(&figures(analysis), options, watch)?;
     let tables = tables(analysis);
     tables.iter().for_each(|table| bundle.table(table));
     let (page, table) = page(judged, input, &mut Placed::new(&drawings, &tables));
     bundle.table(&table);
     bundle.text("report.html", page.to_html());
     bundle.json("summary.json", &ReproducedRecordDocument::new(analysis, judged, input))?;
-    Ok(bundle)
+    bundle.with_workbook()
 }

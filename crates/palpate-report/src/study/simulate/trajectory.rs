@@ -8,12 +8,13 @@ use crate::figure::{Axis, Figure, Layer, Panel, Role};
 use crate::number::exact;
 use crate::result::word;
 use crate::study::grid::displacement_panel;
+use crate::table::CsvLocale;
 
 /// Writes the series as CSV, one row a sample: time, displacements, force, strains, rate, all in SI.
 ///
 /// # Errors
 /// Whatever the writer says.
-pub fn write_trajectory(out: &mut dyn Write, trajectory: &Trajectory) -> io::Result<()> {
+pub fn write_trajectory(out: &mut dyn Write, trajectory: &Trajectory, locale: CsvLocale) -> io::Result<()> {
     let columns: [(&str, &dyn Fn(usize) -> f64); 9] = [
         ("time_s", &|i| trajectory.time[i]),
         ("displacement_m", &|i| trajectory.displacement[i]),
@@ -25,7 +26,7 @@ pub fn write_trajectory(out: &mut dyn Write, trajectory: &Trajectory) -> io::Res
         ("strain_rate_per_s", &|i| trajectory.strain_rate[i]),
         ("in_contact", &|i| f64::from(trajectory.in_contact[i])),
     ];
-    write_series(out, trajectory.len(), &columns)
+    write_series(out, trajectory.len(), &columns, locale)
 }
 
 /// Writes columns as CSV, row by row, so that ten million samples need no more memory than the series itself.
@@ -33,14 +34,16 @@ pub(in crate::study) fn write_series(
     out: &mut dyn Write,
     rows: usize,
     columns: &[(&str, &dyn Fn(usize) -> f64)],
+    locale: CsvLocale,
 ) -> io::Result<()> {
+    let between = locale.separator().to_string();
     let names: Vec<&str> = columns.iter().map(|(name, _)| *name).collect();
-    write!(out, "{}\r\n", names.join(","))?;
+    write!(out, "{}\r\n", names.join(&between))?;
     for row in 0..rows {
         for (i, (_, value)) in columns.iter().enumerate() {
-            let separator = if i > 0 { "," } else { "" };
+            let separator = if i > 0 { between.as_str() } else { "" };
             // + 0.0 turns −0 into 0; what is not known is empty.
-            let text = Some(value(row) + 0.0).filter(|value| !value.is_nan()).map(exact);
+            let text = Some(value(row) + 0.0).filter(|value| !value.is_nan()).map(|value| locale.number(exact(value)));
             write!(out, "{separator}{}", text.unwrap_or_default())?;
         }
         write!(out, "\r\n")?;

@@ -1,0 +1,190 @@
+//! What a report of a stress-relaxation test states of a hold: how the displacement was applied and held, and R(t) at stated times.
+
+use super::{Analysis, HoldAnalysis};
+use crate::fit::Estimate;
+use crate::segment::{After, HoldMode, Phase};
+use crate::statistics::{coverage_factor, effective_count, lag_one_correlation, noise, range};
+
+/// What a report states of one hold of the displacement; nothing is extrapolated.
+#[derive(Debug, Clone, PartialEq)]
+pub struct HoldReport {
+    /// Duration of the ramp before the hold, s: the time in which the displacement was applied.
+    pub applied_in: Option<f64>,
+    /// Largest less smallest displacement over the hold, m: the variation of the constraint, with the noise of its measurement.
+    pub constraint_variation: Option<f64>,
+    /// The same over the displacement of the hold.
+    pub relative_constraint_variation: Option<f64>,
+    /// Initial force F₀, N.
+    pub initial_force: Option<Estimate>,
+    /// Force and R(t) at the stated times that were measured.
+    pub relaxation: Vec<StatedRelaxation>,
+}
+
+/// The force that a hold has lost at a time.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct StatedRelaxation {
+    /// Time since that of F₀, s.
+    pub time: f64,
+    /// F(t), N.
+    pub force: Estimate,
+    /// R(t) = (F₀ − F(t))/F₀.
+    pub relaxation: Estimate,
+}
+
+/// The force of a hold at one time, by the samples about it.
+#[derive(Debug, Clone, Copy)]
+struct Level {
+    value: f64,
+    standard_error: f64,
+    freedom: f64,
+}
+
+impl Level {
+    fn estimate(self, confidence: f64) -> Estimate {
+        let half = coverage_factor(confidence, self.freedom) * self.standard_error;
+        Estimate {
+            standard_error: Some(self.standard_error),
+            interval: Some((self.value - half, self.value + half)),
+            ..Estimate::fixed(self.value)
+        }
+    }
+}
+
+/// Fewest samples of a straight line that leave an estimate of their scatter.
+const FEWEST: usize = 5;
+
+impl Analysis {
+    /// What a report states of a hold: of one that holds the displacement after loading also F₀ and R(t).
+    ///
+    /// F(t) is a straight line over ln t through the samples within 5 % of t, or within 20 % where those are few, at t; its standard error
+    /// is that of the line, for residuals that correlate as they do. F₀ at the start of the fit is the force there, with the noise of one
+    /// sample. That of R follows by propagation, (σ_F/F₀)² + (F σ_F₀/F₀²)² (JCGM 100, 5.1.2); errors that all forces share, such as one of
+    /// the load cell's zero, are not in it.
+    #[must_use]
+    pub fn hold_report(&self, hold: &HoldAnalysis) -> HoldReport {
+        let (record, segment) = (&self.record, &hold.segment);
+        let time = record.time();
+        let held = record.displacement().map(|displacement| &displacement[segment.start..segment.end]);
+        let constraint_variation = held.map(range);
+        let relative = |variation: f64| Some(variation / hold.displacement?.abs()).filter(|share| share.is_finite());
+        let segments = &self.segmentation.segments;
+        let ramp = segments.iter().rfind(|other| other.end <= segment.start);
+        let ramp = ramp.filter(|ramp| ramp.phase == Phase::Loading && Some(After::Loading) == hold.after);
+        let (initial_force, relaxation) = self.stated_relaxation(hold).unzip();
+        HoldReport {
+            applied_in: ramp.map(|ramp| time[segment.start] - time[ramp.start]),
+            constraint_variation,
+            relative_constraint_variation: constraint_variation.and_then(relative),
+            initial_force,
+            relaxation: relaxation.unwrap_or_default(),
+        }
+    }
+
+    /// F₀ and R(t) of a hold of the displacement after loading, where the force exceeds its noise.
+    fn stated_relaxation(&self, hold: &HoldAnalysis) -> Option<(Estimate, Vec<StatedRelaxation>)> {
+        let (record, segment) = (&self.record, &hold.segment);
+        let of_displacement = segment.mode.is_none_or(|mode| mode == HoldMode::DisplacementHeld);
+        if !of_displacement || hold.after == Some(After::Unloading) {
+            return None;
+        }
+        let conditions = &self.options.conditions;
+        let samples = segment.fit_start..segment.end;
+        let (time, force) = (&record.time()[samples.clone()], &record.force()[samples]);
+        let start = *time.first()?;
+        let times: Vec<f64> = time.iter().map(|time| time - start).collect();
+        let initial = match conditions.initial_force_after {
+            after if after > 0.0 => level(&times, force, after)?,
+            _ => Level {
+                value: force[0],
+                standard_error: noise(force),
+                freedom: force.len() as f64,
+            },
+        };
+        if initial.value <= 3.0 * initial.standard_error {
+            return None;
+        }
+        let confidence = self.options.fit.confidence;
+        let stated = |time: &f64| {
+            let found = level(&times, force, conditions.initial_force_after.max(0.0) + time)?;
+            let (share, f0) = (found.value / initial.value, initial.value);
+            let relaxation = Level {
+                value: 1.0 - share,
+                standard_error: (found.standard_error / f0).hypot(share * initial.standard_error / f0),
+                freedom: found.freedom.min(initial.freedom),
+            };
+            Some(StatedRelaxation {
+                time: *time,
+                force: found.estimate(confidence),
+                relaxation: relaxation.estimate(confidence),
+            })
+        };
+        Some((initial.estimate(confidence), conditions.relaxation_at.iter().filter_map(stated).collect()))
+    }
+}
+
+/// The force at a time above 0 within the samples; `None` outside of them, and where too few lie about it.
+fn level(times: &[f64], force: &[f64], at: f64) -> Option<Level> {
+    if at > *times.last()? {
+        return None;
+    }
+    let within = |share: f64| {
+        let (from, to) = (at / (1.0 + share), at * (1.0 + share));
+        times.partition_point(|time| *time < from)..times.partition_point(|time| *time <= to)
+    };
+    let window = [0.05, 0.2].map(within).into_iter().find(|window| window.len() >= FEWEST)?;
+    let (x, y): (Vec<f64>, &[f64]) =
+        (times[window.clone()].iter().map(|time| (time / at).ln()).collect(), &force[window]);
+    let count = x.len() as f64;
+    let (mean_x, mean_y) = (x.iter().sum::<f64>() / count, y.iter().sum::<f64>() / count);
+    let spread: f64 = x.iter().map(|x| (x - mean_x).powi(2)).sum();
+    let slope = x.iter().zip(y).map(|(x, y)| (x - mean_x) * (y - mean_y)).sum::<f64>() / spread;
+    let residuals: Vec<f64> = x.iter().zip(y).map(|(x, y)| y - mean_y - slope * (x - mean_x)).collect();
+    let variance = residuals.iter().map(|r| r * r).sum::<f64>() / (count - 2.0);
+    // As many independent samples as the correlation of neighbours leaves.
+    let share = effective_count(x.len(), lag_one_correlation(&residuals)) / count;
+    let leverage = 1.0 / count + mean_x * mean_x / spread;
+    Some(Level {
+        value: mean_y - slope * mean_x,
+        standard_error: (variance * leverage / share).sqrt(),
+        freedom: (count * share - 2.0).max(1.0),
+    })
+    .filter(|level| level.value.is_finite() && level.standard_error.is_finite())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::random::Rng;
+
+    /// A straight line over ln t is met exactly, at the last sample too, and nothing beyond or where samples are few.
+    #[test]
+    fn a_level_is_that_of_the_line_and_never_beyond_the_samples() {
+        let times: Vec<f64> = (0..=1000).map(|i| 0.1 * f64::from(i)).collect();
+        let force: Vec<f64> = times.iter().map(|time| 5.0 - 0.2 * (time + 1e-300).ln()).collect();
+        for at in [1.5, 30.0, 100.0] {
+            let found = level(&times, &force, at).expect("a level");
+            assert!((found.value - (5.0 - 0.2 * at.ln())).abs() < 1e-12, "{at}: {found:?}");
+        }
+        assert!(level(&times, &force, 100.1).is_none());
+        // Within 20 % of 0.3 s lie three samples.
+        assert!(level(&times, &force, 0.3).is_none());
+    }
+
+    /// Over many records with white noise the error of a level has the size that is stated.
+    #[test]
+    fn the_stated_error_of_a_level_is_its_scatter() {
+        let times: Vec<f64> = (0..600).map(|i| 0.1 * f64::from(i)).collect();
+        let mut rng = Rng::new(7);
+        let (mut squares, mut stated) = (0.0, 0.0);
+        let runs = 400;
+        for _ in 0..runs {
+            let force: Vec<f64> =
+                times.iter().map(|time| 2.0 + (1.0 + time).powf(-0.5) + 0.01 * rng.normal()).collect();
+            let found = level(&times, &force, 30.0).expect("a level");
+            squares += (found.value - (2.0 + 31.0_f64.powf(-0.5))).powi(2) / f64::from(runs);
+            stated += found.standard_error / f64::from(runs);
+        }
+        let ratio = squares.sqrt() / stated;
+        assert!((0.85..1.15).contains(&ratio), "{ratio}");
+    }
+}
