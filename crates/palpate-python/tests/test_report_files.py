@@ -65,7 +65,7 @@ def test_maps(tmp_path: Path) -> None:
     assert [(record.x_m, record.y_m, record.map_index) for record in records][4] == (1e-6, 1e-6, 4)
     out = tmp_path / "holds.csv"
     found = palpate.batch([tmp_path / "map.zip"], out, test=test, map=["E", f"E={tmp_path / 'map.pdf'}"])
-    assert "Loading modulus (kPa)" in found.map("E") and found.map("E") == found.map("loading_modulus_pa")
+    assert "Loading modulus (Pa)" in found.map("E") and found.map("E") == found.map("loading_modulus_pa")
     assert (tmp_path / "holds_map_E.svg").exists() and (tmp_path / "map.pdf").read_bytes().startswith(b"%PDF-")
     with out.open(encoding="utf-8") as file:
         rows = list(csv.DictReader(line for line in file if not line.startswith("#")))

@@ -28,9 +28,9 @@ impl MapPosition {
     /// use palpate_files::table::Metadata;
     ///
     /// let entry = |name: &str, value: &str| Metadata { name: name.into(), value: value.into(), unit: Some("um".into()) };
-    /// let found = MapPosition::of(&[entry("X-position", "2.5"), entry("Y-position", "-4")]).expect("a position");
-    /// assert_eq!((found.x, found.y, found.index), (2.5e-6, -4e-6, None));
-    /// assert_eq!(MapPosition::of(&[entry("X-position", "2.5")]), None);
+    /// let found = MapPosition::of(&[entry("X-position", "2"), entry("Y-position", "-4")]).expect("a position");
+    /// assert_eq!((found.x, found.y, found.index), (2e-6, -4e-6, None));
+    /// assert_eq!(MapPosition::of(&[entry("X-position", "2")]), None);
     /// ```
     #[must_use]
     pub fn of(metadata: &[Metadata]) -> Option<Self> {

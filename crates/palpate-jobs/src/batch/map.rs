@@ -126,7 +126,11 @@ impl CurveMap {
         let title = parameter_title(quantity);
         let mut letters = title.chars();
         let label: String = letters.next().into_iter().flat_map(char::to_uppercase).chain(letters).collect();
-        let of = if rows::is_of_hold(quantity) { "first hold" } else { "law recommended for the first hold" };
+        let of = match quantity {
+            ramp if ramp.starts_with("loading_") => "first loading ramp",
+            held if rows::is_of_hold(held) => "first hold",
+            _ => "law recommended for the first hold",
+        };
         let caption = format!("{label} of each curve ({of}) over its position.");
         let point = |(curve, position): (usize, &[f64; 2])| MapPoint {
             position: *position,
