@@ -52,7 +52,9 @@ fn figures_have_the_formats_the_width_and_the_holds_that_are_chosen() {
     let figures = folder.join("study/figures");
     assert_eq!(
         names(&figures),
-        ["holds.pdf", "holds.svg", "record.pdf", "record.svg", "residuals.pdf", "residuals.svg"]
+        ["holds", "record", "residuals", "summary"]
+            .map(|name| [format!("{name}.pdf"), format!("{name}.svg")])
+            .concat()
     );
     let svg = fs::read_to_string(figures.join("holds.svg")).unwrap();
     assert!(svg.contains("width=\"85mm\"") && svg.contains("Hold 2,") && !svg.contains("Hold 1,"), "{svg}");

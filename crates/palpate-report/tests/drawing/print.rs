@@ -104,7 +104,8 @@ fn a_figure_fits_the_column_and_the_page_and_loses_no_panel() {
                 root.attribute("height").and_then(|h| h.strip_suffix("mm")?.parse().ok()).expect("a height");
             assert!(height <= 225.0, "{height}");
             for node in document.descendants().filter(|node| node.has_tag_name("text")) {
-                let size: f64 = node.attribute("font-size").and_then(|size| size.parse().ok()).expect("a size");
+                let size: f64 =
+                    node.ancestors().find_map(|node| node.attribute("font-size")?.parse().ok()).expect("a size");
                 assert!(size >= 7.0, "{size} pt in print");
             }
             titles.extend(
