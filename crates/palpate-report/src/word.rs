@@ -5,7 +5,9 @@ use serde::Serialize;
 /// A text with its first letter large.
 pub(crate) fn capitalised(text: &str) -> String {
     let mut letters = text.chars();
-    letters.next().map_or(String::new(), |first| first.to_uppercase().chain(letters).collect())
+    letters
+        .next()
+        .map_or(String::new(), |first| std::iter::once(first.to_ascii_uppercase()).chain(letters).collect())
 }
 
 /// The stable word for one of several: the name of a variant as it is stored, in small letters.

@@ -38,23 +38,15 @@ pub struct ClaimLine {
 /// All rows as one table.
 pub(super) fn written(rows: &[ClaimRow]) -> String {
     let rows = each(rows, row_written);
-    let heads = [
-        "In the paper",
-        "Statement",
-        "Compared",
-        "Paper, or limit",
-        "Here",
-        "Tolerance and its reason",
-        "Verdict",
-        "Shown in",
-    ];
+    let heads = ["In the paper", "Compared", "Paper, or limit", "Here", "Tolerance and its reason", "Verdict"];
     let heads = each(heads, |head| format!("<th scope=\"col\">{head}</th>"));
     format!(
-        "<div class=\"table\">\n<div class=\"scroll\">\n<table class=\"checks\">\n<thead>\n<tr>{heads}</tr>\n</thead>\n\
-         <tbody>\n{rows}</tbody>\n</table>\n</div>\n</div>\n"
+        "<div class=\"table\">\n<div class=\"scroll\">\n<table class=\"claims\">\n<thead>\n<tr>{heads}</tr>\n</thead>\n\
+         {rows}</table>\n</div>\n</div>\n"
     )
 }
 
+/// The rows of one statement as a body of the table, which paper does not break.
 fn row_written(row: &ClaimRow) -> String {
     let (class, sign) = match row.verdict {
         Verdict::Reproduced => ("pass", "✓"),
@@ -65,24 +57,21 @@ fn row_written(row: &ClaimRow) -> String {
     let link = row
         .shown_in
         .as_ref()
-        .map_or(String::new(), |(text, target)| format!("<a href=\"{}\">{}</a>", escape(target), rich(text)));
-    let remark = match (row.remark.as_str(), row.lines.is_empty()) {
-        ("", _) | (_, true) => String::new(),
-        (remark, false) => format!("<br><span class=\"note\">{}</span>", rich(remark)),
-    };
+        .map_or(String::new(), |(text, target)| format!("<br><a href=\"{}\">{}</a>", escape(target), rich(text)));
+    let (remark, alone) = if row.lines.is_empty() { ("", row.remark.as_str()) } else { (row.remark.as_str(), "") };
+    let remark = if remark.is_empty() { String::new() } else { format!("<p class=\"note\">{}</p>", rich(remark)) };
     let line = |line: &ClaimLine| {
-        let cells = [&line.quantity, &line.paper, &line.ours, &line.tolerance];
-        each(cells, |text| format!("<td>{}</td>", rich(text)))
+        let [quantity, paper, ours, tolerance] =
+            [&line.quantity, &line.paper, &line.ours, &line.tolerance].map(|text| rich(text));
+        format!(
+            "<td>{quantity}</td><td class=\"value\">{paper}</td><td class=\"value\">{ours}</td><td>{tolerance}</td>"
+        )
     };
-    let first = match row.lines.first() {
-        Some(first) => line(first),
-        None => format!("<td colspan=\"4\">{}</td>", rich(&row.remark)),
-    };
+    let first = row.lines.first().map_or_else(|| format!("<td colspan=\"4\">{}</td>", rich(alone)), line);
     let others = each(row.lines.iter().skip(1), |other| format!("<tr>{}</tr>\n", line(other)));
     format!(
-        "<tr><td rowspan=\"{span}\">{}</td><th scope=\"row\" rowspan=\"{span}\">{}{remark}</th>{first}\
-         <td class=\"{class}\" rowspan=\"{span}\"><span aria-hidden=\"true\">{sign}</span> {}</td>\
-         <td rowspan=\"{span}\">{link}</td></tr>\n{others}",
+        "<tbody>\n<tr><th scope=\"rowgroup\" rowspan=\"{span}\"><b>{}</b> {}{remark}</th>{first}\
+         <td rowspan=\"{span}\"><span class=\"{class}\"><span aria-hidden=\"true\">{sign}</span> {}</span>{link}</td></tr>\n{others}</tbody>\n",
         rich(&row.place),
         rich(&row.statement),
         row.verdict.words()

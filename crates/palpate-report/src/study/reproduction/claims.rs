@@ -5,6 +5,7 @@ use palpate::paper::{Claim, Comparison, Evidence, Relation, Value, Verdict};
 
 use crate::page::{ClaimLine, ClaimRow};
 use crate::table::{Cell, Table};
+use crate::word::capitalised;
 use crate::wrap::{indented, width};
 
 /// A number with its interval: ± if it is symmetric, its ends otherwise.
@@ -168,9 +169,4 @@ pub fn claims_text(claims: &[Claim]) -> String {
         }
     }
     text
-}
-
-fn capitalised(words: &str) -> String {
-    let mut letters = words.chars();
-    letters.next().map_or(String::new(), |first| first.to_uppercase().chain(letters).collect())
 }
