@@ -49,6 +49,11 @@ pub enum SegmentError {
         /// Least number of samples of a hold.
         minimum_samples: usize,
     },
+    /// Of a force alone.
+    #[error(
+        "no hold found: the force, without a displacement, shows no stretch in which it relaxes or creeps to a level"
+    )]
+    NoHoldInForce,
     /// The file labels its phases, and none is a hold after a ramp.
     #[error("no hold found: the file labels its segments {}; none of them holds a body", names.join(", "))]
     NoneLabelled {
@@ -143,6 +148,10 @@ impl SegmentError {
                 ..
             } if samples < minimum_samples && longest >= minimum_hold => {
                 "the hold has too few samples: sample faster, or set the shortest hold (⟨minimum_hold⟩), which then needs 3 samples"
+            }
+            Self::NoHoldInForce => {
+                "ramps alone have no hold; if the file has a displacement, name its column; where the hold is known, give \
+                 its limits by hand ([[phases.hold]] in the test description)"
             }
             Self::NoHold { rest, longest: 0.0, .. } if *rest > 0.0 => {
                 "if the standstill before the ramp is the hold, give its limits by hand ([[phases.hold]] in the test description)"

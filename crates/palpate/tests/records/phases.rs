@@ -151,6 +151,17 @@ fn the_reason_for_no_hold_names_what_is_there() {
     );
 }
 
+/// A triangle of a force alone named a jaw and a tolerance, which it does not have.
+#[test]
+fn a_force_alone_without_a_hold_names_no_jaw() {
+    let time: Vec<f64> = (0..=200).map(|i| 0.1 * f64::from(i)).collect();
+    let force = time.iter().map(|t| 10.0 - (t - 10.0).abs()).collect();
+    let error = phases(&Record::new(time, None, force).unwrap()).unwrap_err();
+    assert_eq!(error, SegmentError::NoHoldInForce);
+    let hint = error.hint();
+    assert!(!error.to_string().contains("jaw") && !hint.contains("⟨tolerance⟩") && hint.contains("[[phases.hold]]"));
+}
+
 /// Labels of the file go before what is found: extend and retract hold nothing, a pause does.
 #[test]
 fn labels_of_a_file_go_before_what_is_found() {

@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::joint::{JointAnalysis, joint};
-use crate::analysis::{AnalysisOptions, HoldAnalysis};
+use crate::analysis::{AnalysisOptions, HoldAnalysis, Signal};
 use crate::fit::LatencyFit;
 use crate::segment::After;
 use crate::statistics::{coverage_factor, range};
@@ -105,7 +105,8 @@ fn summed_evidence(holds: &[HoldAnalysis], exponents: &[f64]) -> Vec<(f64, f64)>
 fn trend(holds: &[HoldAnalysis], fit: impl Fn(&HoldAnalysis) -> Option<LatencyFit>) -> Option<Trend> {
     let points: Vec<(f64, f64)> = holds
         .iter()
-        .filter(|hold| hold.after == Some(After::Loading))
+        // v of a force goes with the level of the force by its unit alone.
+        .filter(|hold| hold.after == Some(After::Loading) && hold.signal == Signal::Strain)
         .filter_map(|hold| {
             let fit = fit(hold)?;
             Some((fit.equilibrium().value, fit.rate_coefficient().value.ln()))

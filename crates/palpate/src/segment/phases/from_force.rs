@@ -33,7 +33,7 @@ pub(super) fn phases(
         ..still.settings
     };
     if range < NOISE * still.settings.noise {
-        return Err(still.none());
+        return Err(SegmentError::NoHoldInForce);
     }
     let (mut found, noise) = stretches(time, force, watch)?;
     begin_at_extremes(force, &mut found, settings.tolerance.max(2.0 * noise));
@@ -57,7 +57,7 @@ pub(super) fn phases(
     let floor = low + 0.02 * range + 3.0 * settings.noise;
     let loaded = |segment: &Segment| segment.phase == Phase::Hold && force[segment.end - 1] > floor;
     if !segments.iter().any(loaded) {
-        return Err(still.none());
+        return Err(SegmentError::NoHoldInForce);
     }
     Ok(Segmentation {
         segments,

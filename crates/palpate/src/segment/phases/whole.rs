@@ -87,7 +87,7 @@ pub(super) fn whole(record: &Record, error: &SegmentError) -> Option<HoldMode> {
         (Some(_), SegmentError::NoHold { .. }) if shows_few_steps(record) && falls_to_a_rest(time, force) => {
             Some(HoldMode::DisplacementHeld)
         }
-        (None, SegmentError::NoHold { .. }) if falls_to_a_rest(time, force) => Some(HoldMode::DisplacementHeld),
+        (None, SegmentError::NoHoldInForce) if falls_to_a_rest(time, force) => Some(HoldMode::DisplacementHeld),
         _ => None,
     }
 }
