@@ -21,6 +21,9 @@ SILICONE = ["--test", str(ROOT / "examples/tests/silicone-steps.toml")]
 TITIN = ["--test", str(ROOT / "validation/records/titin.toml")]
 MODULUS = ["--columns", "time=1:s,modulus=2:Pa"]
 COMPLIANCE = ["--columns", "time=1:s,compliance=2:1/Pa"]
+# A step in strain after each peak; the peak holds of 3 s end with a rotor that stands.
+TRIOS = {f"{name} - {n}": "D" for name, numbers in (("Stress relaxation", (7, 11, 15, 19)), ("Peak hold", (10, 14, 18))) for n in numbers}
+SHEAR = ["--columns", "time=1:s,force=2:N,displacement=3:mm"]
 ZWICK = {f"230515-P002-{n}": "D F" for n in (1, 3, 4, 6, 7, 8, 9, 10, 11, 12, 13)}
 
 # File, further arguments, and what is true: holds in their order, "none", or a word per test of the file.
@@ -63,14 +66,17 @@ EXPECTED = [
     ("more/mts/i8_3_1_hold.txt", [], "D"),
     ("more/mts/i8_3_1_ramp.txt", ["--then", "more/mts/i8_3_1_hold.txt"], "D"),
     ("more/nanoindentation/agilent_example.xls", [], {None: "F F"}),
+    ("more/rheometer/anton_paar.csv", [], {"LAOS 1, interval 2": "the force is 0 N in all 30 rows: there is no relaxation"}),
     ("more/rheometer/creep_mucus.csv", COMPLIANCE, "F"),
     ("more/rheometer/relaxation_fishmuscle.csv", MODULUS, "D"),
     ("more/rheometer/relaxation_hdpe.csv", MODULUS, "D"),
     ("more/rheometer/relaxation_ps145.csv", MODULUS, "D"),
+    ("more/rheometer/trios_steps.txt", [], TRIOS),
     ("more/tendon/G1_1.csv", [], "D"),
     ("more/tendon/G1_2.csv", [], "D"),
     ("more/vhb4910/relax_2d0.csv", [], "D"),
     ("more/vhb4910/relax_3d5.csv", [], "D"),
+    ("more/vhb4910/shear_relaxation_1.xlsx", SHEAR, "D D D D"),
     ("more/zwick-indentation/maintienFnulle.xls", [], ZWICK),
 ]
 LETTERS = {"displacement": "D", "force": "F", "neither": "N"}
@@ -100,8 +106,9 @@ def tests(palpate, data, file, arguments):
     text, errors = inspect(palpate, data, file, arguments)
     if "\nTests\n" not in text:
         return {None: phases(text, errors)}
-    names = [line.split("  ")[0].strip() for line in text.split("\nTests\n")[1].splitlines()[3:]]
-    names = names[: next(i for i, name in enumerate(names) if name.startswith("─"))]
+    # The rows lie between the second and the third rule; a wide table goes on below.
+    body = re.split(r"^─+$", text.split("\nTests\n")[1], flags=re.MULTILINE)[2]
+    names = [line.split("  ")[0].strip() for line in body.strip().splitlines()]
     return {name: phases(*inspect(palpate, data, file, [*arguments, "--part", name])) for name in names}
 
 

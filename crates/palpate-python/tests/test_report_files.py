@@ -4,6 +4,7 @@ import csv
 import math
 import zipfile
 from pathlib import Path
+from typing import Any
 
 import palpate
 import pytest
@@ -23,7 +24,8 @@ def test_report_files(tmp_path: Path) -> None:
     header = (tmp_path / "study" / "tables" / "holds.csv").read_text(encoding="utf-8").splitlines()[0]
     assert header.startswith("hold;after;mode;start_s;")
     assert zipfile.ZipFile(tmp_path / "study" / "tables.xlsx").testzip() is None
-    for wrong in [{"figures": ["jpg"]}, {"column": "triple"}, {"csv_locale": "xx"}]:
+    refused: list[dict[str, Any]] = [{"figures": ["jpg"]}, {"column": "triple"}, {"csv_locale": "xx"}]
+    for wrong in refused:
         with pytest.raises(palpate.OptionError, match="is one of"):
             analysis.report(tmp_path / "other", **wrong)
     with pytest.raises(palpate.PalpateError, match="hold 99"):

@@ -14,6 +14,10 @@ const STILL_TO_GO: f64 = 0.05;
 const RUNS_AWAY: f64 = 2.0;
 /// Share of its range that a force rises before the body breaks.
 const LEAST_RISE: f64 = 0.2;
+/// Share of the way of the jaw before which the force of its own mass is largest.
+const STARTS: f64 = 0.25;
+/// Share of its rise by which a force falls below where it began when the mass of a machine is braked.
+const BRAKES: f64 = 0.1;
 /// Samples at the start of a standstill that tell its force.
 const FIRST: usize = 3;
 /// Ramps of fewer samples do not tell.
@@ -104,6 +108,11 @@ impl<'a> Whole<'a> {
         if before - open < LEAST_RISE * self.force_range {
             return None;
         }
+        // A machine that moves its own mass pushes first and pulls as it stops; a broken body does not pull.
+        let least = force[peak..stand.end].iter().copied().fold(f64::MAX, f64::min);
+        if jaw[peak] < place(STARTS) && open - least > BRAKES * (before - open) {
+            return None;
+        }
         let stood = median(&mut force[stand.start..first].to_vec());
         if stood - open >= 0.5 * (force[largest(begin..turn + 1)?] - open) {
             return None;
@@ -143,6 +152,20 @@ mod tests {
     fn found(record: &Record) -> Result<(usize, usize), SegmentError> {
         let found = find_phases(record, &SegmentOptions::default())?;
         Ok((found.holds().count(), found.ruptures.len()))
+    }
+
+    /// The torque that a rheometer takes to turn its own rotor was the rupture of a gel, and its relaxation no hold.
+    #[test]
+    fn the_mass_of_a_machine_breaks_nothing() {
+        // A step in 0.2 s, with a force of acceleration that is ten times that of the body.
+        let turn = |t: f64| std::f64::consts::TAU * (t - 1.0).clamp(0.0, 0.2) / 0.2;
+        let jaw = |t: f64| 8.0 * (turn(t) - turn(t).sin()) / std::f64::consts::TAU;
+        let body = |t: f64, d: f64| d * (1.0 + (t - 1.2).max(0.0)).powf(-0.3);
+        let rotor = record(jaw, |t, d| body(t, d) + 80.0 * turn(t).sin());
+        assert_eq!(found(&rotor).unwrap(), (1, 0));
+        // A body that breaks as early, and does not pull.
+        let broken = record(jaw, |t, d| if d > 1.6 { 0.2 } else { 40.0 * d.max(0.0) + 0.0 * t });
+        assert_eq!(found(&broken).map_or(0, |(holds, _)| holds), 0);
     }
 
     #[test]

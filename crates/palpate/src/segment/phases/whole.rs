@@ -114,9 +114,11 @@ pub(super) fn relaxes_throughout(record: &Record, found: &Segmentation) -> bool 
         beside += near.max(noise(force)) / length as f64;
     }
     let turn = (10.0 * noise(force)).max(TURNS * range(force));
-    record.displacement().is_some()
+    let trembles = shows_few_steps(record);
+    // What goes on from its first sample to its last is driven, not noise.
+    record.displacement().is_some_and(|displacement| trembles || !goes_one_way(displacement))
         && found.holds().next().is_some()
-        && (while_moving <= ANSWERS * beside || shows_few_steps(record))
+        && (trembles || while_moving <= ANSWERS * beside)
         && !extremes(force, turn).iter().any(|at| (force.len() / 20 + 1..last).contains(at))
         && falls_to_a_rest(record.time(), force)
 }
