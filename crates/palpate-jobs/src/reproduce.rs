@@ -31,6 +31,13 @@ pub struct Reproduce {
         conflicts_with = "record", allow_hyphen_values = true,
     ))]
     pub sample_rate_hz: f64,
+    /// Error of a single reading of their force where 0.2 N is that of the zero, N: the paper gives no number for its high repeatability.
+    #[cfg_attr(feature = "clap", arg(
+        long = "repeatability", value_name = "FORCE", value_parser = crate::typed::force,
+        default_value = "0.02 N", conflicts_with = "record", allow_hyphen_values = true,
+        help = "Error of a single reading of their force where 0.2 N is that of the zero",
+    ))]
+    pub repeatability_n: f64,
 }
 
 impl Default for Reproduce {
@@ -39,6 +46,7 @@ impl Default for Reproduce {
         Self {
             seeds: usual.seeds,
             sample_rate_hz: usual.sample_rate,
+            repeatability_n: usual.repeatability,
         }
     }
 }
@@ -52,12 +60,14 @@ impl Reproduce {
         let options = LaboratoryOptions {
             seeds: self.seeds,
             sample_rate: self.sample_rate_hz,
+            repeatability: self.repeatability_n,
         };
         let study = reproduce(&Published::default(), &options, watch).map_err(|error| match error {
             PaperError::Cancelled(cancelled) => cancelled.into(),
-            PaperError::Seeds { .. } | PaperError::SampleRate { .. } | PaperError::SampleRateTooHigh { .. } => {
-                JobError::option(error, "")
-            }
+            PaperError::Seeds { .. }
+            | PaperError::SampleRate { .. }
+            | PaperError::SampleRateTooHigh { .. }
+            | PaperError::Repeatability { .. } => JobError::option(error, ""),
             error => JobError::new(ErrorKind::Model, error, None),
         })?;
         Ok(Outcome::of(study))

@@ -380,6 +380,8 @@ pub(crate) fn sweep(
 ///     Laboratories that repeat the tests with each ball, one seed each; 32 if left out. Not with a record.
 /// sample_rate_hz
 ///     Their sampling rate, Hz; 50 if left out. Not with a record.
+/// repeatability_n
+///     Error of a single reading of their force where 0.2 N is that of the zero, N; 0.02 if left out. Not with a record.
 /// record, name, test, part, columns
 ///     A record of one's own, as ``path`` and the others of `read`; it is shown in the layout of the paper, with its conclusions.
 ///
@@ -404,7 +406,7 @@ pub(crate) fn sweep(
 /// ('Abstract', 'not_reproduced', -0.1661)
 #[pyfunction]
 #[pyo3(signature = (
-    folder, *, figures=None, column=None, csv_locale=None, seeds=None, sample_rate_hz=None, record=None, name=None, test=None, part=None, columns=None,
+    folder, *, figures=None, column=None, csv_locale=None, seeds=None, sample_rate_hz=None, repeatability_n=None, record=None, name=None, test=None, part=None, columns=None,
 ))]
 #[expect(clippy::too_many_arguments, reason = "keywords of Python")]
 pub(crate) fn reproduce<'py>(
@@ -415,6 +417,7 @@ pub(crate) fn reproduce<'py>(
     csv_locale: Option<&str>,
     seeds: Option<usize>,
     sample_rate_hz: Option<f64>,
+    repeatability_n: Option<f64>,
     record: Given<'py, '_>,
     name: Option<&str>,
     test: Given<'py, '_>,
@@ -430,6 +433,7 @@ pub(crate) fn reproduce<'py>(
         let question = Reproduce {
             seeds: seeds.unwrap_or(usual.seeds),
             sample_rate_hz: sample_rate_hz.unwrap_or(usual.sample_rate_hz),
+            repeatability_n: repeatability_n.unwrap_or(usual.repeatability_n),
         };
         let document = writing_job(py, move |watch| {
             let study = question.run(watch)?.result;
@@ -438,9 +442,9 @@ pub(crate) fn reproduce<'py>(
         })?;
         return plain(py, &document);
     };
-    if seeds.is_some() || sample_rate_hz.is_some() {
+    if seeds.is_some() || sample_rate_hz.is_some() || repeatability_n.is_some() {
         return Err(OptionError::new_err(
-            "seeds and sample_rate_hz belong to the paper's study: leave them out with a record",
+            "seeds, sample_rate_hz and repeatability_n belong to the paper's study: leave them out with a record",
         ));
     }
     let (file, described) = (record_file(record, name)?, described_with(test, part, columns)?);

@@ -163,7 +163,9 @@ fn reproduce_shows_a_record_in_the_layout_of_the_paper() {
     // The record was made with n = 5 and one v, from steps up and down.
     assert_eq!(verdict("n = 5"), "reproduced");
     assert_eq!(verdict("Type I"), "reproduced");
-    assert_eq!(verdict("εₑ agrees"), "reproduced");
+    assert_eq!(verdict("Type II"), "reproduced");
+    // At 5 mm the interval after unloading is as wide as a tenth of εₑ; v has an error too.
+    assert_eq!([verdict("εₑ agrees"), verdict("v falls")], ["cannot_be_checked", "cannot_be_checked"]);
     assert_eq!((summary["table_1"].as_array().unwrap().len(), summary["table_2"].as_array().unwrap().len()), (3, 2));
     assert!(number(&summary["table_1"][0]["equilibrium_strain"]) < 0.0);
     let files = [

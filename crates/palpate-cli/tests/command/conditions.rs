@@ -85,6 +85,19 @@ fn a_report_shows_what_is_stated_and_what_is_not() {
     assert_eq!(table.lines().count(), 6);
 }
 
+/// A time beyond the hold that the description states vanished from the table.
+#[test]
+fn a_stated_time_beyond_the_hold_is_shown_as_not_measured() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    let document = analyzed(folder, "[conditions]\nrelaxation_at = [\"10 s\", \"1 h\"]\n");
+    assert_eq!(document["holds"][0]["report"]["not_measured_s"], serde_json::json!([3600.0]));
+    done(folder, &["analyze", "press.csv", "--test", "test.toml", "--no-compare", "--out", "study"]);
+    let table = fs::read_to_string(folder.join("study/tables/relaxation_at.csv")).unwrap();
+    assert_eq!(table.lines().nth(2), Some("1,3600,,,,,,,,"), "{table}");
+    assert!(fs::read_to_string(folder.join("study/report.html")).unwrap().contains("beyond the hold"));
+}
+
 #[test]
 fn conditions_that_make_no_sense_are_refused() {
     let folder = tempfile::tempdir().unwrap();

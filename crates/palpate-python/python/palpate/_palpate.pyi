@@ -677,6 +677,7 @@ def reproduce(
     csv_locale: str | None = None,
     seeds: int | None = None,
     sample_rate_hz: float | None = None,
+    repeatability_n: float | None = None,
     record: _File | None = None,
     name: str | None = None,
     test: _Described | None = None,

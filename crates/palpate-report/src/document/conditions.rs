@@ -37,6 +37,8 @@ documents! {
         /// R(t) at the stated times that were measured.
         relaxation: Vec<StatedRelaxationDocument> =
             report.relaxation.iter().map(StatedRelaxationDocument::new).collect(),
+        /// Stated times beyond the hold, or with fewer than five samples about them, s.
+        not_measured_s: Vec<f64> = report.not_measured.clone(),
     }
 
     /// R(t) = (F₀ − F(t))/F₀ at a time.

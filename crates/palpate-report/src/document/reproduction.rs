@@ -57,6 +57,8 @@ documents! {
         seeds: usize = study.options.seeds,
         /// Their sampling rate, Hz.
         sample_rate_hz: f64 = study.options.sample_rate,
+        /// Error of a single reading of their force where the accuracy is that of the zero, N.
+        repeatability_n: f64 = study.options.repeatability,
         /// What they conclude.
         laboratories: Vec<LaboratoriesDocument> = study.laboratories.iter().map(LaboratoriesDocument::new).collect(),
         /// Logarithmic derivatives of force and relaxed fraction.
@@ -172,14 +174,18 @@ documents! {
         equilibrium_strains: Vec<f64> = explained.strains.iter().map(|strain| -strain).collect(),
         /// Root mean square difference from Table I.
         rms_difference: f64 = explained.rms,
-        /// The fitted modulus in Pa, or travel of the jaw in m.
-        fitted: Option<f64> = explained.parameter,
+        /// The fitted modulus, Pa.
+        fitted_modulus_pa: Option<f64> = explained.modulus,
+        /// The fitted travel of the jaw before what was taken for first touch, m.
+        fitted_travel_m: Option<f64> = explained.travel,
     }
 
     /// What the laboratories with one ball conclude by one way of fitting.
     LaboratoriesDocument(labs: &Laboratories) {
         /// The ball.
         ball: String = labs.ball.words().to_owned(),
+        /// What the accuracy of the instrument means: `independent` errors of readings, or `repeatable`, one error a test.
+        readings: String = word(labs.readings),
         /// `rates` (strain rate against strain) or `time` (closed form against time).
         method: String = word(labs.method),
         /// n = 5 is the lowest order that fits best.

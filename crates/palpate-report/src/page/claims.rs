@@ -38,7 +38,7 @@ pub struct ClaimLine {
 /// All rows as one table.
 pub(super) fn written(rows: &[ClaimRow]) -> String {
     let rows = each(rows, row_written);
-    let heads = ["In the paper", "Compared", "Paper, or limit", "Here", "Tolerance and its reason", "Verdict"];
+    let heads = ["In the paper", "Verdict", "Compared", "Paper, or limit", "Here", "Tolerance and its reason"];
     let heads = each(heads, |head| format!("<th scope=\"col\">{head}</th>"));
     format!(
         "<div class=\"table\">\n<div class=\"scroll\">\n<table class=\"claims\">\n<thead>\n<tr>{heads}</tr>\n</thead>\n\
@@ -70,8 +70,8 @@ fn row_written(row: &ClaimRow) -> String {
     let first = row.lines.first().map_or_else(|| format!("<td colspan=\"4\">{}</td>", rich(alone)), line);
     let others = each(row.lines.iter().skip(1), |other| format!("<tr>{}</tr>\n", line(other)));
     format!(
-        "<tbody>\n<tr><th scope=\"rowgroup\" rowspan=\"{span}\"><b>{}</b> {}{remark}</th>{first}\
-         <td rowspan=\"{span}\"><span class=\"{class}\"><span aria-hidden=\"true\">{sign}</span> {}</span>{link}</td></tr>\n{others}</tbody>\n",
+        "<tbody>\n<tr><th scope=\"rowgroup\" rowspan=\"{span}\"><b>{}</b> {}{remark}</th>\
+         <td rowspan=\"{span}\"><span class=\"{class}\"><span aria-hidden=\"true\">{sign}</span> {}</span>{link}</td>{first}</tr>\n{others}</tbody>\n",
         rich(&row.place),
         rich(&row.statement),
         row.verdict.words()

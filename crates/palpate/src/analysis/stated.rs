@@ -1,6 +1,6 @@
 //! What a report of a stress-relaxation test states of a hold: how the displacement was applied and held, and R(t) at stated times.
 
-use super::{Analysis, HoldAnalysis};
+use super::{Analysis, Conditions, HoldAnalysis};
 use crate::fit::Estimate;
 use crate::segment::{After, HoldMode, Phase};
 use crate::statistics::{coverage_factor, effective_count, lag_one_correlation, noise, range};
@@ -18,6 +18,8 @@ pub struct HoldReport {
     pub initial_force: Option<Estimate>,
     /// Force and R(t) at the stated times that were measured.
     pub relaxation: Vec<StatedRelaxation>,
+    /// Times that were chosen, not the usual ones, without a force, s: they lie beyond the hold, or have fewer than five samples about them.
+    pub not_measured: Vec<f64>,
 }
 
 /// The force that a hold has lost at a time.
@@ -56,7 +58,7 @@ const FEWEST: usize = 5;
 impl Analysis {
     /// What a report states of a hold: of one that holds the displacement after loading also F₀ and R(t).
     ///
-    /// F(t) is a straight line over ln t through the samples within 5 % of t, or within 20 % where those are few, at t; its standard error
+    /// F(t) is a straight line over ln t through the samples from 0.95 t to 1.05 t, or from 0.8 t to 1.2 t where those are few, at t; its standard error
     /// is that of the line, for residuals that correlate as they do. F₀ at the start of the fit is the force there, with the noise of one
     /// sample. That of R follows by propagation, (σ_F/F₀)² + (F σ_F₀/F₀²)² (JCGM 100, 5.1.2); errors that all forces share, such as one of
     /// the load cell's zero, are not in it.
@@ -71,11 +73,17 @@ impl Analysis {
         let ramp = segments.iter().rfind(|other| other.end <= segment.start);
         let ramp = ramp.filter(|ramp| ramp.phase == Phase::Loading && Some(After::Loading) == hold.after);
         let (initial_force, relaxation) = self.stated_relaxation(hold).unzip();
+        let measured = |time: &f64| relaxation.iter().flatten().any(|stated: &StatedRelaxation| stated.time == *time);
+        // The usual times are a list to take what was measured from; those that a description states are all of interest.
+        let conditions = &self.options.conditions;
+        let is_stated = initial_force.is_some() && conditions.relaxation_at != Conditions::default().relaxation_at;
+        let stated = if is_stated { &conditions.relaxation_at[..] } else { &[] };
         HoldReport {
             applied_in: ramp.map(|ramp| time[segment.start] - time[ramp.start]),
             constraint_variation,
             relative_constraint_variation: constraint_variation.and_then(relative),
             initial_force,
+            not_measured: stated.iter().copied().filter(|time| !measured(time)).collect(),
             relaxation: relaxation.unwrap_or_default(),
         }
     }
@@ -128,7 +136,7 @@ fn level(times: &[f64], force: &[f64], at: f64) -> Option<Level> {
         return None;
     }
     let within = |share: f64| {
-        let (from, to) = (at / (1.0 + share), at * (1.0 + share));
+        let (from, to) = (at * (1.0 - share), at * (1.0 + share));
         times.partition_point(|time| *time < from)..times.partition_point(|time| *time <= to)
     };
     let window = [0.05, 0.2].map(within).into_iter().find(|window| window.len() >= FEWEST)?;
@@ -166,7 +174,7 @@ mod tests {
             assert!((found.value - (5.0 - 0.2 * at.ln())).abs() < 1e-12, "{at}: {found:?}");
         }
         assert!(level(&times, &force, 100.1).is_none());
-        // Within 20 % of 0.3 s lie three samples.
+        // Within 20 % of 0.3 s lies one sample.
         assert!(level(&times, &force, 0.3).is_none());
     }
 

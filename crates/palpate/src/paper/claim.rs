@@ -8,9 +8,9 @@ use serde::{Deserialize, Serialize};
 pub enum Verdict {
     /// Every comparison holds within its tolerance.
     Reproduced,
-    /// At least one does not.
+    /// At least one fails, with all of its interval.
     NotReproduced,
-    /// There is nothing to compare with.
+    /// There is nothing to compare with, or an interval includes the limit.
     CannotBeChecked,
 }
 
@@ -131,6 +131,18 @@ impl Comparison {
             Relation::AtLeast => self.paper.value - low <= self.tolerance,
         }
     }
+
+    /// Whether it fails, whatever number of its interval is true; a number that is none fails.
+    #[must_use]
+    pub fn fails(&self) -> bool {
+        let (low, high) = self.ours.interval.unwrap_or((self.ours.value, self.ours.value));
+        let by_all = match self.relation {
+            Relation::Equal => !self.holds(),
+            Relation::AtMost => low - self.paper.value > self.tolerance,
+            Relation::AtLeast => self.paper.value - high > self.tolerance,
+        };
+        by_all || self.ours.value.is_nan()
+    }
 }
 
 /// Where in the paper a statement stands; the numbers are the paper's.
@@ -190,8 +202,9 @@ impl Claim {
     pub fn verdict(&self) -> Verdict {
         match self.comparisons.as_slice() {
             [] => Verdict::CannotBeChecked,
+            all if all.iter().any(Comparison::fails) => Verdict::NotReproduced,
             all if all.iter().all(Comparison::holds) => Verdict::Reproduced,
-            _ => Verdict::NotReproduced,
+            _ => Verdict::CannotBeChecked,
         }
     }
 

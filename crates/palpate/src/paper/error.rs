@@ -55,6 +55,14 @@ pub enum PaperError {
         /// Largest rate, Hz.
         most: f64,
     },
+    /// A repeatability that is none, or larger than the accuracy.
+    #[error("repeatability of the force: from 0 N to its accuracy of {most} N, found {found} N")]
+    Repeatability {
+        /// What was given, N.
+        found: f64,
+        /// The accuracy, N.
+        most: f64,
+    },
     /// No seed, or more than a study can have.
     #[error("number of seeds: from 1 to {most}, found {found}")]
     Seeds {

@@ -32,7 +32,8 @@ pub use claims::record_claims;
 pub use error::PaperError;
 pub use explanations::{Explained, Explanation, LastUnloading, StepForces, explanations, last_unloadings, step_forces};
 pub use laboratory::{
-    Ball, Conclusion, HIGHEST_RATE, Laboratories, LaboratoryOptions, MOST_SEEDS, Method, ORDERS, Share, laboratories,
+    Ball, Conclusion, HIGHEST_RATE, Laboratories, LaboratoryOptions, MOST_SEEDS, Method, ORDERS, Readings, Share,
+    laboratories,
 };
 pub use published::{Published, STEPS};
 pub use sensitivity::{Sensitivities, Sensitivity, SensitivityParameter, sensitivities};
@@ -82,7 +83,7 @@ impl Reproduction {
 /// ```
 /// use palpate::paper::{LaboratoryOptions, Place, Published, Verdict, reproduce};
 /// use palpate::watch::Unwatched;
-/// let few = LaboratoryOptions { seeds: 4, sample_rate: 20.0 };
+/// let few = LaboratoryOptions { seeds: 4, sample_rate: 20.0, ..LaboratoryOptions::default() };
 /// let study = reproduce(&Published::default(), &few, &mut Unwatched)?;
 /// // Table I has a strain of −0.1661 at 5 mm, the simulation −0.0714.
 /// let first = &study.claims[0];

@@ -1,6 +1,7 @@
 //! The conditions of a test and R(t) at stated times, as reports of stress-relaxation tests give them.
 
 use palpate::analysis::{Analysis, Conditions, HoldReport, StatedRelaxation};
+use palpate::fit::Estimate;
 use palpate::units::quantity;
 
 use crate::number::significant;
@@ -9,6 +10,8 @@ use crate::table::{Cell, Table};
 
 /// What is not stated.
 const MISSING: &str = "not stated";
+/// Why there is no force at a stated time.
+const NOT_MEASURED: &str = "beyond the hold, or fewer than five samples about this time";
 /// What the section is for.
 const ABOUT: &str = "Reports of stress-relaxation tests (ISO 3384, ASTM E328) give these beside body and forces. The description of the test states them in [conditions]. They are listed here without a claim of conformity to either standard.";
 
@@ -53,10 +56,19 @@ fn pairs(conditions: &Conditions) -> Vec<(String, String)> {
 pub(super) fn tables(analysis: &Analysis) -> Vec<Table> {
     let reports: Vec<(usize, HoldReport)> =
         analysis.holds.iter().map(|hold| (hold.number, analysis.hold_report(hold))).collect();
-    let stated: Vec<(usize, StatedRelaxation)> = reports
+    // Hold, time, and what was measured there.
+    let stated: Vec<(usize, f64, Option<StatedRelaxation>)> = reports
         .iter()
-        .flat_map(|(hold, report)| report.relaxation.iter().map(|stated| (*hold, *stated)))
+        .flat_map(|(hold, report)| {
+            let measured = report.relaxation.iter().map(|stated| (*hold, stated.time, Some(*stated)));
+            measured.chain(report.not_measured.iter().map(|time| (*hold, *time, None)))
+        })
         .collect();
+    let measured = |of: fn(&StatedRelaxation) -> Estimate| {
+        move |(_, _, stated): &(usize, f64, Option<StatedRelaxation>)| {
+            stated.as_ref().map_or_else(|| Cell::missing(NOT_MEASURED), |stated| Cell::Estimate(of(stated)))
+        }
+    };
     let number = |value: Option<f64>, why: &str| Cell::number_or(value, 3, why);
     const NO_RAMP: &str = "no loading ramp stands right before the hold";
     const NO_DISPLACEMENT: &str = "no displacement was recorded";
@@ -76,13 +88,13 @@ pub(super) fn tables(analysis: &Analysis) -> Vec<Table> {
         .table()
         .note("The variation is the largest less the smallest displacement over the hold, with the noise of its measurement.");
     let relaxation = Table::of("relaxation_at", "Force and relaxation R(t) = (F₀ − F(t))/F₀ at stated times.", &stated)
-        .column("Hold", "hold", "", |(hold, _)| Cell::Integer(*hold as i64))
-        .column("Time", "time_s", "s", |(_, stated)| Cell::Number(stated.time, 3))
-        .estimates("Force", "force_n", "N", |(_, stated)| Cell::Estimate(stated.force))
-        .estimates("R(t)", "relaxation", "", |(_, stated)| Cell::Estimate(stated.relaxation))
+        .column("Hold", "hold", "", |(hold, ..)| Cell::Integer(*hold as i64))
+        .column("Time", "time_s", "s", |(_, time, _)| Cell::Number(*time, 3))
+        .estimates("Force", "force_n", "N", measured(|stated| stated.force))
+        .estimates("R(t)", "relaxation", "", measured(|stated| stated.relaxation))
         .unless_empty()
         .map(|table| {
-            table.note("Times count from that of F₀. Times beyond a hold, and those about which fewer than five samples lie, are omitted. The intervals contain the noise of the force, no error that all forces share.")
+            table.note("Times count from that of F₀. The intervals contain the noise of the force, no error that all forces share.")
         });
     std::iter::once(constraint).chain(relaxation).collect()
 }

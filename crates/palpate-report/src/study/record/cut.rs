@@ -17,12 +17,13 @@ pub(super) const MOST_NAMED: usize = 12;
 pub fn cut_figure(record: &Record, segments: &[Segment], name: &str) -> Figure {
     let time = record.time();
     let found = segments.iter().filter(|segment| segment.phase == Phase::Hold);
-    let holds: Vec<(f64, f64)> = found.map(|hold| (time[hold.start], time[hold.end - 1])).collect();
+    let holds: Vec<(usize, f64, f64)> =
+        found.zip(1..).map(|(hold, number)| (number, time[hold.start], time[hold.end - 1])).collect();
     let measured = Layer::line(time.to_vec(), record.force().to_vec(), Role::Measured);
     let force = shaded(Panel::over_time("Force", "N"), &holds).layer(measured);
     let jaw = record.displacement().map(|place| {
         let panel = displacement_panel(time, place, Role::Measured);
-        panel.layers(holds.iter().map(|(start, end)| Layer::span(*start, *end, Role::Series(0))))
+        panel.layers(holds.iter().map(|(_, start, end)| Layer::span(*start, *end, Role::Series(0))))
     });
     let caption = match holds.len() {
         0 => "No hold was detected.".to_owned(),
@@ -32,9 +33,9 @@ pub fn cut_figure(record: &Record, segments: &[Segment], name: &str) -> Figure {
     Figure::new(name, caption).panel(force).panels(jaw)
 }
 
-/// The panel with holds shaded from start to end, and numbered while there are few.
-pub(super) fn shaded(panel: Panel, holds: &[(f64, f64)]) -> Panel {
-    panel.layers(holds.iter().zip(1..).map(|((start, end), number)| {
+/// The panel with holds, given by number, start and end, shaded, and numbered while there are few.
+pub(super) fn shaded(panel: Panel, holds: &[(usize, f64, f64)]) -> Panel {
+    panel.layers(holds.iter().map(|(number, start, end)| {
         let span = Layer::span(*start, *end, Role::Series(0));
         if holds.len() <= MOST_NAMED { span.label(number.to_string()) } else { span }
     }))

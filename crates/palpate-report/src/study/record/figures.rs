@@ -56,7 +56,7 @@ pub(super) fn record(analysis: &Analysis, name: &str) -> Figure {
 
 /// Force over time with the phases.
 pub(in crate::study) fn force_panel(analysis: &Analysis) -> Panel {
-    let holds: Vec<(f64, f64)> = analysis.holds.iter().map(|hold| (hold.start, hold.end)).collect();
+    let holds: Vec<(usize, f64, f64)> = analysis.holds.iter().map(|hold| (hold.number, hold.start, hold.end)).collect();
     let (time, force) = (analysis.record.time().to_vec(), analysis.record.force().to_vec());
     shaded(Panel::over_time("Force", "N"), &holds).layer(Layer::line(time, force, Role::Measured).label("measured"))
 }

@@ -66,10 +66,7 @@ pub(super) fn holds(analysis: &Analysis) -> Table {
                 RelaxationType::None => "none",
             })
         })
-        .column("p", "p_value", "", |hold| match hold.relaxation.p_value {
-            p if p < 1e-4 => Cell::text("< 0.0001"),
-            p => Cell::Number(p, 2),
-        })
+        .column("p", "p_value", "", |hold| Cell::Number(hold.relaxation.p_value, 2))
         .table()
         .note("Held: the displacement (the force relaxes), the force (the displacement creeps) or neither.")
         .note("Type I: the force falls; Type II: it rises. The laws are fitted from the time “Fit from” on, which may lie after the start of the hold.")

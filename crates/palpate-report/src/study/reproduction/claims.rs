@@ -56,6 +56,10 @@ fn numbers(comparison: &Comparison) -> String {
             let tolerance = value_words(comparison.tolerance.into(), &comparison.unit);
             format!("{ours} (paper {paper}, tolerance {tolerance})")
         }
+        Relation::AtMost | Relation::AtLeast if comparison.tolerance > 0.0 => {
+            let tolerance = value_words(comparison.tolerance.into(), &comparison.unit);
+            format!("{ours} (to be {paper}, tolerance {tolerance})")
+        }
         Relation::AtMost | Relation::AtLeast => format!("{ours} (to be {paper})"),
     }
 }
@@ -133,7 +137,7 @@ pub(super) fn counted(claims: &[Claim]) -> String {
 pub(super) fn mismatches(claims: &[Claim]) -> Vec<String> {
     let failed = claims.iter().filter(|claim| claim.verdict() == Verdict::NotReproduced);
     let sentence = |claim: &Claim| {
-        let mut failing = claim.comparisons.iter().filter(|comparison| !comparison.holds());
+        let mut failing = claim.comparisons.iter().filter(|comparison| comparison.fails());
         let first = failing.next().map_or(String::new(), |comparison| {
             format!("{}: {}", capitalised(&comparison.quantity), numbers(comparison))
         });
@@ -159,7 +163,7 @@ pub fn claims_text(claims: &[Claim]) -> String {
         for claim in of() {
             let head = format!("  {:<11} ", claim.place.to_string());
             text.push_str(&indented(&head, 14, width(), &claim.statement));
-            for comparison in claim.comparisons.iter().filter(|comparison| !comparison.holds()) {
+            for comparison in claim.comparisons.iter().filter(|comparison| comparison.fails()) {
                 let line = format!("{}: {}", comparison.quantity, numbers(comparison));
                 text.push_str(&indented("              ", 16, width(), &line));
             }

@@ -1,7 +1,7 @@
 //! What is drawn of the study alone: the last unloading, and what goes beyond the paper's figures.
 
 use palpate::number::significant;
-use palpate::paper::{Ball, Explanation, Method, Reproduction, SteppedLaw};
+use palpate::paper::{Ball, Explanation, Method, Readings, Reproduction, SteppedLaw};
 use palpate::simulate::Trajectory;
 
 use super::numbering::caption;
@@ -72,8 +72,8 @@ pub(super) fn equilibria(study: &Reproduction) -> Figure {
     let drawn = [
         (Explanation::Uniform, Role::Simulated),
         (Explanation::HertzModulus, Role::Alternative(0)),
+        (Explanation::TouchModulus, Role::Alternative(2)),
         (Explanation::Unfinished, Role::Alternative(1)),
-        (Explanation::Touch, Role::Alternative(2)),
         (Explanation::HertzArea, Role::Alternative(3)),
     ];
     for (which, role) in drawn {
@@ -119,7 +119,10 @@ pub(super) fn rate_coefficients(study: &Reproduction) -> Figure {
     let panel = |method: Method, title: &str| {
         let mut panel = Panel::new(Axis::linear("Displacement", "mm"), Axis::log("v", "s⁻¹")).title(title);
         for (series, ball) in [Ball::OneLaw, Ball::TableOne, Ball::Linear].into_iter().enumerate() {
-            let of = study.laboratories.iter().find(|labs| labs.ball == ball && labs.method == method);
+            let of = study
+                .laboratories
+                .iter()
+                .find(|labs| (labs.ball, labs.method, labs.readings) == (ball, method, Readings::Independent));
             let values = of.map(|labs| labs.coefficients.iter().map(|v| v.unwrap_or(f64::NAN)).collect());
             let role = Role::Series(series as u8);
             panel = panel.layers(values.map(|y| Layer::line(levels.clone(), y, role).label(ball.words())));
@@ -128,7 +131,7 @@ pub(super) fn rate_coefficients(study: &Reproduction) -> Figure {
         panel.layer(Layer::points(levels.clone(), known, Role::Measured).label("Table I, legible"))
     };
     let text = format!(
-        "Median of v over {} laboratories that fit n = 5 to test (a), sampled at {} Hz: strain rate against strain (a), and the closed form against time (b).",
+        "Median of v over {} laboratories that fit n = 5 to test (a), sampled at {} Hz with independent errors of the readings: strain rate against strain (a), and the closed form against time (b).",
         study.options.seeds,
         significant(study.options.sample_rate, 3)
     );

@@ -1,9 +1,7 @@
 //! Tables of the study alone.
 
 use palpate::fit::Estimate;
-use palpate::paper::{
-    Conclusion, Explanation, Laboratories, Method, ORDERS, Reproduction, STEPS, SensitivityParameter, Share,
-};
+use palpate::paper::{Conclusion, Laboratories, Method, ORDERS, Reproduction, STEPS, SensitivityParameter, Share};
 
 use super::numbering::{caption, table_key};
 use crate::table::{Cell, Table};
@@ -36,7 +34,7 @@ fn forces_by_step(study: &Reproduction) -> Table {
         .column("εₑ Table I", "equilibrium_strain_table_1", "", |row| Cell::Number(-row.table_strain, 4))
         .column("v with Table I", "rate_coefficient_per_s", "s⁻¹", |row| Cell::Number(row.coefficient, 3))
         .column("v is", "rate_coefficient_source", "", |row| {
-            Cell::text(if row.is_legible { "legible" } else { "interpolated" })
+            Cell::text(if row.is_legible { "legible" } else { "by the line" })
         })
         .column("Peak uniform", "peak_force_uniform_n", "N", |row| Cell::Number(row.peak[0], 3))
         .column("Peak Table I", "peak_force_table_1_n", "N", |row| Cell::Number(row.peak[1], 3))
@@ -56,7 +54,7 @@ fn forces_by_step(study: &Reproduction) -> Table {
         .table()
         .note("Compression is negative, as in the paper's tables; forces are positive.")
         .note(format!(
-            "Illegible coefficients: ln v follows the least-squares line over εₑ through the legible ones. They matter little: 1 % of v changes the force at the end of a hold by {} % (first step) to {} % (last step).",
+            "Illegible coefficients (“by the line”): ln v follows the least-squares line over εₑ through the legible ones of steps 2 and 3, an extrapolation at the other three. They matter little: 1 % of v changes the force at the end of a hold by {} % (first step) to {} % (last step).",
             by_coefficient(0),
             by_coefficient(STEPS - 1)
         ))
@@ -66,19 +64,11 @@ fn explanations(study: &Reproduction) -> Table {
     let text = "What would make the equilibrium strains of Table I of those of the simulation.";
     let mut table = Table::of("explanations", numbered("explanations", text), &study.explanations)
         .column("Explanation", "explanation", "", |row| Cell::text(row.explanation.words()))
-        .column("Fitted", "fitted", "", |row| {
-            Cell::text(match row.explanation {
-                Explanation::Modulus | Explanation::HertzModulus => "modulus, kPa",
-                Explanation::Touch => "travel of the fixture, mm",
-                _ => "",
-            })
+        .column("Modulus", "fitted_modulus_kpa", "kPa", |row| {
+            Cell::number_or(row.modulus.map(|modulus| 1e-3 * modulus), 3, "not fitted")
         })
-        .column("Value", "value", "", |row| {
-            Cell::number_or(
-                row.parameter.map(|value| if value > 1.0 { 1e-3 * value } else { 1e3 * value }),
-                3,
-                "nothing is fitted",
-            )
+        .column("Missed travel", "fitted_travel_mm", "mm", |row| {
+            Cell::number_or(row.travel.map(|travel| 1e3 * travel), 3, "not fitted")
         });
     for step in 0..STEPS {
         let d = 1e3 * study.published.levels[step];
@@ -96,7 +86,7 @@ fn explanations(study: &Reproduction) -> Table {
         .column("Root mean square difference", "rms_difference", "", |row| Cell::Number(row.rms, 2))
         .table()
         .note(format!("Table I has {}.", printed.join(", ")))
-        .note("Contact area: what is computed with (7) becomes smaller if the contact is smaller, the wrong way. Modulus: no single one serves, since the strains are not proportional to the displacement. Finite layers and holds: the excess left after a hold is at most ((n − 1) v t)^(−1/(n − 1)), whatever m. Hertz's force with another modulus halves the difference; the last step stays off.")
+        .note("Contact area: what is computed with (7) becomes smaller if the contact is smaller, the wrong way. Modulus: no single one serves, since the strains are not proportional to the displacement. Finite layers and holds: the excess left after a hold is at most ((n − 1) v t)^(−1/(n − 1)), whatever m. Hertz's force with another modulus, and a first touch that was missed with another modulus, come nearest; which of them it was, the paper's numbers cannot tell. Not tried: errors of the fits by rates, whose εₑ in Table S5's laboratories differ between loading and unloading.")
 }
 
 fn last_unloading(study: &Reproduction) -> Table {
@@ -140,6 +130,7 @@ fn laboratories(study: &Reproduction) -> Table {
     );
     let mut table = Table::of("laboratories", numbered("laboratories", &text), &study.laboratories)
         .column("Ball", "ball", "", |labs| Cell::text(labs.ball.words()))
+        .column("Readings", "readings", "", |labs| Cell::text(labs.readings.words()))
         .column("Fit", "fit", "", method);
     for (conclusion, key) in Conclusion::ALL.into_iter().zip(["order_five", "falling_coefficient", "equal_equilibria"])
     {
@@ -156,13 +147,19 @@ fn laboratories(study: &Reproduction) -> Table {
     table
         .table()
         .note("True: whether the ball has the property. A conclusion is worth something where it is drawn by most laboratories if it is true and by few if it is not.")
-        .note("Readings: independent and uniform within the accuracy. Rates: local parabolas over ±15 % of the time since the hold began, at 100 points evenly spaced in ln t; the paper does not state its sampling rate nor how it differentiates.")
+        .note(format!(
+            "Readings: with independent errors, uniform within the accuracy; or with one error a test, that of the zero, and a further one of each reading within {} N and {} mm. The paper calls its load cell of “high repeatability” without a number.",
+            options.repeatability,
+            1e3 * study.published.displacement_accuracy * options.repeatability / study.published.force_accuracy
+        ))
+        .note("Rates: local parabolas over ±15 % of the time since the hold began, at 100 points evenly spaced in ln t; the paper does not state its sampling rate nor how it differentiates.")
 }
 
 fn orders(study: &Reproduction) -> Table {
     let text = "Which order laboratories choose, and the median of v at each step of test (a) with n = 5.";
     let mut table = Table::of("orders", numbered("orders", text), &study.laboratories)
         .column("Ball", "ball", "", |labs| Cell::text(labs.ball.words()))
+        .column("Readings", "readings", "", |labs| Cell::text(labs.readings.words()))
         .column("Fit", "fit", "", method);
     for (index, n) in ORDERS.into_iter().enumerate() {
         table = table

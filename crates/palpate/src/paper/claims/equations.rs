@@ -12,15 +12,13 @@ use super::laboratories::laboratories;
 
 /// Tolerance of solutions that two methods compute, relative to the excess strain at the start.
 const NUMERICAL: (f64, &str) = (1e-9, "error of the Runge–Kutta integration in 20 000 steps, relative to the start");
-/// Tolerance of two forms of one formula.
-const ROUNDING: (f64, &str) = (1e-12, "rounding of double precision");
 /// Excess strain at the start of a hold of the simulation, and an equilibrium strain: where the solutions are compared.
 const EXCESS: f64 = 0.133;
 const EQUILIBRIUM: f64 = 0.3;
 
 pub(super) fn claims(study: &Reproduction) -> Vec<Claim> {
     let paper = &study.published;
-    vec![
+    let mut claims = vec![
         linear(paper),
         Claim::new(Place::Equation("1"), "The equilibrium strain is εₑ = −N₀c₀/αc.")
             .remark("The paper gives no values of N₀, c₀ and αc; they are those of its reference [25]."),
@@ -31,12 +29,14 @@ pub(super) fn claims(study: &Reproduction) -> Vec<Claim> {
         Claim::new(Place::Equation("6"), "Strain and stress are proportional, ε = σ/E = f/(A E).")
             .remark("An assumption, made “for the sake of convenience”: no strain was measured apart from the force."),
         area(paper),
-        strain(study, 0.5),
+        strain(study),
         derivative(study),
-        laboratories(study, Place::Equation("10"), Conclusion::OrderFive, Method::Rates),
-        laboratories(study, Place::Equation("10"), Conclusion::OrderFive, Method::Time),
         force(study),
-    ]
+    ];
+    for method in [Method::Rates, Method::Time] {
+        claims.extend(laboratories(study, Place::Equation("10"), Conclusion::OrderFive, method));
+    }
+    claims
 }
 
 /// Excess strains on both sides of equilibrium.
@@ -69,28 +69,15 @@ fn linear(paper: &Published) -> Claim {
 fn branches(paper: &Published) -> Claim {
     let orders = [paper.exponent, paper.exponent + 1.0];
     let v = paper.simulated_coefficient;
-    let off = largest(orders.into_iter().flat_map(|n| {
-        grid().map(move |x| {
-            let own = LatencyLaw::new(n, v).map_or(f64::NAN, |law| law.rate(x));
-            (rate_2(x, n, v) / own - 1.0).abs()
-        })
-    }));
     let all = || orders.into_iter().flat_map(|n| grid().map(move |x| (n, x)));
     let towards = all().filter(|(n, x)| rate_2(*x, *n, v) * x < 0.0).count();
     Claim::new(Place::Equation("2"), "For odd and even n the strain tends to equilibrium from both sides.")
-        .compared([
-            Comparison::all(
-                "strains on both sides, odd and even n, at which the rate points to equilibrium",
-                towards,
-                all().count(),
-            ),
-            Comparison::new(
-                "largest relative difference of both branches from −v sgn(x)|x|ⁿ",
-                "",
-                (0.0, Relation::AtMost, off),
-                ROUNDING,
-            ),
-        ])
+        .remark(format!(
+            "A definition. Both branches point to equilibrium at {towards} of {} strains on both sides of it, for n = {} and {}.",
+            all().count(),
+            orders[0],
+            orders[1]
+        ))
         .shown_by(Evidence::Figure("figure_2"))
 }
 
@@ -101,12 +88,7 @@ fn odd(paper: &Published) -> Claim {
         Place::Equation("3"),
         format!("For an odd exponent, here n = {n}, ε̇ = −v(ε − εₑ)ⁿ on both sides of equilibrium."),
     )
-    .compared([Comparison::new(
-        "largest relative difference of (3) from (2)",
-        "",
-        (0.0, Relation::AtMost, off),
-        ROUNDING,
-    )])
+    .remark(format!("A form of (2), from which it differs by a relative {} at most.", significant(off, 1)))
     .shown_by(Evidence::Figure("figure_2"))
 }
 
@@ -138,46 +120,39 @@ fn solution(
 fn area(paper: &Published) -> Claim {
     let r = paper.radius;
     let u = paper.levels[0] / 2.0;
-    let [printed, hertz] = [area_7(r, u), std::f64::consts::PI * r * u].map(|area| 1e6 * area);
+    let [printed, hertz] = [area_7(r, u), std::f64::consts::PI * r * u].map(|area| significant(1e6 * area, 3));
     Claim::new(Place::Equation("7"), "The area of contact is A = π[r² − (r − d)²].")
-        .compared([Comparison::new(
-            "area of contact at 5 mm, 2.5 mm a contact, after Hertz",
-            "mm²",
-            (printed, Relation::Equal, hertz),
-            (hertz * u / r, "what Hertz's theory of a small contact neglects is of the order u₁/r"),
-        )])
         .remark(format!(
-            "(7) is the section of the undeformed ball in the plane of the jaw. The contact of an elastic ball is about half as large, since the surface around it gives way. Section III-C takes d as the travel of the fixture, section IV as half of it. Half of it is used here; the full travel would make A at the first step {} times as large.",
+            "No area was measured. (7) is the section of the undeformed ball in the plane of the jaw, {printed} mm² at 5 mm; a small contact of an elastic ball is about half as large (Hertz: {hertz} mm²), since the surface around it gives way. Section III-C takes d as the travel of the fixture, section IV as half of it. Half of it is used here; the full travel would make A at the first step {} times as large.",
             significant(area_7(r, paper.levels[0]) / area_7(r, u), 3)
         ))
-        .shown_by(Evidence::Table("explanations"))
 }
 
-/// Equation (8) with this share of the travel in the place of d.
-pub(in crate::paper) fn strain(study: &Reproduction, share: f64) -> Claim {
-    let (paper, series) = (&study.published, &study.test_a.bonded);
+/// Equation (8) with half of the travel in the place of d.
+fn strain(study: &Reproduction) -> Claim {
+    let paper = &study.published;
     let at_full_travel = |step: usize| {
         let d = paper.levels[step];
-        area_7(paper.radius, d / 2.0) / area_7(paper.radius, d)
+        significant(area_7(paper.radius, d / 2.0) / area_7(paper.radius, d), 2)
     };
-    let samples = series.displacement.iter().zip(&series.force).zip(&series.strain);
-    let pressed = samples.filter(|((d, _), _)| **d > 1e-4);
-    let off = largest(pressed.map(|((d, f), strain)| {
-        (strain_8(*f, paper.modulus, paper.radius, share * d) - strain).abs() / strain.abs().max(1e-3)
-    }));
     Claim::new(Place::Equation("8"), "Force and displacement give the strain of the contact.")
-        .compared([Comparison::new(
-            "largest relative difference of (8), with d/2 for d, from the strain of the simulated contact layer in test (a)",
-            "",
-            (0.0, Relation::AtMost, off),
-            (1e-9, "rounding of double precision near first touch"),
-        )])
         .remark(format!(
-            "With the full travel for d, as printed, (8) gives {} (first step) to {} (last step) of the strain that (11) has in the simulation.",
-            significant(at_full_travel(0), 2),
-            significant(at_full_travel(STEPS - 1), 2)
+            "(8) is (11) solved for the strain, and no strain was measured apart from the force. With d/2 for d it returns the strain of the simulated contact layer to a relative {}; with the full travel, as printed, it gives {} (first step) to {} (last step) of it.",
+            significant(strain_error(study, 0.5), 1),
+            at_full_travel(0),
+            at_full_travel(STEPS - 1)
         ))
         .shown_by(Evidence::Series("test_a_bonded"))
+}
+
+/// Largest relative difference of (8), with this share of the travel for d, from the strain of the simulated contact layer in test (a).
+pub(in crate::paper) fn strain_error(study: &Reproduction, share: f64) -> f64 {
+    let (paper, series) = (&study.published, &study.test_a.bonded);
+    let samples = series.displacement.iter().zip(&series.force).zip(&series.strain);
+    let pressed = samples.filter(|((d, _), _)| **d > 1e-4);
+    largest(pressed.map(|((d, f), strain)| {
+        (strain_8(*f, paper.modulus, paper.radius, share * d) - strain).abs() / strain.abs().max(1e-3)
+    }))
 }
 
 fn derivative(study: &Reproduction) -> Claim {
@@ -255,18 +230,21 @@ mod tests {
             // The other case of the two.
             assert_eq!(solution(number, &paper, printed, -excess).verdict(), Verdict::NotReproduced);
         }
+        let rated = |paper: &Published| [branches(paper), odd(paper)].map(|claim| claim.remark);
         let even = Published {
             exponent: 4.0,
             ..paper.clone()
         };
-        assert_eq!(odd(&paper).verdict(), Verdict::Reproduced);
-        assert_eq!(odd(&even).verdict(), Verdict::NotReproduced);
-        let neither = Published {
-            exponent: 4.5,
-            ..paper.clone()
-        };
-        assert_eq!(branches(&paper).verdict(), Verdict::Reproduced);
-        assert_eq!(branches(&neither).verdict(), Verdict::NotReproduced);
-        assert_eq!(area(&paper).verdict(), Verdict::NotReproduced);
+        assert!(
+            rated(&paper)[0].contains("400 of 400") && rated(&paper)[1].contains("by a relative 0 at"),
+            "{:?}",
+            rated(&paper)
+        );
+        assert!(
+            rated(&even)[0].contains("400 of 400") && rated(&even)[1].contains("by a relative 2 at"),
+            "{:?}",
+            rated(&even)
+        );
+        assert_eq!(area(&paper).verdict(), Verdict::CannotBeChecked);
     }
 }

@@ -59,6 +59,7 @@ fn types(study: &Reproduction) -> Claim {
         Comparison::all("holds after loading in tests (a) and (b) with a falling force", first, loadings),
         Comparison::all("holds after unloading in test (b) with a rising force", second, unloadings),
     ])
+    .remark("Simulated; the measured curves are in figure 4 alone.")
     .shown_by(Evidence::Figure("figure_4b"))
 }
 
@@ -69,12 +70,10 @@ fn halves(study: &Reproduction) -> Claim {
         Place::Figure("5"),
         "A travel d of the fixture moves each contact by d/2 towards the plane of symmetry (also section IV).",
     )
-    .compared([Comparison::new(
-        "largest difference of the force of two jaws closing by d from that of one contact pressed by d/2, test (a)",
-        "N",
-        (0.0, Relation::AtMost, off),
-        (1e-9, "rounding of double precision"),
-    )])
+    .remark(format!(
+        "Geometry of the model. In the simulation two jaws that close by d and one contact that is pressed by d/2 differ by {} N at most.",
+        significant(off, 1)
+    ))
     .shown_by(Evidence::Series("test_a_bonded"))
 }
 
@@ -127,17 +126,17 @@ fn evenness(study: &Reproduction) -> Claim {
     let left = study.test_a.loaded().next().map(|hold| {
         let end = hold.values.last().copied().unwrap_or(f64::NAN);
         let specimen = &study.model.specimen;
-        let even = hold
+        let uniform = hold
             .displacement
             .map_or(f64::NAN, |d| specimen.equilibrium_strain(specimen.contact_displacement(d)));
-        (end, even)
+        (end, uniform)
     });
-    let remark = left.map_or(String::new(), |(end, even)| {
+    let remark = left.map_or(String::new(), |(end, uniform)| {
         format!(
-            " In the simulation the strain is not even after the first hold of {} s: the contact layer has {}, an even one would be {}.",
+            " In the simulation the strain is not uniform after the first hold of {} s: the contact layer has −{}, uniform would be −{}.",
             significant(study.published.hold, 3),
             significant(end, 3),
-            significant(even, 3)
+            significant(uniform, 3)
         )
     });
     Claim::new(Place::Figure("7"), "The strain between a layer and the plane of symmetry becomes uniform, so that εₑ of the contact layer is u₁/r (also section IV-A, step 2).")
@@ -188,7 +187,7 @@ fn table_1_coefficients(paper: &Published) -> Claim {
 
 fn rising(paper: &Published) -> Claim {
     let least = paper.equilibria.windows(2).map(|pair| pair[1] - pair[0]).fold(f64::INFINITY, f64::min);
-    Claim::new(Place::Table("I"), "|εₑ| increases from steps 1 to 5 (section V-B).")
+    Claim::new(Place::Table("I"), "|εₑ| increases from steps 1 to 5 (section V-B; the abstract: step by step).")
         .compared([Comparison::new(
             "smallest increase of |εₑ| from one step of the table to the next",
             "",
@@ -234,7 +233,7 @@ mod tests {
         );
         // A change that rounding may have made.
         other.coefficients = [None, Some(2.6e4), Some(2.55e4), None, None];
-        assert_eq!(falling(&other).verdict(), Verdict::NotReproduced);
+        assert_eq!(falling(&other).verdict(), Verdict::CannotBeChecked);
         other.coefficients = [None; STEPS];
         assert_eq!(falling(&other).verdict(), Verdict::CannotBeChecked);
     }

@@ -43,4 +43,4 @@ fn sorted(mut claims: Vec<Claim>) -> Vec<Claim> {
 }
 
 #[cfg(test)]
-pub(super) use {equations::strain, figures::half_travel};
+pub(super) use {equations::strain_error, figures::half_travel};

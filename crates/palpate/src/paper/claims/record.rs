@@ -5,6 +5,7 @@ use crate::fit::{Estimate, LatencyFit};
 use crate::paper::study::loaded;
 use crate::paper::{Claim, Comparison, Evidence, Place, Relation};
 use crate::segment::{After, RelaxationType};
+use crate::statistics::noise;
 
 use super::{millimetres, sorted};
 
@@ -14,6 +15,10 @@ const ORDER: f64 = 5.0;
 const SAME: f64 = 0.02;
 /// Half of a 95 % interval in standard errors.
 const COVERAGE: f64 = 1.959_963_984_540_054;
+/// Two equilibrium strains agree if they differ by no more than this, in percent.
+const AGREES: f64 = 10.0;
+/// Difference of an information criterion that is evidence.
+const EVIDENCE: f64 = 2.0;
 
 /// What the paper concludes from its tests, on the analysis of a record; conclusions that the record cannot show say why.
 ///
@@ -22,13 +27,13 @@ const COVERAGE: f64 = 1.959_963_984_540_054;
 /// ```
 /// use palpate::paper::{Published, Verdict, record_claims, reproduce, LaboratoryOptions};
 /// use palpate::watch::Unwatched;
-/// let few = LaboratoryOptions { seeds: 1, sample_rate: 10.0 };
+/// let few = LaboratoryOptions { seeds: 1, sample_rate: 10.0, ..LaboratoryOptions::default() };
 /// let study = reproduce(&Published::default(), &few, &mut Unwatched)?;
 /// // A simulated test (a) has n = 5 and one v.
 /// let claims = record_claims(&study.test_a.analysis);
 /// let of = |start: &str| claims.iter().find(|claim| claim.statement.starts_with(start)).unwrap().verdict();
 /// assert_eq!(of("n = 5"), Verdict::Reproduced);
-/// assert_eq!(of("v falls"), Verdict::NotReproduced);
+/// assert_eq!(of("v falls"), Verdict::CannotBeChecked); // v has its error
 /// assert_eq!(of("εₑ agrees"), Verdict::CannotBeChecked); // no hold after unloading
 /// # Ok::<(), palpate::paper::PaperError>(())
 /// ```
@@ -36,7 +41,8 @@ const COVERAGE: f64 = 1.959_963_984_540_054;
 pub fn record_claims(analysis: &Analysis) -> Vec<Claim> {
     sorted(vec![
         matching(analysis),
-        types(analysis),
+        types(analysis, After::Loading),
+        types(analysis, After::Unloading),
         stepwise(analysis),
         order(analysis),
         agreeing(analysis),
@@ -65,69 +71,114 @@ fn has_strain(analysis: &Analysis) -> bool {
 const NO_STRAIN: &str = "The record has no strain: its description lacks the body, or its columns the displacement.";
 const FEW: &str = "Fewer than two displacements are held after loading and fitted with n = 5.";
 
-fn types(analysis: &Analysis) -> Claim {
-    let count = |which: After, kind: RelaxationType| {
-        let holds = after(analysis, which);
-        (holds.iter().filter(|hold| hold.relaxation.kind == kind).count(), holds.len())
+fn types(analysis: &Analysis, which: After) -> Claim {
+    let (statement, kind, quantity) = match which {
+        After::Loading => (
+            "Type I relaxation follows loading.",
+            RelaxationType::TypeI,
+            "holds after loading with a falling force",
+        ),
+        After::Unloading => (
+            "Type II relaxation follows unloading.",
+            RelaxationType::TypeII,
+            "holds after unloading with a rising force",
+        ),
     };
-    let claim = Claim::new(Place::Figure("1(a)"), "Type I relaxation follows loading and Type II follows unloading.");
-    let loading = count(After::Loading, RelaxationType::TypeI);
-    let unloading = count(After::Unloading, RelaxationType::TypeII);
-    let all = [
-        ("holds after loading with a falling force", loading),
-        ("holds after unloading with a rising force", unloading),
-    ];
-    let compared = all
-        .into_iter()
-        .filter(|(_, (_, of))| *of > 0)
-        .map(|(name, (found, of))| Comparison::all(name, found, of));
-    let claim = claim.compared(compared).shown_by(Evidence::Figure("figure_4"));
-    if loading.1 + unloading.1 == 0 {
-        return claim.remark("The record has no hold after a ramp.");
+    let claim = Claim::new(Place::Figure("1(a)"), statement).shown_by(Evidence::Figure("figure_4"));
+    let holds = after(analysis, which);
+    if holds.is_empty() {
+        return claim.remark("The record has no such hold.");
     }
-    claim
+    let found = holds.iter().filter(|hold| hold.relaxation.kind == kind).count();
+    claim.compared([Comparison::all(quantity, found, holds.len())])
+}
+
+/// The sum of an information criterion over all holds, less its least, with a free exponent.
+fn free_order(analysis: &Analysis) -> Option<f64> {
+    let of_hold = |hold: &HoldAnalysis| {
+        let candidates = &hold.order.as_ref()?.candidates;
+        let five = candidates.iter().find(|one| !one.free && one.exponent == ORDER)?;
+        Some(five.delta_bic - candidates.iter().find(|one| one.free)?.delta_bic)
+    };
+    let fitted = analysis.holds.iter().filter(|hold| hold.order.is_some());
+    fitted.map(of_hold).sum()
 }
 
 fn order(analysis: &Analysis) -> Claim {
     let claim = Claim::new(Place::Equation("10"), "n = 5 is the lowest order that fits best.")
         .shown_by(Evidence::Table("orders"));
-    match analysis.across.common_exponent {
-        Some(found) => claim.compared([Comparison::new(
+    let Some(found) = analysis.across.common_exponent else {
+        return claim.remark("No hold is fitted with every listed exponent.");
+    };
+    let alike: Vec<String> = analysis
+        .across
+        .evidence
+        .iter()
+        .filter(|(_, delta)| *delta <= EVIDENCE)
+        .map(|(n, _)| n.to_string())
+        .collect();
+    let free = free_order(analysis).map(|more| {
+        Comparison::new(
+            "summed information criterion of n = 5 less that of a free n, which pays for its further parameter",
+            "",
+            (0.0, Relation::AtMost, more),
+            (EVIDENCE, "a difference that is no evidence"),
+        )
+    });
+    claim
+        .compared([Comparison::new(
             "lowest listed n whose summed information criterion is within 2 of the lowest",
             "",
             (ORDER, Relation::Equal, found),
             (0.0, "an order is one of a list"),
-        )]),
-        None => claim.remark("No hold is fitted with every listed exponent."),
-    }
+        )])
+        .compared(free)
+        .remark(format!("Listed orders that are within 2 of the lowest criterion: {}.", alike.join(", ")))
+}
+
+/// Whether numbers, each with its displacement and half of its 95 % interval, rise at every step.
+fn steps_up(quantity: &str, unit: &str, levels: &[(f64, f64, f64)]) -> Vec<Comparison> {
+    let step = |pair: &[(f64, f64, f64)]| {
+        let ((from, a, a_error), (to, b, b_error)) = (pair[0], pair[1]);
+        Comparison::new(
+            format!("{quantity} from {} to {} mm", millimetres(from), millimetres(to)),
+            unit,
+            (0.0, Relation::AtLeast, (b - a, a_error.hypot(b_error))),
+            (0.0, "the whole 95 % interval has to be above 0"),
+        )
+    };
+    levels.windows(2).map(step).collect()
 }
 
 fn stepwise(analysis: &Analysis) -> Claim {
     let claim = Claim::new(Place::Section("Abstract"), "The equilibrium strain increases step by step.")
         .shown_by(Evidence::Table("table_1"));
-    let fits = by_displacement(fitted(analysis, After::Loading));
     if !has_strain(analysis) {
         return claim.remark(NO_STRAIN);
     }
-    if fits.len() < 2 {
+    let level = |(hold, fit): &(&HoldAnalysis, &LatencyFit)| {
+        let found = fit.equilibrium();
+        Some((hold.displacement?, found.value, COVERAGE * found.standard_error?))
+    };
+    let levels: Vec<_> = by_displacement(fitted(analysis, After::Loading)).iter().filter_map(level).collect();
+    if levels.len() < 2 {
         return claim.remark(FEW);
     }
-    let rising = fits.windows(2).filter(|pair| pair[1].1.equilibrium().value > pair[0].1.equilibrium().value).count();
-    claim.compared([Comparison::all("steps to a larger displacement with a larger εₑ", rising, fits.len() - 1)])
+    claim.compared(steps_up("increase of |εₑ|", "", &levels))
 }
 
 fn falling(analysis: &Analysis) -> Claim {
     let claim = Claim::new(Place::Section("III-C"), "v falls from step to step of loading.")
         .shown_by(Evidence::Figure("rate_coefficients"));
-    let fits = by_displacement(fitted(analysis, After::Loading));
-    if fits.len() < 2 {
+    let level = |(hold, fit): &(&HoldAnalysis, &LatencyFit)| {
+        let v = fit.rate_coefficient();
+        Some((hold.displacement?, -v.value.ln(), COVERAGE * v.standard_error? / v.value))
+    };
+    let levels: Vec<_> = by_displacement(fitted(analysis, After::Loading)).iter().filter_map(level).collect();
+    if levels.len() < 2 {
         return claim.remark(FEW);
     }
-    let falling = fits
-        .windows(2)
-        .filter(|pair| pair[1].1.rate_coefficient().value < pair[0].1.rate_coefficient().value)
-        .count();
-    claim.compared([Comparison::all("steps to a larger displacement with a smaller v", falling, fits.len() - 1)])
+    claim.compared(steps_up("fall of ln v", "", &levels))
 }
 
 /// One hold for each displacement, the first, ascending.
@@ -157,12 +208,19 @@ fn agreeing(analysis: &Analysis) -> Claim {
             let level = below.displacement?;
             let partner = loading.iter().rev().find(|(hold, _)| hold.displacement.is_some_and(|d| same(d, level)))?;
             let (a, b): (Estimate, Estimate) = (partner.1.equilibrium(), unloading.equilibrium());
-            let error = COVERAGE * a.standard_error?.hypot(b.standard_error?);
+            let percent = 100.0 / a.value.abs();
             Some(Comparison::new(
-                format!("εₑ at {} mm after unloading against after loading", millimetres(level)),
-                "",
-                ((-a.value, COVERAGE * a.standard_error?), Relation::Equal, (-b.value, COVERAGE * b.standard_error?)),
-                (error, "95 % interval of the difference of two fits"),
+                format!("difference of εₑ at {} mm after unloading from that after loading", millimetres(level)),
+                "%",
+                (
+                    0.0,
+                    Relation::AtMost,
+                    (
+                        percent * (a.value - b.value).abs(),
+                        percent * COVERAGE * a.standard_error?.hypot(b.standard_error?),
+                    ),
+                ),
+                (AGREES, "the whole 95 % interval has to be below a tenth of εₑ"),
             ))
         })
         .collect();
@@ -177,21 +235,18 @@ fn amounts(analysis: &Analysis) -> Claim {
     let claim =
         Claim::new(Place::Section("V-A"), "The amount of relaxation is larger where the displacement is larger.")
             .shown_by(Evidence::Figure("figure_4"));
-    let mut drops: Vec<(f64, f64)> = after(analysis, After::Loading)
-        .into_iter()
-        .filter_map(|hold| Some((hold.displacement?, hold.force_start - hold.force_end)))
-        .collect();
-    drops.sort_by(|a, b| a.0.total_cmp(&b.0));
-    drops.dedup_by(|later, earlier| same(later.0, earlier.0));
-    if drops.len() < 2 {
+    let level = |hold: &HoldAnalysis| {
+        let force = &analysis.record.force()[hold.segment.start..hold.segment.end];
+        let error = COVERAGE * std::f64::consts::SQRT_2 * noise(force);
+        Some((hold.displacement?, hold.force_start - hold.force_end, error))
+    };
+    let mut levels: Vec<_> = after(analysis, After::Loading).into_iter().filter_map(level).collect();
+    levels.sort_by(|a, b| a.0.total_cmp(&b.0));
+    levels.dedup_by(|later, earlier| same(later.0, earlier.0));
+    if levels.len() < 2 {
         return claim.remark("Fewer than two displacements are held after loading.");
     }
-    let larger = drops.windows(2).filter(|pair| pair[1].1 > pair[0].1).count();
-    claim.compared([Comparison::all(
-        "steps to a larger displacement with a larger fall of the force",
-        larger,
-        drops.len() - 1,
-    )])
+    claim.compared(steps_up("increase of the fall of the force", "N", &levels))
 }
 
 fn matching(analysis: &Analysis) -> Claim {

@@ -11,7 +11,7 @@ use crate::strain::{RateWindow, contact_strain, strain_rates};
 
 use super::super::published::STEPS;
 use super::super::{PaperError, Published};
-use super::{Ball, ORDERS};
+use super::{Ball, LaboratoryOptions, ORDERS, Readings};
 
 /// Points of a hold at which the strain rate is taken, evenly spaced in the logarithm of time.
 const RATE_POINTS: usize = 100;
@@ -36,13 +36,16 @@ struct CleanHold {
 pub(super) struct Bench<'a> {
     paper: &'a Published,
     specimen: Specimen,
+    /// Share of the accuracy that a reading does not repeat.
+    rest: f64,
     /// Times since the start of a hold, s.
     times: Vec<f64>,
     holds: Vec<CleanHold>,
 }
 
 impl<'a> Bench<'a> {
-    pub(super) fn new(paper: &'a Published, ball: Ball, rate: f64) -> Result<Self, PaperError> {
+    pub(super) fn new(paper: &'a Published, ball: Ball, options: &LaboratoryOptions) -> Result<Self, PaperError> {
+        let rate = options.sample_rate;
         let times: Vec<f64> = (0..=(paper.hold * rate).floor() as usize).map(|i| i as f64 / rate).collect();
         let mut holds = Vec::with_capacity(2 * STEPS);
         for descending in [false, true] {
@@ -60,28 +63,40 @@ impl<'a> Bench<'a> {
         Ok(Self {
             paper,
             specimen: paper.specimen()?,
+            rest: options.repeatability / paper.force_accuracy,
             times,
             holds,
         })
     }
 
     /// What the laboratory with this seed concludes by both methods.
-    pub(super) fn measured(&self, seed: u64) -> [Drawn; 2] {
+    pub(super) fn measured(&self, readings: Readings, seed: u64) -> [Drawn; 2] {
         let mut random = Rng::new(seed_of(0x7a_b1e, seed));
-        let fits: Vec<[Vec<LatencyFit>; 2]> = self.holds.iter().map(|hold| self.fitted(hold, &mut random)).collect();
+        let mut drawn = || 2.0 * random.uniform() - 1.0;
+        // Of force and displacement, in shares of the accuracy: one error for each of the two tests, and the part that every reading draws.
+        let (shared, own) = match readings {
+            Readings::Independent => ([[0.0; 2]; 2], 1.0),
+            Readings::Repeatable => ([0, 1].map(|_| [drawn(), drawn()]), self.rest),
+        };
+        let fits: Vec<[Vec<LatencyFit>; 2]> = self
+            .holds
+            .iter()
+            .map(|hold| self.fitted(hold, |quantity| shared[usize::from(hold.descending)][quantity] + own * drawn()))
+            .collect();
         [0, 1].map(|method| self.concluded(&fits.iter().map(|both| &both[method]).collect::<Vec<_>>()))
     }
 
     /// One hold read with errors and fitted with every order, by rates and over time; an order that cannot be fitted is left out.
-    fn fitted(&self, hold: &CleanHold, random: &mut Rng) -> [Vec<LatencyFit>; 2] {
-        let mut off = |accuracy: f64| accuracy * (2.0 * random.uniform() - 1.0);
+    ///
+    /// `off` draws the error of a reading of the force (0) or the displacement (1), in shares of the accuracy.
+    fn fitted(&self, hold: &CleanHold, mut off: impl FnMut(usize) -> f64) -> [Vec<LatencyFit>; 2] {
         let level = self.paper.levels[hold.level];
         let strains: Vec<f64> = hold
             .force
             .iter()
             .map(|force| {
-                let (force, displacement) =
-                    (force + off(self.paper.force_accuracy), level + off(self.paper.displacement_accuracy));
+                let force = force + self.paper.force_accuracy * off(0);
+                let displacement = level + self.paper.displacement_accuracy * off(1);
                 contact_strain(force, displacement, &self.specimen).unwrap_or(0.0)
             })
             .collect();

@@ -38,6 +38,9 @@ pub struct LaboratoryOptions {
     pub seeds: usize,
     /// Sampling rate, Hz. The paper does not state its own.
     pub sample_rate: f64,
+    /// Error of a reading of the force that is not shared by its neighbours, N, at most, where the accuracy is that of the zero
+    /// ([`Readings::Repeatable`]). The paper calls it “high repeatability” without a number.
+    pub repeatability: f64,
 }
 
 impl Default for LaboratoryOptions {
@@ -45,19 +48,20 @@ impl Default for LaboratoryOptions {
         Self {
             seeds: 32,
             sample_rate: 50.0,
+            repeatability: 0.02,
         }
     }
 }
 
 impl LaboratoryOptions {
-    fn check(&self, hold: f64) -> Result<(), PaperError> {
+    fn check(&self, paper: &Published) -> Result<(), PaperError> {
         if !(1..=MOST_SEEDS).contains(&self.seeds) {
             return Err(PaperError::Seeds {
                 found: self.seeds,
                 most: MOST_SEEDS,
             });
         }
-        let (found, least) = (self.sample_rate, LEAST_SAMPLES as f64 / hold);
+        let (found, least) = (self.sample_rate, LEAST_SAMPLES as f64 / paper.hold);
         if !(found >= least && found.is_finite()) {
             return Err(PaperError::SampleRate {
                 found,
@@ -69,6 +73,12 @@ impl LaboratoryOptions {
             return Err(PaperError::SampleRateTooHigh {
                 found,
                 most: HIGHEST_RATE,
+            });
+        }
+        if !(0.0..=paper.force_accuracy).contains(&self.repeatability) {
+            return Err(PaperError::Repeatability {
+                found: self.repeatability,
+                most: paper.force_accuracy,
             });
         }
         Ok(())
@@ -98,6 +108,30 @@ impl Conclusion {
             Self::OrderFive => "n = 5 is the lowest order that fits best",
             Self::FallingCoefficient => "v falls from step to step",
             Self::EqualEquilibria => "εₑ agrees between loading and unloading",
+        }
+    }
+}
+
+/// What the accuracy of force and displacement that the paper states means for readings.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Readings {
+    /// Every reading is off by an error of its own.
+    Independent,
+    /// All readings of a test are off by one error, that of the zero, and each by a further one of its own within the repeatability.
+    Repeatable,
+}
+
+impl Readings {
+    /// Both.
+    pub const ALL: [Self; 2] = [Self::Independent, Self::Repeatable];
+
+    /// As people read it.
+    #[must_use]
+    pub fn words(self) -> &'static str {
+        match self {
+            Self::Independent => "independent errors",
+            Self::Repeatable => "one error a test",
         }
     }
 }
@@ -146,11 +180,13 @@ impl Share {
     }
 }
 
-/// What the laboratories with one ball conclude.
+/// What the laboratories with one ball and one kind of readings conclude.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Laboratories {
     /// The ball that they measured.
     pub ball: Ball,
+    /// How their readings are off.
+    pub readings: Readings,
     /// How they fitted.
     pub method: Method,
     /// How many drew each conclusion, in the order of [`Conclusion::ALL`].
@@ -171,9 +207,10 @@ impl Laboratories {
 
 /// Simulates laboratories that measure each of the [balls](Ball::ALL) with the paper's instrument, and lets them conclude.
 ///
-/// Every reading of force and displacement is off by a random error, uniform within the accuracy that the paper states and independent from
-/// sample to sample; the motion and the limits of the holds are known. Strain and strain rate follow equations (8) and (9), the latter by
-/// [`strain_rates`]. The same seeds are drawn for every ball.
+/// Readings of force and displacement are off by random errors, uniform within the accuracy that the paper states: independent from sample to
+/// sample, or one a test with a rest within the repeatability ([`Readings`]); the motion and the limits of the holds are known. Strain and
+/// strain rate follow equations (8) and (9), the latter by [`strain_rates`](crate::strain::strain_rates). The same seeds are drawn for every
+/// ball.
 ///
 /// # Errors
 /// [`PaperError`] for options that are out of range, numbers that make no body, and a watch that ends it.
@@ -182,23 +219,26 @@ pub fn laboratories(
     options: &LaboratoryOptions,
     watch: &mut dyn Watch,
 ) -> Result<Vec<Laboratories>, PaperError> {
-    options.check(paper.hold)?;
-    let mut all = Vec::with_capacity(2 * Ball::ALL.len());
-    for (index, ball) in Ball::ALL.into_iter().enumerate() {
-        let bench = Bench::new(paper, ball, options.sample_rate)?;
-        let mut found: Vec<[Drawn; 2]> = Vec::with_capacity(options.seeds);
-        for first in (0..options.seeds).step_by(AT_ONCE) {
-            let done = index * options.seeds + first;
-            watch.report(Progress::counted("simulating laboratories", done, options.seeds * Ball::ALL.len()))?;
-            let count = AT_ONCE.min(options.seeds - first);
-            found.extend(for_each(count, |seed| bench.measured((first + seed) as u64)));
+    options.check(paper)?;
+    let kinds = Ball::ALL.len() * Readings::ALL.len();
+    let mut all = Vec::with_capacity(2 * kinds);
+    for ball in Ball::ALL {
+        let bench = Bench::new(paper, ball, options)?;
+        for readings in Readings::ALL {
+            let mut found: Vec<[Drawn; 2]> = Vec::with_capacity(options.seeds);
+            for first in (0..options.seeds).step_by(AT_ONCE) {
+                let done = all.len() / 2 * options.seeds + first;
+                watch.report(Progress::counted("simulating laboratories", done, options.seeds * kinds))?;
+                let count = AT_ONCE.min(options.seeds - first);
+                found.extend(for_each(count, |seed| bench.measured(readings, (first + seed) as u64)));
+            }
+            all.extend([Method::Rates, Method::Time].map(|method| summed_up(ball, readings, method, &found)));
         }
-        all.extend([Method::Rates, Method::Time].map(|method| summed_up(ball, method, &found)));
     }
     Ok(all)
 }
 
-fn summed_up(ball: Ball, method: Method, found: &[[Drawn; 2]]) -> Laboratories {
+fn summed_up(ball: Ball, readings: Readings, method: Method, found: &[[Drawn; 2]]) -> Laboratories {
     let drawn = || found.iter().map(|both| &both[method as usize]);
     let of = found.len();
     let share = |conclusion: Conclusion| Share {
@@ -207,6 +247,7 @@ fn summed_up(ball: Ball, method: Method, found: &[[Drawn; 2]]) -> Laboratories {
     };
     Laboratories {
         ball,
+        readings,
         method,
         conclusions: Conclusion::ALL.map(share),
         orders: std::array::from_fn(|order| drawn().filter(|drawn| drawn.order == Some(order)).count()),
