@@ -152,7 +152,7 @@ fn laboratories(study: &Reproduction) -> Table {
             options.repeatability,
             1e3 * study.published.displacement_accuracy * options.repeatability / study.published.force_accuracy
         ))
-        .note("Rates: local parabolas over ±15 % of the time since the hold began, at 100 points evenly spaced in ln t; the paper does not state its sampling rate nor how it differentiates.")
+        .note("Rates: local parabolas over ±15 % of the time since the hold began, at up to 100 points evenly spaced in ln t from where that is three samples on each side; the paper does not state its sampling rate nor how it differentiates.")
 }
 
 fn orders(study: &Reproduction) -> Table {

@@ -116,7 +116,11 @@ impl<'a> Bench<'a> {
             ..RateWindow::default()
         };
         let rates = strain_rates(&self.times, &strains, &window);
-        let by_rates = |choice| fit_rates(&rates.strain, &rates.rate, choice, &FitOptions::default()).ok();
+        // Before, a window of as many samples is wider than a share of the time, and flattens the start of the relaxation.
+        let interval = self.times[1] - self.times[0];
+        let first = rates.time.partition_point(|time| *time * window.share < window.samples as f64 * interval);
+        let by_rates =
+            |choice| fit_rates(&rates.strain[first..], &rates.rate[first..], choice, &FitOptions::default()).ok();
         let fits = |fit: &dyn Fn(ExponentChoice) -> Option<LatencyFit>| {
             ORDERS.iter().filter_map(|n| fit(ExponentChoice::Fixed(*n))).collect()
         };
