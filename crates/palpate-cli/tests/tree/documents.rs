@@ -41,6 +41,7 @@ fn documents() -> Vec<String> {
     let at_root = ["README.md", "ARCHITECTURE.md", "CONTRIBUTING.md", "CHANGELOG.md", "SECURITY.md"];
     let mut documents: Vec<String> = at_root.map(str::to_owned).into();
     documents.retain(|document| root().join(document).exists());
+    documents.push("crates/palpate-python/README.md".to_owned());
     documents.extend(files("docs", "md"));
     documents
 }
@@ -85,20 +86,33 @@ fn paths_in_backticks_exist() {
     assert!(missing.is_empty(), "no such file:\n{}", missing.join("\n"));
 }
 
+/// Where a link in the READMEs leads, which PyPI and crates.io show, too: files of this tree by their addresses.
+const PUBLISHED: [&str; 2] = [
+    "https://github.com/palpate/palpate/blob/main/",
+    "https://raw.githubusercontent.com/palpate/palpate/main/",
+];
+
 #[test]
-fn relative_links_lead_somewhere() {
+fn links_into_this_tree_lead_somewhere() {
     let mut broken = Vec::new();
     for document in documents() {
+        let is_published = document.ends_with("README.md") && !document.starts_with("docs/");
         let folder = root().join(&document).parent().map(Path::to_owned).unwrap_or_default();
         for (number, line) in prose(&read(&document)) {
             for rest in line.split("](").skip(1) {
                 let target = rest.split([')', ' ']).next().unwrap_or_default();
-                if target.contains("://") || target.starts_with("mailto:") {
+                let inside = PUBLISHED.iter().find_map(|address| target.strip_prefix(address));
+                if inside.is_none() && (target.contains("://") || target.starts_with("mailto:")) {
                     continue;
                 }
-                let (file, anchor) = target.split_once('#').unwrap_or((target, ""));
-                let path = if file.is_empty() { root().join(&document) } else { folder.join(file) };
-                if !path.exists() || !(anchor.is_empty() || has_heading(&path, anchor)) {
+                let (file, anchor) = inside.unwrap_or(target).split_once('#').unwrap_or((inside.unwrap_or(target), ""));
+                let path = match file {
+                    "" => root().join(&document),
+                    file if inside.is_some() => root().join(file),
+                    file => folder.join(file),
+                };
+                let unreachable = is_published && inside.is_none() && !file.is_empty();
+                if unreachable || !path.exists() || !(anchor.is_empty() || has_heading(&path, anchor)) {
                     broken.push(format!("{document}:{number}: {target}"));
                 }
             }
