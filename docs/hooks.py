@@ -1,0 +1,35 @@
+"""The README is the first page of the site, and links that leave `docs` lead to the repository."""
+
+from __future__ import annotations
+
+import posixpath
+import re
+from pathlib import Path
+from typing import Any
+
+from mkdocs.structure.files import File
+
+ROOT = Path(__file__).parent.parent
+TREE = "https://github.com/palpate/palpate/blob/main/"
+IMAGES = "https://raw.githubusercontent.com/palpate/palpate/main/"
+LINK = re.compile(r"(\]\()([^)\s]+)(\))")
+
+
+def on_files(files: Any, config: Any) -> Any:
+    files.append(File.generated(config, "index.md", content=(ROOT / "README.md").read_text(encoding="utf-8")))
+    return files
+
+
+def on_page_markdown(markdown: str, page: Any, config: Any, files: Any) -> str:
+    folder = posixpath.dirname(page.file.src_uri)
+
+    def target(link: str) -> str:
+        for address in (TREE, IMAGES):
+            if link.startswith(f"{address}docs/"):
+                return posixpath.relpath(link.removeprefix(f"{address}docs/"), folder or ".")
+        if "://" in link or link.startswith("#"):
+            return link
+        path = posixpath.normpath(posixpath.join("docs", folder, link))
+        return link if path.startswith("docs/") else TREE + path
+
+    return LINK.sub(lambda match: match[1] + target(match[2]) + match[3], markdown)
