@@ -11,6 +11,7 @@
 //! | `columns.rs` | finite, rising, extremes; one column made of another |
 //! | `elementary.rs` | exp, ln and ln(1 + z) without branches |
 //! | `moments.rs` | sums over a run of samples |
+//! | `normal.rs` | the tail of the normal distribution without branches |
 //! | `products.rs` | scalar products, normal equations, residuals |
 //! | `shapes.rs` | exponential, stretched exponential and logarithm of time with their derivatives |
 
@@ -18,12 +19,13 @@ mod aligned;
 mod columns;
 pub(crate) mod elementary;
 mod moments;
+pub(crate) mod normal;
 mod products;
 mod shapes;
 
 pub(crate) use aligned::Aligned;
 pub(crate) use columns::{add_multiple, all_finite, extremes, multiply, rises, rises_or_stays, shifted};
-pub(crate) use moments::moments;
+pub(crate) use moments::{block_sums, moments, sum};
 pub(crate) use products::{LANES, cross_products, dot, form_residuals, lane_sums, normal_equations};
 pub(crate) use shapes::{exponential_columns, logarithm_columns, stretched_columns};
 

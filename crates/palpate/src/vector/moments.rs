@@ -4,8 +4,40 @@ use std::ops::Range;
 
 use fearless_simd::{Simd, SimdBase, dispatch, f64x8};
 
-use super::level;
 use super::products::{LANES, total};
+use super::{accelerated, level};
+
+/// The sum of a column.
+pub(crate) fn sum(column: &[f64]) -> f64 {
+    accelerated(
+        #[inline(always)]
+        || lane_sum(column),
+    )
+}
+
+/// Sums over blocks of `length` samples; those behind the last whole block are left out.
+pub(crate) fn block_sums(column: &[f64], length: usize) -> Vec<f64> {
+    let mut sums = vec![0.0; column.len() / length];
+    accelerated(
+        #[inline(always)]
+        || sums.iter_mut().zip(column.chunks_exact(length)).for_each(|(sum, block)| *sum = lane_sum(block)),
+    );
+    sums
+}
+
+/// A sum in [`LANES`] interleaved parts.
+#[inline(always)]
+fn lane_sum(column: &[f64]) -> f64 {
+    let (blocks, rest) = column.as_chunks::<LANES>();
+    let mut sums = [0.0; LANES];
+    for block in blocks {
+        for lane in 0..LANES {
+            sums[lane] += block[lane];
+        }
+    }
+    sums.iter_mut().zip(rest).for_each(|(sum, entry)| *sum += entry);
+    total(sums)
+}
 
 /// Of the samples in `range`, with x = t − `place`, z = y − `level` and weights w (squares of `roots`, 1 if there are none):
 /// Σw, Σwx, Σwx², Σwx³, Σwz, Σwxz, Σwz².

@@ -1,8 +1,8 @@
 //! What a fit says about a time, with an interval.
 
-use crate::fit::noise::uncertainty::variance_of;
 use crate::fit::{Estimate, Fit, Scale, searched_name};
 use crate::laws::{Column, Kernel};
+use crate::vector::add_multiple;
 
 impl Fit {
     /// The curve a time `elapsed` (s) after the first sample, also beyond the last, with its confidence interval.
@@ -25,50 +25,67 @@ impl Fit {
     /// ```
     #[must_use]
     pub fn predict_interval(&self, elapsed: f64) -> Estimate {
-        self.prediction(elapsed, 0.0)
+        self.predict_intervals(&[elapsed]).swap_remove(0)
+    }
+
+    /// The curve at many times, as [`predict_interval`](Self::predict_interval).
+    #[must_use]
+    pub fn predict_intervals(&self, elapsed: &[f64]) -> Vec<Estimate> {
+        self.predictions(elapsed, 0.0)
     }
 
     /// What one more sample would show there: the curve with its interval, and noise on top.
     #[must_use]
     pub fn predict_sample(&self, elapsed: f64) -> Estimate {
-        self.prediction(elapsed, self.uncertainty.as_ref().map_or(0.0, |uncertainty| uncertainty.deviation))
+        self.predict_samples(&[elapsed]).swap_remove(0)
     }
 
-    fn prediction(&self, elapsed: f64, deviation: f64) -> Estimate {
-        let value = self.predict(elapsed);
-        let (Some(uncertainty), Some(white), false) = (&self.uncertainty, &self.white_covariance, elapsed.is_nan())
-        else {
-            return Estimate::fixed(value);
+    /// Further samples at many times, as [`predict_sample`](Self::predict_sample).
+    #[must_use]
+    pub fn predict_samples(&self, elapsed: &[f64]) -> Vec<Estimate> {
+        self.predictions(elapsed, self.uncertainty.as_ref().map_or(0.0, |uncertainty| uncertainty.deviation))
+    }
+
+    fn predictions(&self, elapsed: &[f64], deviation: f64) -> Vec<Estimate> {
+        let values = self.predict_many(elapsed);
+        let (Some(uncertainty), Some(white)) = (&self.uncertainty, &self.white_covariance) else {
+            return values.into_iter().map(Estimate::fixed).collect();
         };
-        let gradient = self.gradient(elapsed);
-        let white = variance_of(&gradient, white);
-        uncertainty.estimate_beside(value, &gradient, white, deviation * deviation, Scale::Linear)
+        let gradients = self.gradients(elapsed);
+        let mut found = uncertainty.estimates(&values, &gradients, white, deviation * deviation, |_| Scale::Linear);
+        for (estimate, _) in found.iter_mut().zip(elapsed).filter(|(_, time)| time.is_nan()) {
+            *estimate = Estimate::fixed(f64::NAN);
+        }
+        found
     }
 
-    /// Derivatives of the curve by the searched parameters, in the order of `searched`.
-    fn gradient(&self, elapsed: f64) -> Vec<f64> {
-        let mut gradient = vec![0.0; self.searched.len()];
+    /// Derivatives of the curve by the searched parameters, in the order of `searched`: a column each.
+    fn gradients(&self, elapsed: &[f64]) -> Vec<Vec<f64>> {
+        let mut gradients = vec![vec![0.0; elapsed.len()]; self.searched.len()];
         let Some(form) = self.law.form(self.response) else {
-            return gradient;
+            return gradients;
         };
-        let mut add = |name: &str, entry: f64| {
+        let mut add = |name: &str, factor: f64, entries: &[f64]| {
             if let Some(place) = self.searched.iter().position(|parameter| parameter == name) {
-                gradient[place] += entry;
+                add_multiple(&mut gradients[place], factor, entries);
             }
         };
-        add(form.constant_name(), 1.0);
+        let ones = vec![1.0; elapsed.len()];
+        add(form.constant_name(), 1.0, &ones);
+        let times: Vec<f64> = elapsed.iter().map(|time| time.max(0.0)).collect();
         let parameters = form.parameters();
         for (shape, (term, amplitude)) in self.curve.terms.iter().zip(form.amplitude_names()).enumerate() {
             let column = Column::of(&term.shape, self.response);
-            let (mut value, mut slopes) = ([0.0], vec![vec![0.0]; term.parameters.len()]);
-            term.shape.gradient(&[elapsed.max(0.0)], &term.parameters, &mut value, &mut slopes);
-            add(&amplitude, column.offset + column.sign * value[0]);
+            let (mut value, mut slopes) = (ones.clone(), vec![ones.clone(); term.parameters.len()]);
+            term.shape.gradient(&times, &term.parameters, &mut value, &mut slopes);
+            add(&amplitude, column.offset, &ones);
+            add(&amplitude, column.sign, &value);
             let own = parameters.iter().filter(|(of, _, _)| *of == shape);
             for ((_, name, kind), slope) in own.zip(slopes) {
-                add(&searched_name(name, *kind), term.amplitude * column.sign * slope[0]);
+                add(&searched_name(name, *kind), term.amplitude * column.sign, &slope);
             }
         }
-        gradient
+        gradients
     }
 }
 
@@ -104,7 +121,7 @@ mod tests {
         ] {
             let fit = fit_law(&Samples::new(&times, values), law, &options).unwrap();
             let elapsed = 17.3;
-            let gradient = fit.gradient(elapsed);
+            let gradient: Vec<f64> = fit.gradients(&[elapsed]).iter().map(|column| column[0]).collect();
             assert_eq!(gradient.len(), fit.values.len());
             for (i, name) in fit.searched.iter().enumerate() {
                 let beside = |side: f64| {

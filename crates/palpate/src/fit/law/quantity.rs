@@ -26,16 +26,28 @@ impl Quantity {
         }
     }
 
-    pub(crate) fn reported(self, assessed: &Assessed) -> Parameter {
-        Parameter {
-            name: self.name,
-            unit: self.unit,
-            estimate: match self.role {
-                ParameterRole::Given => Estimate::fixed(self.value),
-                _ => assessed.estimate(self.value, &self.gradient, self.scale),
-            },
-            role: self.role,
+    /// What is reported of these, with errors.
+    pub(crate) fn reported(all: Vec<Self>, assessed: &Assessed) -> Vec<Parameter> {
+        let found: Vec<&Self> = all.iter().filter(|quantity| quantity.role != ParameterRole::Given).collect();
+        let values: Vec<f64> = found.iter().map(|quantity| quantity.value).collect();
+        let size = found.first().map_or(0, |quantity| quantity.gradient.len());
+        let column = |parameter: usize| found.iter().map(|quantity| quantity.gradient[parameter]).collect();
+        let gradients: Vec<Vec<f64>> = (0..size).map(column).collect();
+        let mut estimates = assessed.estimates(&values, &gradients, |index| found[index].scale).into_iter();
+        let estimated: Vec<Estimate> = all
+            .iter()
+            .map(|quantity| match quantity.role {
+                ParameterRole::Given => Estimate::fixed(quantity.value),
+                _ => estimates.next().unwrap_or_else(|| Estimate::fixed(quantity.value)),
+            })
+            .collect();
+        let parameter = |(quantity, estimate): (Self, Estimate)| Parameter {
+            name: quantity.name,
+            unit: quantity.unit,
+            estimate,
+            role: quantity.role,
             parts: None,
-        }
+        };
+        all.into_iter().zip(estimated).map(parameter).collect()
     }
 }

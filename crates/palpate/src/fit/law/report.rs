@@ -1,5 +1,6 @@
 //! From a solution to the result: parameters with errors and intervals.
 
+use super::quantity::Quantity;
 use crate::fit::{Assessed, Domain, Fit, Fitted, IntervalMethod, LawOptions, Loss, Trust, redundant_terms};
 use crate::laws::Law;
 use crate::optimise::{Effort, Shapes, Termination, Work};
@@ -45,8 +46,7 @@ impl Fitted {
     /// The result with these errors.
     pub(crate) fn report_with(&self, law: Law, assessed: Assessed, work: Work) -> Fit {
         let (solution, values, scale) = (&self.solution, self.values(), self.scaled.range);
-        let quantities = self.quantities(law, solution.at());
-        let parameters = quantities.into_iter().map(|quantity| quantity.reported(&assessed)).collect();
+        let parameters = Quantity::reported(self.quantities(law, solution.at()), &assessed);
         let residual_square = (solution.residual_square.sqrt() * scale * self.scaled.precision).powi(2);
         let samples = self.scaled.times.len();
         let mean_square = match &self.scaled.roots {

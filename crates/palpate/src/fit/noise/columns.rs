@@ -86,7 +86,8 @@ impl<'a> Columns<'a> {
         let size = self.columns.len();
         let samples = self.columns.first().map_or(0, |column| column.len());
         let (mut product, mut of_block) = (vec![0.0; size * size], vec![0.0; size * size]);
-        let (mut sums, mut last) = (vec![Vec::new(); size], vec![0.0; size]);
+        let mut last = vec![0.0; size];
+        let mut sums: Vec<Vec<f64>> = (0..size).map(|_| Vec::with_capacity(BLOCK.min(samples))).collect();
         let mut end = samples;
         while end > 1 {
             let start = end.saturating_sub(BLOCK).max(1);
@@ -96,7 +97,14 @@ impl<'a> Columns<'a> {
             });
             for ((sums, column), last) in sums.iter_mut().zip(self.columns).zip(&mut last) {
                 sums.clear();
-                sums.extend(column[start..end].iter().rev().map(|entry| {
+                // From the last sample to the first; four at a time, so that a sum waits for that of the four before alone.
+                let (rest, fours) = column[start..end].as_rchunks();
+                for [d, c, b, a] in fours.iter().rev() {
+                    let (ab, cd) = (a + b, c + d);
+                    sums.extend([*last + a, *last + ab, *last + (ab + c), *last + (ab + cd)]);
+                    *last += ab + cd;
+                }
+                sums.extend(rest.iter().rev().map(|entry| {
                     *last += entry;
                     *last
                 }));

@@ -6,6 +6,7 @@ use super::likelihood::{Kind, Likelihood, Slow};
 use super::markov::Beside;
 use super::model::{Lags, Likely, Noise, NoiseModel};
 use crate::statistics::dot;
+use crate::vector::block_sums;
 
 /// Fall of −2 ln L that one more parameter of the noise has to bring.
 const EVIDENCE: f64 = 4.0;
@@ -246,8 +247,8 @@ fn drifts(series: &[f64], parameters: usize) -> bool {
     let square = dot(series, series);
     let beyond = |length: usize| {
         let blocks = (series.len() / length) as f64;
-        let of_sums: f64 = series.chunks_exact(length).map(|block| block.iter().sum::<f64>().powi(2)).sum();
-        of_sums / square > 1.0 - parameters as f64 / blocks + 2.5 * (2.0 / blocks).sqrt()
+        let sums = block_sums(series, length);
+        dot(&sums, &sums) / square > 1.0 - parameters as f64 / blocks + 2.5 * (2.0 / blocks).sqrt()
     };
     let length = series.len().isqrt();
     beyond(length) || (series.len() >= 64 && (beyond(length / 3) || beyond(3 * length)))

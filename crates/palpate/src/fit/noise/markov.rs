@@ -4,7 +4,7 @@ use super::likelihood::{Kind, Likelihood};
 use super::model::NoiseModel;
 use super::rows::{MarkovStep, Rows};
 use crate::optimise::minimise;
-use crate::vector::cross_products;
+use crate::vector::{LANES, block_sums, cross_products, normal_equations, shifted};
 
 /// The covariance of a noise over σ²: y_i = x_i + v_i, where v is white, and x_i is what is left of x_{i−1} and something new.
 pub(super) struct Markov {
@@ -17,18 +17,6 @@ pub(super) struct Markov {
 }
 
 impl Markov {
-    /// A walk from the first sample on, which goes by `step` in a mean time between samples, as √b times the means of b neighbours show it,
-    /// among which it hardly moves.
-    fn walk(step: f64, count: usize, together: usize, times: Option<&[f64]>) -> Self {
-        let size = together as f64 * step * step;
-        let variance = |mean: usize| size * steps_since(mean * together + together / 2, times);
-        Self {
-            kept: vec![1.0; count],
-            variances: (0..count).map(variance).collect(),
-            white: 1.0,
-        }
-    }
-
     /// Noise of this correlation time at these times, with this share in the variance.
     pub(super) fn in_time(correlation_time: f64, share: f64, times: &[f64]) -> Self {
         let kept = |pair: &[f64]| ((pair[0] - pair[1]) / correlation_time).exp();
@@ -39,23 +27,15 @@ impl Markov {
         }
     }
 
-    /// Steps of Kalman's filter, the last of them for all that follow, and ln |R|.
+    /// Steps of Kalman's filter, and ln |R|.
     fn steps(&self) -> (Vec<MarkovStep>, f64) {
         let mut steps: Vec<MarkovStep> = Vec::with_capacity(self.kept.len());
         let (mut log_determinant, mut determinant, mut ahead) = (0.0, 1.0, self.variances[0]);
         let count = self.kept.len();
-        // What a walk adds from one sample to the next; it settles where that is always the same.
+        // What comes anew from one sample to the next.
         let added = |index: usize| self.variances[index + 1] - self.kept[index + 1].powi(2) * self.variances[index];
-        let even =
-            count > 2 && self.kept[1] == self.kept[count - 1] && (added(0) / added(count - 2) - 1.0).abs() < 1e-9;
-        let mut before = 0.0;
         for index in 0..count {
             let innovation = (ahead + self.white).max(f64::MIN_POSITIVE);
-            if even && (innovation - before).abs() <= 1e-14 * innovation {
-                log_determinant += (count - index) as f64 * innovation.ln();
-                break;
-            }
-            before = innovation;
             let gain = ahead / innovation;
             let (kept, new) =
                 if index + 1 < count { (self.kept[index + 1], added(index).max(0.0)) } else { (0.0, 0.0) };
@@ -121,7 +101,8 @@ pub(super) struct Beside<'a> {
     together: usize,
     /// Z = (J, r), or √b times the means of b neighbours.
     rows: Rows,
-    /// ZᵀZ of what means leave out.
+    /// ZᵀZ of all samples, and of what means leave out.
+    whole: Vec<f64>,
     within: Vec<f64>,
 }
 
@@ -131,48 +112,57 @@ impl<'a> Beside<'a> {
         let columns: Vec<&[f64]> = jacobian.iter().copied().chain([residuals]).collect();
         let samples = residuals.len();
         let together = samples.div_ceil(most);
-        let size = columns.len();
+        let (mut whole, mut right) = (vec![0.0; columns.len() * columns.len()], vec![0.0; columns.len()]);
+        normal_equations(&columns, residuals, &mut whole, &mut right);
         if together == 1 {
             return Self {
                 times,
                 samples,
                 together,
                 rows: Rows::new(&columns),
-                within: vec![0.0; size * size],
+                within: vec![0.0; whole.len()],
+                whole,
             };
         }
         let root = (together as f64).sqrt().recip();
-        let means = |column: &&[f64]| -> Vec<f64> {
-            column.chunks_exact(together).map(|block| root * block.iter().sum::<f64>()).collect()
-        };
+        let means = |column: &&[f64]| shifted(&block_sums(column, together), 0.0, root);
         let means: Vec<Vec<f64>> = columns.iter().map(means).collect();
         let views: Vec<&[f64]> = means.iter().map(Vec::as_slice).collect();
-        let (mut within, mut between) = (vec![0.0; size * size], vec![0.0; size * size]);
-        cross_products(&columns, &columns, &mut within);
+        let mut between = vec![0.0; whole.len()];
         cross_products(&views, &views, &mut between);
-        within.iter_mut().zip(&between).for_each(|(all, between)| *all -= between);
         Self {
             times,
             samples,
             together,
             rows: Rows::new(&views),
-            within,
+            within: whole.iter().zip(&between).map(|(all, between)| all - between).collect(),
+            whole,
         }
     }
 
-    /// The restricted likelihood of a model; means are for a walk alone.
-    pub(super) fn likelihood(&self, model: NoiseModel) -> Option<Likelihood> {
-        let process = match model {
-            NoiseModel::WhiteAndWalk { step } => Markov::walk(step, self.rows.samples, self.together, self.times),
-            NoiseModel::InTime {
-                correlation_time_s,
-                share,
-                ..
-            } => Markov::in_time(correlation_time_s, share, self.times?),
-            _ => return None,
-        };
-        let (steps, log_determinant) = process.steps();
-        let mut product = self.rows.filtered(&steps);
+    /// The restricted likelihood of noise in time.
+    fn of_time(&self, correlation_time: f64, share: f64) -> Option<Likelihood> {
+        let (steps, log_determinant) = Markov::in_time(correlation_time, share, self.times?).steps();
+        self.likelihood(self.rows.filtered(&steps), log_determinant)
+    }
+
+    /// The restricted likelihoods of walks of these steps. √b times the means of b neighbours show a step as √b times as large, and it hardly
+    /// moves among them.
+    fn of_walks(&self, steps: &[f64]) -> Vec<Option<Likelihood>> {
+        let (count, together) = (self.rows.samples, self.together);
+        let since: Vec<f64> = (0..count).map(|mean| steps_since(mean * together + together / 2, self.times)).collect();
+        let mut found = Vec::with_capacity(steps.len());
+        for some in steps.chunks(LANES) {
+            let square = |lane: usize| together as f64 * some.get(lane).map_or(0.0, |step| step * step);
+            let walks = self.rows.beside_walks(&std::array::from_fn(square), &since);
+            let walks = walks.into_iter().take(some.len());
+            found.extend(walks.map(|(product, log_determinant)| self.likelihood(product, log_determinant)));
+        }
+        found
+    }
+
+    /// From ZᵀR⁻¹Z of the means, and ln |R|.
+    fn likelihood(&self, mut product: Vec<f64>, log_determinant: f64) -> Option<Likelihood> {
         product.iter_mut().zip(&self.within).for_each(|(sum, within)| *sum += within);
         Likelihood::of(&product, log_determinant, self.samples)
     }
@@ -186,7 +176,14 @@ impl<'a> Beside<'a> {
             let inside = (low..=high).contains(&x[0]) && x.get(1).is_none_or(|x| x.abs() <= 8.0);
             inside.then(|| in_time(x[0].exp(), share, times))
         };
-        let evaluate = |x: &[f64]| self.likelihood(model(x)?);
+        let evaluate = |x: &[f64]| match model(x)? {
+            NoiseModel::InTime {
+                correlation_time_s,
+                share,
+                ..
+            } => self.of_time(correlation_time_s, share),
+            _ => None,
+        };
         let count = ((high - low) / 1.2).ceil();
         let taus = (0..=count as i32).map(|i| low + (high - low) * f64::from(i) / count);
         let shares: &[f64] = if alone { &[f64::INFINITY] } else { &[-1.0, 1.5] };
@@ -203,15 +200,16 @@ impl<'a> Beside<'a> {
 
     /// White noise alone.
     pub(super) fn white(&self) -> Option<Likelihood> {
-        self.likelihood(NoiseModel::WhiteAndWalk { step: 0.0 })
+        Likelihood::of(&self.whole, 0.0, self.samples)
     }
 
     /// Noise whose correlation fades in time, of correlation times evenly spaced in ln; none where samples are spaced evenly.
     pub(super) fn fading(&self) -> Vec<(Likelihood, NoiseModel)> {
         let Some(times) = self.times else { return Vec::new() };
         let (low, high) = correlation_times(times);
-        let model = |i: i32| in_time((low + (high - low) * f64::from(i) / 12.0).exp(), 1.0, times);
-        (0..=12).filter_map(|i| Some((self.likelihood(model(i))?, model(i)))).collect()
+        let correlation_times = (0..=12).map(|i| (low + (high - low) * f64::from(i) / 12.0).exp());
+        let found = |tau: f64| Some((self.of_time(tau, 1.0)?, in_time(tau, 1.0, times)));
+        correlation_times.filter_map(found).collect()
     }
 
     /// Walks of sizes evenly spaced in ln: from what no series of this length could show to steps of three white deviations; none where a few
@@ -226,15 +224,16 @@ impl<'a> Beside<'a> {
         const FARTHEST: f64 = 60.0;
         let smallest = 2.0 / self.samples as f64;
         let count = ((LARGEST / smallest).ln() / PACE).ceil() as usize + 1;
-        let model = |i: usize| NoiseModel::WhiteAndWalk {
-            step: smallest * (PACE * i as f64).exp(),
+        let found = |some: Vec<usize>| {
+            let steps: Vec<f64> = some.into_iter().map(|i| smallest * (PACE * i as f64).exp()).collect();
+            let walk = |(found, step): (Option<Likelihood>, f64)| Some((found?, NoiseModel::WhiteAndWalk { step }));
+            self.of_walks(&steps).into_iter().zip(steps).filter_map(walk).collect::<Vec<_>>()
         };
-        let found = |i: usize| Some((self.likelihood(model(i))?, model(i)));
-        let mut all: Vec<_> = (0..count).step_by(FIRST).filter_map(found).collect();
+        let mut all = found((0..count).step_by(FIRST).collect());
         if all.iter().all(|(found, _)| found.deviance > deviance + FARTHEST) {
             return Vec::new();
         }
-        all.extend((0..count).filter(|i| i % FIRST != 0).filter_map(found));
+        all.extend(found((0..count).filter(|i| i % FIRST != 0).collect()));
         all
     }
 }
@@ -296,7 +295,16 @@ pub(super) mod tests {
             });
             let product: Vec<f64> = (0..9).map(|at| dot(whole[at / 3], &solved[at % 3])).collect();
             let expected = Likelihood::of(&product, factor.log_determinant(), 40).unwrap();
-            let found = beside.likelihood(model).unwrap();
+            let found = match model {
+                NoiseModel::WhiteAndWalk { step } => beside.of_walks(&[step])[0],
+                NoiseModel::InTime {
+                    correlation_time_s,
+                    share,
+                    ..
+                } => beside.of_time(correlation_time_s, share),
+                _ => None,
+            }
+            .unwrap();
             assert!((found.deviance - expected.deviance).abs() < 1e-9, "{model:?}");
             assert!((found.variance / expected.variance - 1.0).abs() < 1e-11, "{model:?}");
         }
@@ -325,9 +333,7 @@ pub(super) mod tests {
             assert_eq!(means.together, 8);
             let base = |beside: &Beside<'_>| beside.white().unwrap().deviance;
             for q in [0.003, 0.01, 0.03, 0.1] {
-                let fall = |beside: &Beside<'_>| {
-                    beside.likelihood(NoiseModel::WhiteAndWalk { step: q }).unwrap().deviance - base(beside)
-                };
+                let fall = |beside: &Beside<'_>| beside.of_walks(&[q])[0].unwrap().deviance - base(beside);
                 let (exact, found) = (fall(&whole), fall(&means));
                 assert!((found - exact).abs() < 0.5 + 0.12 * exact.abs(), "{step} {q}: {found} {exact}");
             }

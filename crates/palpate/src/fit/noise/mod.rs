@@ -33,6 +33,7 @@
 //! | `markov.rs` | white noise beside a random walk, or beside noise in time |
 //! | `estimation.rs` | which noise left the residuals |
 //! | `portmanteau.rs` | whether it accounts for them |
+//! | `mixture.rs` | intervals of many numbers where several models are likely |
 //! | `spread.rs` | noise whose size changes along the hold |
 //! | `uncertainty.rs` | errors and intervals that follow |
 
@@ -42,6 +43,7 @@ mod estimation;
 mod lagged;
 mod likelihood;
 mod markov;
+mod mixture;
 pub(crate) mod model;
 mod portmanteau;
 mod rows;

@@ -4,6 +4,7 @@ use statrs::distribution::{ChiSquared, ContinuousCDF};
 
 use super::model::NoiseModel;
 use crate::statistics::dot;
+use crate::vector::add_multiple;
 
 /// Lags that are tested.
 const LAGS: usize = 20;
@@ -74,11 +75,11 @@ fn predictor(correlations: &[f64]) -> Vec<f64> {
 
 /// Errors of predictions, of the first sample that enough lie before and all after.
 fn innovations(residuals: &[f64], predictor: &[f64]) -> Vec<f64> {
-    let backwards: Vec<f64> = predictor.iter().rev().copied().collect();
-    residuals
-        .windows(backwards.len() + 1)
-        .map(|some| some[backwards.len()] - dot(&some[..backwards.len()], &backwards))
-        .collect()
+    let mut errors = residuals[predictor.len()..].to_vec();
+    for (back, by) in (1..).zip(predictor) {
+        add_multiple(&mut errors, -by, &residuals[predictor.len() - back..]);
+    }
+    errors
 }
 
 #[cfg(test)]

@@ -113,6 +113,51 @@ impl Rows {
         })
     }
 
+    /// For white noise beside a walk, of [`LANES`] sizes side by side: WᵀW, row-major, with W the columns as Kalman's filter whitens them, and
+    /// ln |R|. A step has a variance of `squares` of the white one; `since` are the mean steps from the first sample to each.
+    pub(super) fn beside_walks(&self, squares: &[f64; LANES], since: &[f64]) -> [(Vec<f64>, f64); LANES] {
+        dispatch!(level(), simd => self.beside_walks_with(simd, squares, since))
+    }
+
+    #[inline(always)]
+    fn beside_walks_with<S: Simd>(&self, simd: S, squares: &[f64; LANES], since: &[f64]) -> [(Vec<f64>, f64); LANES] {
+        let (size, squares, one) = (self.columns, f64x8::from_slice(simd, squares), f64x8::splat(simd, 1.0));
+        let mut products = vec![f64x8::splat(simd, 0.0); size * size];
+        let mut expected = vec![f64x8::splat(simd, 0.0); size];
+        let (mut weighed, mut log_determinants, mut determinants) = (expected.clone(), [0.0; LANES], one);
+        let mut ahead = squares * since[0];
+        for (index, now) in since.iter().enumerate() {
+            let innovation = ahead + one;
+            let weight = one / innovation;
+            let gain = ahead * weight;
+            for row in 0..size {
+                let new = f64x8::splat(simd, self.blocks[row / LANES][index][row % LANES]) - expected[row];
+                expected[row] += new * gain;
+                weighed[row] = new * weight;
+                for column in 0..=row {
+                    products[row * size + column] += new * weighed[column];
+                }
+            }
+            determinants *= innovation;
+            // One logarithm for many factors.
+            let so_far: [f64; LANES] = determinants.into();
+            if index + 1 == since.len() || so_far.iter().any(|factor| *factor > 1e100) {
+                log_determinants.iter_mut().zip(so_far).for_each(|(sum, factor)| *sum += factor.ln());
+                determinants = one;
+            }
+            let added = since.get(index + 1).map_or(0.0, |next| (next - now).max(0.0));
+            ahead = ahead * (one - gain) + squares * added;
+        }
+        let products: Vec<[f64; LANES]> = products.into_iter().map(Into::into).collect();
+        std::array::from_fn(|lane| {
+            let entry = |at: usize| {
+                let (row, column) = (at / size, at % size);
+                products[row.max(column) * size + row.min(column)][lane]
+            };
+            ((0..size * size).map(entry).collect(), log_determinants[lane])
+        })
+    }
+
     /// All products, row-major, from those of every two blocks.
     fn tiled(&self, products: impl Fn(&[[f64; LANES]], &[[f64; LANES]]) -> [[f64; LANES]; LANES]) -> Vec<f64> {
         let size = self.columns;

@@ -1,6 +1,7 @@
 //! Noise whose size changes along a hold: with the signal, as that of many sensors does, or with time.
 
 use crate::statistics::{dot, mean};
+use crate::vector::{shifted, sum};
 
 /// Score of a change, in standard deviations, from which on it is one: 1 of 1,000 even noises.
 const OBSERVED: f64 = 3.3;
@@ -29,10 +30,11 @@ impl Spread {
         let repeated = correlation * correlation;
         let counts = ((1.0 - repeated) / (1.0 + repeated)).sqrt();
         let numbers: Vec<f64> = (0..residuals.len()).map(|i| i as f64).collect();
-        let regressors = [fitted, &numbers].map(standardised);
-        let scored = regressors.into_iter().flatten().map(|of| (counts * score(&squares, &of).abs(), of));
-        let (score, of) = scored.max_by(|(one, _), (other, _)| one.total_cmp(other))?;
-        (score > OBSERVED).then(|| Self(deviations(&squares, &of)))
+        let regressors = [fitted, &numbers];
+        let scored = regressors.map(|of| (counts * score(&squares, of).abs(), of)).into_iter();
+        let (score, of) =
+            scored.filter(|(score, _)| score.is_finite()).max_by(|(one, _), (other, _)| one.total_cmp(other))?;
+        (score > OBSERVED).then(|| Self(deviations(&squares, &standardised(of))))
     }
 
     /// What has the size of the noise, in units of it.
@@ -70,19 +72,18 @@ pub(super) fn by_residuals(columns: &[&[f64]], amplitudes: &[f64], inverse: &[f6
     filling
 }
 
-/// Values less their mean over their deviation; `None` where they are all alike.
-fn standardised(values: &[f64]) -> Option<Vec<f64>> {
-    let middle = mean(values);
-    let mut found: Vec<f64> = values.iter().map(|value| value - middle).collect();
-    let deviation = (dot(&found, &found) / values.len() as f64).sqrt();
-    found.iter_mut().for_each(|value| *value /= deviation);
-    found.iter().all(|value| value.is_finite()).then_some(found)
+/// Values less their mean over their deviation.
+fn standardised(values: &[f64]) -> Vec<f64> {
+    let centred = shifted(values, sum(values) / values.len() as f64, 1.0);
+    let deviation = (dot(&centred, &centred) / values.len() as f64).sqrt();
+    centred.iter().map(|value| value / deviation).collect()
 }
 
 /// How far squares of mean 1 follow a regressor, in standard deviations (Koenker 1981).
 fn score(squares: &[f64], of: &[f64]) -> f64 {
-    let beyond: Vec<f64> = squares.iter().map(|square| square - 1.0).collect();
-    dot(&beyond, of) / dot(&beyond, &beyond).sqrt()
+    let (beyond, centred) = (shifted(squares, 1.0, 1.0), shifted(of, sum(of) / of.len() as f64, 1.0));
+    let deviation = (dot(&centred, &centred) / of.len() as f64).sqrt();
+    dot(&beyond, &centred) / (dot(&beyond, &beyond).sqrt() * deviation)
 }
 
 /// Square roots of exp(a + b x + c x²) of the largest likelihood.

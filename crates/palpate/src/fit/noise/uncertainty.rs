@@ -1,7 +1,6 @@
 //! From the noise of a fit to the covariance of its parameters, their errors and intervals.
 
 use serde::{Deserialize, Serialize};
-use smallvec::SmallVec;
 
 use super::columns::Columns;
 use super::model::{Lags, Likely, Noise};
@@ -9,8 +8,8 @@ use super::portmanteau::p_value;
 use super::spread::{Spread, by_residuals};
 use crate::fit::{Estimate, NoiseChoice, NoiseModel};
 use crate::optimise::{Cholesky, Effort, Few, Solution, Termination};
-use crate::statistics::{coverage_factor, dot, normal_factor, two_sided_p};
-use crate::vector::cross_products;
+use crate::statistics::dot;
+use crate::vector::{add_multiple, cross_products, extremes};
 use crate::watch::Cancelled;
 
 /// How a parameter is brought to its interval.
@@ -21,9 +20,6 @@ pub(crate) enum Scale {
     /// Symmetric about ln of the value, for rates and exponents.
     Log,
 }
-
-/// Half an interval in ln beyond which the data leave a parameter open: its curvature then says nothing of where it ends.
-const OPEN: f64 = 6.907_755_278_982_137; // ln 1000
 
 /// The variance of Σ gᵢ pᵢ where p has this covariance: gᵀ C g.
 pub(crate) fn variance_of(gradient: &[f64], covariance: &[Vec<f64>]) -> f64 {
@@ -63,97 +59,6 @@ pub struct ModelCovariance {
     pub probability: f64,
     /// Covariance of the parameters if this is the noise.
     pub covariance: Vec<Vec<f64>>,
-}
-
-impl Uncertainty {
-    /// An estimate of `value` with this gradient (of ln value on the logarithmic scale), and this variance if noise were white.
-    pub(crate) fn estimate(&self, value: f64, gradient: &[f64], white: f64, scale: Scale) -> Estimate {
-        if white == 0.0 {
-            return Estimate::fixed(value);
-        }
-        self.estimate_beside(value, gradient, white, 0.0, scale)
-    }
-
-    /// The same of a sum with something of this variance.
-    pub(crate) fn estimate_beside(
-        &self,
-        value: f64,
-        gradient: &[f64],
-        white: f64,
-        added: f64,
-        scale: Scale,
-    ) -> Estimate {
-        let error = (variance_of(gradient, &self.covariance) + added).sqrt();
-        let white = (white + added).sqrt();
-        let half = error * self.factor(gradient, added);
-        if scale == Scale::Log && half > OPEN {
-            return Estimate {
-                interval: Some((0.0, f64::INFINITY)),
-                ..Estimate::fixed(value)
-            };
-        }
-        let (unit, interval) = match scale {
-            Scale::Linear => (1.0, (value - half, value + half)),
-            Scale::Log => (value.abs(), (value * (-half).exp(), value * half.exp())),
-        };
-        let (error, white) = (unit * error, unit * white);
-        let good = [error, white, interval.0, interval.1].iter().all(|found| found.is_finite());
-        Estimate {
-            value,
-            standard_error: good.then_some(error),
-            white_standard_error: good.then_some(white),
-            interval: good.then_some(interval),
-        }
-    }
-
-    /// Half an interval over the standard error, of a number with this gradient and of what has the variance `added`.
-    pub(crate) fn factor(&self, gradient: &[f64], added: f64) -> f64 {
-        let factor = coverage_factor(self.confidence, self.freedom);
-        if self.models.is_empty() {
-            return factor;
-        }
-        let variance = variance_of(gradient, &self.covariance) + added;
-        let relative = |model: &ModelCovariance| {
-            let own = variance_of(gradient, &model.covariance) + added;
-            (model.probability, (own / variance).sqrt())
-        };
-        mixed_factor(&self.models.iter().map(relative).collect(), factor, self.confidence, self.freedom)
-    }
-}
-
-/// h with Σ w T(h/s) = (1 + c)/2, where one T alone gives `factor`.
-fn mixed_factor(models: &SmallVec<[(f64, f64); 16]>, factor: f64, confidence: f64, freedom: f64) -> f64 {
-    // Wallace's transform of Student's t to a normal number, of which T takes the ratio to that of its quantile: exact for one model.
-    let normal = |t: f64| (8.0 * freedom + 1.0) / (8.0 * freedom + 3.0) * (freedom * (t * t / freedom).ln_1p()).sqrt();
-    let unit = normal_factor(confidence) / normal(factor);
-    let target = 0.5 * (1.0 - confidence);
-    let beyond = |h: f64| models.iter().map(|(w, s)| w * 0.5 * two_sided_p(unit * normal(h / s))).sum::<f64>();
-    let scales = || models.iter().map(|(_, scale)| *scale);
-    let (mut low, mut high) = (factor * scales().fold(f64::INFINITY, f64::min), factor * scales().fold(0.0, f64::max));
-    if !(low > 0.0 && high.is_finite()) {
-        return f64::NAN;
-    }
-    // The logarithm of a tail is about straight in that of h.
-    let rest = |h: f64| (beyond(h) / target).ln();
-    let (mut at_low, mut at_high) = (rest(low), rest(high));
-    for _ in 0..40 {
-        if high / low - 1.0 < 1e-9 || at_low <= 0.0 || at_high >= 0.0 {
-            break;
-        }
-        let secant = low * (high / low).powf(at_low / (at_low - at_high));
-        let middle = if secant > low && secant < high { secant } else { 0.5 * (low + high) };
-        let at = rest(middle);
-        if at.abs() < 1e-9 {
-            return middle;
-        }
-        // The end that stays counts half (Illinois).
-        if at > 0.0 {
-            (low, at_low, at_high) = (middle, at, 0.5 * at_high);
-        } else {
-            (high, at_high, at_low) = (middle, at, 0.5 * at_low);
-        }
-    }
-    if at_low <= 0.0 { low } else { high }
 }
 
 /// The uncertainty of a fit, with what rests on white noise beside it.
@@ -364,21 +269,37 @@ impl Assessed {
         }
     }
 
-    /// An estimate of `value` with this gradient (of ln value on the logarithmic scale).
-    pub(crate) fn estimate(&self, value: f64, gradient: &[f64], scale: Scale) -> Estimate {
-        match (&self.uncertainty, &self.white) {
-            (Some(uncertainty), Some(white)) => {
-                uncertainty.estimate(value, gradient, variance_of(gradient, white), scale)
+    /// Estimates of `values`, of which column a of `gradients` has the derivatives by parameter a (of ln value on the logarithmic scale).
+    pub(crate) fn estimates(
+        &self,
+        values: &[f64],
+        gradients: &[impl AsRef<[f64]>],
+        scale: impl Fn(usize) -> Scale,
+    ) -> Vec<Estimate> {
+        let (Some(uncertainty), Some(white)) = (&self.uncertainty, &self.white) else {
+            return values.iter().map(|value| Estimate::fixed(*value)).collect();
+        };
+        let mut found = uncertainty.estimates(values, gradients, white, 0.0, scale);
+        for estimate in &mut found {
+            // What no parameter moves was given.
+            if estimate.white_standard_error == Some(0.0) {
+                *estimate = Estimate::fixed(estimate.value);
             }
-            _ => Estimate::fixed(value),
         }
+        found
+    }
+
+    /// An estimate of one value.
+    pub(crate) fn estimate(&self, value: f64, gradient: &[f64], scale: Scale) -> Estimate {
+        let columns: Vec<&[f64]> = gradient.iter().map(std::slice::from_ref).collect();
+        self.estimates(&[value], &columns, |_| scale).swap_remove(0)
     }
 }
 
 /// Whether times between samples differ by more than jitter and some gaps would have it.
 fn are_uneven(times: &[f64]) -> bool {
     let mut gaps: Vec<f64> = times.windows(2).map(|pair| pair[1] - pair[0]).collect();
-    let (least, most) = gaps.iter().fold((f64::INFINITY, 0.0), |(low, high), gap| (gap.min(low), gap.max(high)));
+    let (least, most) = extremes(&gaps);
     if gaps.len() < 4 || most <= 2.0 * least {
         return false;
     }
@@ -392,7 +313,7 @@ fn are_uneven(times: &[f64]) -> bool {
 fn fitted(solution: &Solution) -> Vec<f64> {
     let mut values = vec![0.0; solution.residuals.len()];
     for (column, amplitude) in solution.columns.iter().zip(&solution.linear) {
-        values.iter_mut().zip(column).for_each(|(value, entry)| *value += amplitude * entry);
+        add_multiple(&mut values, *amplitude, column);
     }
     values
 }

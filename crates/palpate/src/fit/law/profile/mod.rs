@@ -193,7 +193,7 @@ impl Fitted {
             doubtful: &about.doubtful.terms,
             parameter,
             error: (variance * self.solution.residual_square / uncertainty.freedom).sqrt(),
-            target: (uncertainty.factor(&gradient, 0.0) * widening).hypot(about.doubtful.z),
+            target: (uncertainty.factor(&gradient) * widening).hypot(about.doubtful.z),
             freedom: uncertainty.freedom,
             most_iterations: about.most_iterations,
         };

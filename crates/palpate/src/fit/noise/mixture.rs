@@ -1,0 +1,268 @@
+//! Errors and intervals of many numbers side by side, where several models of the noise are likely.
+
+use smallvec::SmallVec;
+
+use super::uncertainty::{Scale, Uncertainty};
+use crate::fit::Estimate;
+use crate::statistics::{coverage_factor, normal_factor};
+use crate::vector::accelerated;
+use crate::vector::elementary::{exp, ln, ln_1p};
+use crate::vector::normal::scaled_tail;
+
+/// Half an interval in ln beyond which the data leave a parameter open: its curvature then says nothing of where it ends.
+const OPEN: f64 = 6.907_755_278_982_137; // ln 1000
+
+/// Numbers side by side: two of the widest vectors, since one would wait for its own roots and quotients.
+const LANES: usize = 16;
+
+type Lanes = [f64; LANES];
+
+impl Uncertainty {
+    /// Estimates of `values`, of which column a of `gradients` has the derivatives by parameter a (of ln value on the logarithmic scale), with
+    /// something of the variance `added` on top; `white` is the covariance of the parameters if noise were white.
+    pub(crate) fn estimates(
+        &self,
+        values: &[f64],
+        gradients: &[impl AsRef<[f64]>],
+        white: &[Vec<f64>],
+        added: f64,
+        scale: impl Fn(usize) -> Scale,
+    ) -> Vec<Estimate> {
+        let mut mixture = Mixture::new(self);
+        let mut found = Vec::with_capacity(values.len());
+        for (index, some) in values.chunks(LANES).enumerate() {
+            let block: SmallVec<[Lanes; 8]> =
+                gradients.iter().map(|column| lanes(&column.as_ref()[index * LANES..])).collect();
+            let [errors, halves] = mixture.errors(&block, added);
+            let white = variances(&block, white);
+            for (lane, value) in some.iter().enumerate() {
+                let white = (white[lane] + added).sqrt();
+                found.push(estimate(*value, [errors[lane], white, halves[lane]], scale(index * LANES + lane)));
+            }
+        }
+        found
+    }
+
+    /// Half an interval over the standard error of a number with this gradient.
+    pub(crate) fn factor(&self, gradient: &[f64]) -> f64 {
+        let block: SmallVec<[Lanes; 8]> = gradient.iter().map(|entry| [*entry; LANES]).collect();
+        let [errors, halves] = Mixture::new(self).errors(&block, 0.0);
+        halves[0] / errors[0]
+    }
+}
+
+/// The first of a column, the last of them also in place of those that are not there.
+fn lanes(column: &[f64]) -> Lanes {
+    column
+        .first_chunk()
+        .copied()
+        .unwrap_or_else(|| std::array::from_fn(|lane| column[lane.min(column.len() - 1)]))
+}
+
+/// An estimate from its standard error, that for white noise, and half of its interval.
+fn estimate(value: f64, [error, white, half]: [f64; 3], scale: Scale) -> Estimate {
+    if scale == Scale::Log && half > OPEN {
+        return Estimate {
+            interval: Some((0.0, f64::INFINITY)),
+            ..Estimate::fixed(value)
+        };
+    }
+    let (unit, interval) = match scale {
+        Scale::Linear => (1.0, (value - half, value + half)),
+        Scale::Log => (value.abs(), (value * (-half).exp(), value * half.exp())),
+    };
+    let (error, white) = (unit * error, unit * white);
+    let good = [error, white, interval.0, interval.1].iter().all(|found| found.is_finite());
+    Estimate {
+        value,
+        standard_error: good.then_some(error),
+        white_standard_error: good.then_some(white),
+        interval: good.then_some(interval),
+    }
+}
+
+/// The models of an uncertainty, ready for intervals of its coverage c.
+///
+/// Half an interval of a number of variance v is h = k √v with Σ_m w_m Q(z_m) = (1 − c)/2, where Q is the tail of the normal distribution, and
+/// z² = z_c² ln(1 + h²/(ν v_m))/ln(1 + t_c²/ν) Wallace's transform of Student's t, scaled to be exact for one model: t_c and z_c are the
+/// quantiles of Student's and of the normal distribution.
+struct Mixture<'a> {
+    uncertainty: &'a Uncertainty,
+    /// t_c.
+    alone: f64,
+    /// z² over ln(1 + h²/(ν v_m)).
+    square: f64,
+    /// A factor that was found before: neighbours along a curve have nearly the same.
+    near: f64,
+}
+
+impl<'a> Mixture<'a> {
+    fn new(uncertainty: &'a Uncertainty) -> Self {
+        let alone = coverage_factor(uncertainty.confidence, uncertainty.freedom);
+        let square = match uncertainty.models.len() {
+            0 => f64::NAN,
+            _ => normal_factor(uncertainty.confidence).powi(2) / (alone * alone / uncertainty.freedom).ln_1p(),
+        };
+        Self {
+            uncertainty,
+            alone,
+            square,
+            near: alone,
+        }
+    }
+
+    /// Standard errors and halves of intervals.
+    fn errors(&mut self, block: &[Lanes], added: f64) -> [Lanes; 2] {
+        let Uncertainty { covariance, models, .. } = self.uncertainty;
+        let variance = variances(block, covariance).map(|variance| variance + added);
+        let errors = variance.map(f64::sqrt);
+        if models.is_empty() {
+            return [errors, errors.map(|error| error * self.alone)];
+        }
+        let ratios: SmallVec<[(f64, Lanes); 16]> = models
+            .iter()
+            .map(|model| {
+                let own = variances(block, &model.covariance);
+                (model.probability, std::array::from_fn(|lane| variance[lane] / (own[lane] + added)))
+            })
+            .collect();
+        let factors = accelerated(
+            #[inline(always)]
+            || self.factors(&ratios),
+        );
+        self.near = factors[LANES - 1];
+        [errors, std::array::from_fn(|lane| errors[lane] * factors[lane])]
+    }
+
+    /// The factors k for weights of models and ratios v/v_m, by Newton's method for ln k: the logarithm of a tail is about straight in that of k.
+    #[inline(always)]
+    fn factors(&self, ratios: &[(f64, Lanes)]) -> Lanes {
+        /// Step from which the next would change nothing.
+        const ENOUGH: f64 = 1e-6;
+        let Uncertainty {
+            confidence, freedom, ..
+        } = *self.uncertainty;
+        let target = 0.5 * (1.0 - confidence);
+        // Each model alone would have a factor between these.
+        let (mut low, mut high) = ([f64::INFINITY; LANES], [0.0; LANES]);
+        for (_, ratio) in ratios {
+            for lane in 0..LANES {
+                let own = self.alone / ratio[lane].sqrt();
+                low[lane] = if own < low[lane] { own } else { low[lane] };
+                high[lane] = if own > high[lane] { own } else { high[lane] };
+            }
+        }
+        let possible: [bool; LANES] = std::array::from_fn(|lane| low[lane] > 0.0 && high[lane] < f64::INFINITY);
+        let mut k: Lanes = std::array::from_fn(|lane| self.near.min(high[lane]).max(low[lane]));
+        for _ in 0..40 {
+            let (mut tail, mut fall) = ([0.0; LANES], [0.0; LANES]);
+            for (weight, ratio) in ratios {
+                for lane in 0..LANES {
+                    let x = k[lane] * k[lane] * ratio[lane] / freedom;
+                    let square = self.square * ln_1p(x);
+                    let z = square.sqrt();
+                    let density = weight * exp(-0.5 * square);
+                    tail[lane] += density * scaled_tail(z);
+                    fall[lane] += density * x / ((1.0 + x) * z);
+                }
+            }
+            let mut moves = false;
+            for lane in 0..LANES {
+                let found = if tail[lane] > f64::MIN_POSITIVE { tail[lane] } else { f64::MIN_POSITIVE };
+                let beyond = ln(found / target);
+                low[lane] = if beyond > 0.0 { k[lane] } else { low[lane] };
+                high[lane] = if beyond > 0.0 { high[lane] } else { k[lane] };
+                let step = beyond * found / (ROOT * self.square * fall[lane]);
+                let next = k[lane] * exp(step);
+                let inside = next >= low[lane] && next <= high[lane];
+                k[lane] = if inside { next } else { (low[lane] * high[lane]).sqrt() };
+                moves |= step.abs() > ENOUGH;
+            }
+            if !moves {
+                break;
+            }
+        }
+        std::array::from_fn(|lane| if possible[lane] { k[lane] } else { f64::NAN })
+    }
+}
+
+/// 1/√(2π).
+const ROOT: f64 = 0.398_942_280_401_432_7;
+
+/// gᵀ C g of gradients side by side.
+fn variances(block: &[Lanes], covariance: &[Vec<f64>]) -> Lanes {
+    accelerated(
+        #[inline(always)]
+        || {
+            let mut all = [0.0; LANES];
+            for (row, one) in covariance.iter().zip(block) {
+                let mut sum = [0.0; LANES];
+                for (entry, other) in row.iter().zip(block) {
+                    for lane in 0..LANES {
+                        sum[lane] += entry * other[lane];
+                    }
+                }
+                for lane in 0..LANES {
+                    all[lane] += one[lane] * sum[lane];
+                }
+            }
+            all
+        },
+    )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::fit::noise::ModelCovariance;
+    use crate::statistics::two_sided_p;
+    use crate::vector::tests::on_every_level;
+
+    /// Two parameters, and models of which some have far wider errors.
+    fn mixture(freedom: f64, confidence: f64, spreads: &[(f64, f64)]) -> Uncertainty {
+        let model = |(probability, spread): &(f64, f64)| ModelCovariance {
+            probability: *probability,
+            covariance: vec![vec![spread * spread, 0.1], vec![0.1, 2.0]],
+        };
+        let models: Vec<ModelCovariance> = spreads.iter().map(model).collect();
+        let entry = |i: usize, j: usize| models.iter().map(|model| model.probability * model.covariance[i][j]).sum();
+        Uncertainty {
+            confidence,
+            freedom,
+            deviation: 1.0,
+            covariance: (0..2).map(|i| (0..2).map(|j| entry(i, j)).collect()).collect(),
+            models,
+        }
+    }
+
+    #[test]
+    fn intervals_have_the_coverage_of_the_mixture() {
+        let gradients = [(0..11).map(|i| 0.2 * f64::from(i)).collect::<Vec<f64>>(), vec![1.0; 11]];
+        for (freedom, confidence) in [(3.0, 0.95), (20.0, 0.5), (996.0, 0.999)] {
+            let found = mixture(freedom, confidence, &[(0.7, 1.0), (0.29, 3.0), (0.01, 50.0)]);
+            let halves = on_every_level(|| {
+                let all = found.estimates(&[0.0; 11], &gradients, &found.covariance, 0.5, |_| Scale::Linear);
+                all.iter().map(|estimate| estimate.interval.unwrap().1).collect()
+            });
+            let alone = coverage_factor(confidence, freedom);
+            let unit = normal_factor(confidence) / (freedom * (alone * alone / freedom).ln_1p()).sqrt();
+            for (i, half) in halves.iter().enumerate() {
+                let beyond = |model: &ModelCovariance| {
+                    let (c, g) = (&model.covariance, gradients[0][i]);
+                    let variance = c[0][0] * g * g + 2.0 * c[0][1] * g + c[1][1] + 0.5;
+                    two_sided_p(unit * (freedom * (half * half / variance / freedom).ln_1p()).sqrt())
+                };
+                let all: f64 = found.models.iter().map(|model| model.probability * beyond(model)).sum();
+                assert!((all / (1.0 - confidence) - 1.0).abs() < 1e-9, "{freedom} {i}: {all}");
+            }
+        }
+    }
+
+    #[test]
+    fn models_of_one_spread_are_one_model() {
+        let found = mixture(12.0, 0.9, &[(0.4, 2.0), (0.6, 2.0)]);
+        let factor = found.factor(&[1.0, 0.3]);
+        assert!((factor / coverage_factor(0.9, 12.0) - 1.0).abs() < 1e-12, "{factor}");
+        assert!(found.factor(&[0.0, 0.0]).is_nan());
+    }
+}
