@@ -16,6 +16,7 @@
 //! | `summary.rs` | what a whole simulation comes to, for sweeps |
 //! | `wave/` | all layers over time (the strain wave) |
 //! | `step.rs` | one step at a time, for controllers; with `model.rs` all that there is without std |
+//! | `states/` | many contacts, one step at a time |
 //! | `error.rs` | why one could not run |
 
 #[cfg(feature = "std")]
@@ -35,6 +36,8 @@ mod layer;
 #[cfg(feature = "std")]
 mod linear;
 mod model;
+#[cfg(feature = "std")]
+mod states;
 mod step;
 #[cfg(feature = "std")]
 mod summary;
@@ -59,6 +62,7 @@ pub use {
     energy::{Energy, EnergySplit, energy, energy_watched},
     error::SimulateError,
     linear::{LinearContact, LinearLaw, LinearLawError, LinearTerm, Memory},
+    states::{ContactStates, NextStates, OneStepError},
     summary::{RunSummary, Summary, summary},
     trajectory::{Sampling, Trajectory, simulate, simulate_force, simulate_watched},
     walk::{ContactEvent, ContactEventKind, StepEnd, step_ends},

@@ -54,9 +54,9 @@ use crate::contact::{Layer, SpecimenError, carried_at, share};
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
 pub struct ContactState {
     /// One contact's share of the jaw's displacement, m.
-    jaw: f64,
+    pub(super) jaw: f64,
     /// Displacement of the node behind the contact layer, m: where the surface is once it is free.
-    behind: f64,
+    pub(super) behind: f64,
 }
 
 /// A step that cannot be taken; the state is as before.
