@@ -9,7 +9,7 @@
 //! | `observers/` | a contact watched tick by tick |
 //! | `table.rs`, `html.rs` | results as Arrow, and as notebooks show them |
 //! | `shown.rs` | classes that show what a result says |
-//! | `arrays.rs` | numbers in |
+//! | `arrays.rs`, `mappings.rs` | numbers in; mappings as the text of a description |
 //! | `work.rs` | long work without the GIL, ended by Ctrl-C |
 //! | `errors.rs` | exceptions and warnings |
 //! | `report_files.rs` | how the files of a report are written |
@@ -23,6 +23,7 @@ mod errors;
 mod files;
 mod fits;
 mod html;
+mod mappings;
 mod materials;
 mod observers;
 mod pickles;
@@ -48,6 +49,7 @@ mod _palpate {
         fits::fit::{PyEstimate, PyFit, fit_hold},
         fits::fit_many::fit_many,
         fits::laws::{latency, law_names},
+        mappings::mapping_text,
         materials::calibration::Calibration,
         materials::grip::Grip,
         materials::grip_parts::{BackOff, ForceHold, PositionHold, Schedule},

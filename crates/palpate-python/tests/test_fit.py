@@ -82,6 +82,17 @@ def test_a_prediction_is_the_law_with_the_numbers_found() -> None:
     assert np.all((sample_low < low) & (high < sample_high))
 
 
+def test_the_band_of_many_times_is_that_of_each() -> None:
+    t, y = relaxation(noise=1e-3)
+    fit = palpate.fit_hold(t, y)
+    at = np.array([np.nan, 0.0, 0.3, *np.linspace(1.0, 90.0, 40)])
+    many = fit.predict(at, interval=0.9)
+    for index, time in enumerate(at):
+        one = fit.predict([time], interval=0.9)
+        np.testing.assert_allclose([column[index] for column in many], [column[0] for column in one], rtol=1e-11)
+    assert np.isnan(many[0][0]) and np.all(many[2][1:] > many[1][1:])
+
+
 def test_a_prediction_is_on_the_clock_of_the_record() -> None:
     t, y = relaxation(noise=1e-4)
     fit, late = palpate.fit_hold(t, y), palpate.fit_hold(t + 100.0, y)

@@ -181,3 +181,30 @@ def test_laws_are_compared_by_what_they_predict() -> None:
         palpate.compare(t, y, laws=["x"])
     with pytest.raises(palpate.OptionError, match="quantity is"):
         palpate.compare(t, y, quantity="charge")
+
+
+def test_a_mapping_is_the_text_that_it_says() -> None:
+    text = palpate._palpate.mapping_text({
+        "title": 'a "b" \\ \x7f \n é',
+        "specimen": {"radius_m": 0.035, "areas": [["1 mm", "2 mm^2"]], "poisson_ratio": np.float32(0.5)},
+        "contact": {"layers": np.int64(8), "can_separate": np.bool_(True)},
+        "output": {"times_s": np.array([0.0, 1.5])},
+    })
+    import tomllib
+
+    assert tomllib.loads(text) == {
+        "title": 'a "b" \\ \x7f \n é',
+        "specimen": {"radius": "0.035 m", "areas": [["1 mm", "2 mm^2"]], "poisson_ratio": 0.5},
+        "contact": {"layers": 8, "can_separate": True},
+        "output": {"times": ["0.0 s", "1.5 s"]},
+    }
+    endless: dict[str, object] = {}
+    endless["step"] = endless
+    for wrong, message in [
+        ({"law": {"exponent": float("inf")}}, "law.exponent: expected a finite number, found inf"),
+        ({"step": [{}, {"hold": None}]}, r"step\[2\].hold: expected a text, a number, a list or a table, found NoneType"),
+        ({"step": [{"hold_s": True}]}, r"step\[1\].hold_s: expected a number in s, found True"),
+        (endless, "at most 64 deep"),
+    ]:
+        with pytest.raises(palpate.OptionError, match=message):
+            palpate._palpate.mapping_text(wrong)

@@ -137,3 +137,24 @@ def test_a_number_of_a_step_has_one_path_here_and_in_sweeps() -> None:
     assert both[0] == both[1]
     with pytest.raises(palpate.OptionError, match="either this or"):
         palpate.simulate_many(PROTOCOL, {"step[1].hold": [1.0], "step.1.hold": [2.0]})
+
+
+def test_contacts_side_by_side_are_contacts_alone() -> None:
+    rng = np.random.default_rng(4)
+    models = [
+        {**MODEL, "law": {**MODEL["law"], "exponent": exponent}, "specimen": {**MODEL["specimen"], "radius": f"{30 + i} mm"}}
+        for i, exponent in enumerate([5] * 9 + [3, 2.5, 1, 7, 5])
+    ]
+    together, alone = palpate.ContactStates(models), [palpate.ContactState(model) for model in models]
+    for _ in range(60):
+        to, dt = rng.uniform(-1e-3, 8e-3, len(models)), rng.uniform(0.0, 0.05)
+        forces = [state.step(dt, place) for state, place in zip(alone, to)]
+        np.testing.assert_allclose(together.step(dt, to), forces, rtol=1e-11, atol=1e-12)
+        assert together.is_touching.tolist() == [state.is_touching for state in alone]
+
+
+def test_models_that_are_alike_are_one_and_the_first_wrong_one_is_refused() -> None:
+    odd = {**MODEL, "specimen": {**MODEL["specimen"], "radius": "35"}}
+    assert len(palpate.ContactStates([MODEL] * 5000)) == 5000
+    with pytest.raises(palpate.OptionError, match="specimen.radius"):
+        palpate.ContactStates([MODEL, odd, MODEL])

@@ -68,6 +68,7 @@ from palpate._palpate import (
 )
 from palpate._palpate import fit_hold as _fit_hold
 from palpate._palpate import fit_many as _fit_many
+from palpate._palpate import mapping_text as _mapping_text
 from palpate._palpate import simulate as _simulate
 from palpate._palpate import simulate_many as _simulate_many
 
@@ -141,11 +142,11 @@ def _driven(protocol: Any) -> tuple[str | os.PathLike[str] | None, str | None]:
 
 def _with_body(table: Mapping[str, Any]) -> Mapping[str, Any]:
     """A protocol whose ``material`` is one in memory, with the tables of that body."""
-    import tomllib
-
     material = table.get("material")
     if not isinstance(material, Material):
         return table
+    import tomllib
+
     tables = ("specimen", "law", "contact")
     for name in tables:
         if name in table:
@@ -154,84 +155,8 @@ def _with_body(table: Mapping[str, Any]) -> Mapping[str, Any]:
     return {**{name: table[name] for name in table if name != "material"}, **{name: body[name] for name in tables}}
 
 
-#: What a key of a mapping may end in, where its value is a number in SI, or several: ``radius_m`` is ``radius`` in m.
-_UNITS = {
-    "_m_per_s": "m/s",
-    "_n_per_s": "N/s",
-    "_per_s": "/s",
-    "_pa": "Pa",
-    "_m2": "m^2",
-    "_n": "N",
-    "_s": "s",
-    "_m": "m",
-}
-
-
-def _with_units(table: Mapping[str, Any], path: str = "") -> dict[str, Any]:
-    """A mapping whose numbers under a key with a unit are texts with it, under the key without."""
-    from numbers import Real
-
-    def stated(value: Any, unit: str, key: str) -> Any:
-        if isinstance(value, (list, tuple, np.ndarray)):
-            return [stated(one, unit, f"{key}[{i}]") for i, one in enumerate(value, 1)]
-        if isinstance(value, Real) and not isinstance(value, (bool, np.bool_)):
-            if not np.isfinite(float(value)):
-                raise OptionError(f"{key}: expected a finite number, found {float(value)}")
-            return f"{float(value)!r} {unit}"
-        hint = f"hint: write the number alone, or {key.rpartition('.')[2][: -len(ending(key))]} = \"... {unit}\""
-        raise OptionError(f"{key}: expected a number in {unit}, found {value!r}\n{hint}")
-
-    def ending(key: str) -> str:
-        return next((end for end in _UNITS if key.endswith(end) and len(key) > len(end)), "")
-
-    def nested(value: Any, key: str) -> Any:
-        if isinstance(value, Mapping):
-            return _with_units(value, f"{key}.")
-        if isinstance(value, (list, tuple)):
-            return [nested(one, f"{key}[{i}]") for i, one in enumerate(value, 1)]
-        return value
-
-    made: dict[str, Any] = {}
-    for name, value in table.items():
-        name, key = str(name), f"{path}{name}"
-        end = ending(name)
-        bare = name.removesuffix(end)
-        if bare in made or (end and bare in table):
-            raise OptionError(f"{key}: expected either this or {path}{bare}, found both\nhint: remove one of them")
-        made[bare] = stated(value, _UNITS[end], key) if end else nested(value, key)
-    return made
-
-
 def _toml(table: Mapping[str, Any]) -> str:
-    import json
-    import math
-    from numbers import Integral, Real
-
-    def text(entry: str) -> str:
-        # JSON escapes all that TOML wants escaped, but for one.
-        return json.dumps(entry, ensure_ascii=False).replace("\x7f", "\\u007f")
-
-    def value(entry: Any, key: str) -> str:
-        if isinstance(entry, Mapping):
-            return "{" + ", ".join(f"{text(str(k))} = {value(entry[k], f'{key}.{k}')}" for k in entry) + "}"
-        if isinstance(entry, (list, tuple)):
-            return "[" + ", ".join(value(item, f"{key}[{i}]") for i, item in enumerate(entry, 1)) + "]"
-        if isinstance(entry, str):
-            return text(entry)
-        if isinstance(entry, (bool, np.bool_)):
-            return "true" if entry else "false"
-        if isinstance(entry, Integral):
-            return str(int(entry))
-        if isinstance(entry, Real):
-            if not math.isfinite(entry):
-                raise OptionError(f"{key}: expected a finite number, found {float(entry)}")
-            return repr(float(entry))
-        raise OptionError(f"{key}: expected a text, a number, a list or a table, found {type(entry).__name__}")
-
-    table = _with_units(_with_body(table))
-    return "".join(f"{text(str(key))} = {value(table[key], str(key))}\n" for key in table)
-
-
+    return _mapping_text(_with_body(table))
 
 
 def _record_file(given: Any, name: str | None = None) -> tuple[str | os.PathLike[str], bytes | None]:

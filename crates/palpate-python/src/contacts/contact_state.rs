@@ -1,50 +1,18 @@
 //! Contacts that a controller moves one step at a time: one, or many side by side.
 
 use std::io::Write;
-use std::path::{Path, PathBuf};
 
 use numpy::{Element, PyArray1};
-use palpate::contact::RateDependence;
-use palpate::simulate::{Contact, ContactModel, ContactState as State, StepError};
-use palpate_files::description::{DescriptionError, parse_scene, read_protocol_text, self_contained};
+use palpate::simulate::{ContactModel, ContactState as State, ContactStates as Contacts, NextStates, OneStepError};
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyList, PyTuple, PyType};
 
+use super::described::{all_described, described, model_of};
 use crate::arrays::{AT_ONCE, array, doubles};
-use crate::errors::{ModelError, OptionError, of_mapping, refused_plainly, undescribed};
-use crate::files::stated;
+use crate::errors::{ModelError, OptionError, refused_plainly};
 use crate::pickles::{Made, PICKLE, Piece, Pieces, check_pickle, in_pieces};
 use crate::shown::shown;
 use crate::work::briefly;
-
-/// A body and its law as a description has them: path of a file or mapping; and a text that makes them again anywhere.
-fn described(model: &Bound<'_, PyAny>) -> PyResult<(ContactModel, String)> {
-    let (path, text) = stated("_described", model)?;
-    let (model, text, path) = match path {
-        Some(path) => {
-            let text = read_protocol_text(&path).map_err(undescribed)?;
-            (latency(parse_scene(&text, &path))?, text, path)
-        }
-        None => {
-            let (text, path) = (text.unwrap_or_default(), PathBuf::from("model"));
-            (latency(parse_scene(&text, &path).map_err(of_mapping))?, text, path)
-        }
-    };
-    Ok((model, self_contained(&text, &path).map_err(undescribed)?))
-}
-
-fn latency(scene: Result<(Option<String>, Contact), DescriptionError>) -> PyResult<ContactModel> {
-    match scene.map_err(undescribed)?.1 {
-        Contact::Latency {
-            model,
-            rate: RateDependence::Constant,
-        } => Ok(model),
-        Contact::Latency { .. } => {
-            Err(refused_plainly::<ModelError>("a contact is stepped by a latency law with one rate coefficient"))
-        }
-        Contact::Linear(_) => Err(refused_plainly::<ModelError>("a contact is stepped by the latency law alone")),
-    }
-}
 
 /// A state out of a pickle, of a contact of this model: one that has a force.
 fn state_of(model: &ContactModel, bytes: [u8; State::BYTES]) -> PyResult<State> {
@@ -160,7 +128,7 @@ shown! {
     #[pyo3(signature = (text, state, format=0))]
     fn _from_parts(_class: &Bound<'_, PyType>, text: String, state: [u8; State::BYTES], format: u32) -> PyResult<Self> {
         check_pickle(format)?;
-        let model = latency(parse_scene(&text, Path::new("model")))?;
+        let model = model_of(&text)?;
         Ok(Self {
             state: state_of(&model, state)?,
             model,
@@ -200,20 +168,26 @@ shown! {
 /// >>> forces.round(2)
 /// array([1.94, 2.86, 3.89])
 #[pyclass(name = "ContactStates", module = "palpate", eq)]
-#[derive(Clone, PartialEq)]
+#[derive(Clone)]
 pub(crate) struct ContactStates {
-    models: Vec<ContactModel>,
-    states: Vec<State>,
+    contacts: Contacts,
+    /// The description of all, or one each, so that they can be sent elsewhere.
     texts: Vec<String>,
+}
+
+impl PartialEq for ContactStates {
+    fn eq(&self, other: &Self) -> bool {
+        self.contacts == other.contacts
+    }
 }
 
 /// Contacts that fit into the memory of a small machine.
 const MOST: usize = 100_000_000;
 
-/// A number for every contact: an array of as many, or one for all.
+/// An array of a number for every contact, or one for all.
 fn for_each(values: &Bound<'_, PyAny>, name: &str, count: usize) -> PyResult<Vec<f64>> {
     if let Ok(one) = values.extract::<f64>() {
-        return Ok(vec![one; count]);
+        return Ok(vec![one]);
     }
     let found = doubles(values, name)?;
     if found.len() == count {
@@ -223,6 +197,9 @@ fn for_each(values: &Bound<'_, PyAny>, name: &str, count: usize) -> PyResult<Vec
     Err(refused_plainly::<OptionError>(message))
 }
 
+/// A step of contacts up to one of them.
+type StepUntil = fn(&Contacts, usize, &[f64], &[f64], &mut NextStates) -> Result<(), OneStepError>;
+
 impl ContactStates {
     /// Steps all contacts, or none if one cannot.
     fn stepped<'py>(
@@ -230,33 +207,17 @@ impl ContactStates {
         py: Python<'py>,
         dt_s: &Bound<'py, PyAny>,
         (to, name): (&Bound<'py, PyAny>, &str),
-        step: fn(&mut State, &ContactModel, f64, f64) -> Result<f64, StepError>,
+        step: StepUntil,
     ) -> PyResult<Bound<'py, PyArray1<f64>>> {
-        let count = self.states.len();
+        let count = self.contacts.count();
         let (dt, to) = (for_each(dt_s, "dt_s", count)?, for_each(to, name, count)?);
-        let (mut states, mut results) = (Vec::with_capacity(count), Vec::with_capacity(count));
-        while states.len() < count {
+        let mut next = NextStates::default();
+        while next.count() < count {
             py.check_signals()?;
-            let moved = briefly(py, || {
-                for index in states.len()..count.min(states.len() + AT_ONCE) {
-                    let mut state = self.states[index];
-                    results.push(
-                        step(&mut state, self.model(index), dt[index], to[index]).map_err(|error| (index, error))?,
-                    );
-                    states.push(state);
-                }
-                Ok(())
-            })?;
-            moved.map_err(|(index, error): (usize, StepError)| {
-                refused_plainly::<ModelError>(format!("contact {index}: {error}"))
-            })?;
+            let until = next.count() + AT_ONCE;
+            briefly(py, || step(&self.contacts, until, &dt, &to, &mut next))?.map_err(refused_plainly::<ModelError>)?;
         }
-        self.states = states;
-        Ok(PyArray1::from_vec(py, results))
-    }
-
-    fn model(&self, index: usize) -> &ContactModel {
-        self.models.get(index).unwrap_or(&self.models[0])
+        Ok(PyArray1::from_vec(py, self.contacts.take(next)))
     }
 
     fn of_each<'py, T: Element>(
@@ -264,7 +225,8 @@ impl ContactStates {
         py: Python<'py>,
         of: impl Fn(&State, &ContactModel) -> T,
     ) -> PyResult<Bound<'py, PyArray1<T>>> {
-        array(py, self.states.iter().enumerate().map(|(index, state)| of(state, self.model(index))))
+        let contacts = &self.contacts;
+        array(py, (0..contacts.count()).map(|index| of(&contacts.state(index), contacts.model(index))))
     }
 }
 
@@ -300,14 +262,15 @@ shown! {
         };
         let described: Vec<(ContactModel, String)> = match count {
             Some(_) => vec![described(model)?],
-            None => model.try_iter()?.map(|model| described(&model?)).collect::<PyResult<_>>()?,
+            None => all_described(model)?,
         };
         if described.is_empty() {
             return Err(requested("an empty list".to_owned()));
         }
         let states = vec![State::default(); count.unwrap_or(described.len())];
         let (models, texts) = described.into_iter().unzip();
-        Ok(Self { models, states, texts })
+        let contacts = Contacts::of_states(models, &states);
+        Ok(Self { contacts, texts })
     }
 
     /// Moves every jaw to its displacement within a time step; all contacts, or none if one cannot.
@@ -332,7 +295,7 @@ shown! {
         dt_s: &Bound<'py, PyAny>,
         displacement_m: &Bound<'py, PyAny>,
     ) -> PyResult<Bound<'py, PyArray1<f64>>> {
-        self.stepped(py, dt_s, (displacement_m, "displacement_m"), State::step)
+        self.stepped(py, dt_s, (displacement_m, "displacement_m"), Contacts::step_until)
     }
 
     /// Applies a force to every contact within a time step, as `step` does a displacement.
@@ -347,11 +310,11 @@ shown! {
         dt_s: &Bound<'py, PyAny>,
         force_n: &Bound<'py, PyAny>,
     ) -> PyResult<Bound<'py, PyArray1<f64>>> {
-        self.stepped(py, dt_s, (force_n, "force_n"), State::step_force)
+        self.stepped(py, dt_s, (force_n, "force_n"), Contacts::step_force_until)
     }
 
     fn __len__(&self) -> usize {
-        self.states.len()
+        self.contacts.count()
     }
 
     #[classmethod]
@@ -375,8 +338,7 @@ shown! {
             let message = format!("expected one model, or one for each contact, found {models} for {count} contacts");
             return Err(refused_plainly::<ModelError>(message));
         }
-        let model = |text: &String| latency(parse_scene(text, Path::new("model")));
-        let models: Vec<ContactModel> = texts.iter().map(model).collect::<PyResult<_>>()?;
+        let models: Vec<ContactModel> = texts.iter().map(|text| model_of(text)).collect::<PyResult<_>>()?;
         let mut kept = Vec::with_capacity(count);
         for (model, state) in models.iter().cycle().zip(parts) {
             if kept.len().is_multiple_of(AT_ONCE) {
@@ -384,21 +346,21 @@ shown! {
             }
             kept.push(state_of(model, *state)?);
         }
-        Ok(Self {
-            models,
-            states: kept,
-            texts,
-        })
+        let contacts = Contacts::of_states(models, &kept);
+        Ok(Self { contacts, texts })
     }
 
     #[expect(clippy::type_complexity, reason = "what pickle asks for")]
     fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Made<'py, (Vec<String>, Vec<Piece>, u32)>> {
-        let states = in_pieces(py, |out| self.states.iter().try_for_each(|state| out.write_all(&state.to_bytes())))?;
+        let states = in_pieces(py, |out| {
+            let mut states = (0..self.contacts.count()).map(|index| self.contacts.state(index));
+            states.try_for_each(|state| out.write_all(&state.to_bytes()))
+        })?;
         let make = py.get_type::<Self>().getattr("_from_parts")?;
         Ok((make, (self.texts.clone(), states, PICKLE)))
     }
 
     fn __repr__(&self) -> String {
-        format!("<palpate.ContactStates: {} contacts>", self.states.len())
+        format!("<palpate.ContactStates: {} contacts>", self.contacts.count())
     }
 }

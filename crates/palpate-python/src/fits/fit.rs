@@ -226,12 +226,12 @@ shown! {
             return Ok(PyArray1::from_vec(py, values).into_any());
         };
         let fit = self.with_confidence(confidence)?;
-        let estimate = |t: &f64| if sample { fit.predict_sample(*t) } else { fit.predict_interval(*t) };
+        let predicted = if sample { Fit::predict_samples } else { Fit::predict_intervals };
         let mut estimates: Vec<Estimate> = Vec::with_capacity(elapsed.len());
         for some in elapsed.chunks(AT_ONCE) {
             // A band of millions of samples takes seconds: Ctrl-C is heard in between.
             py.check_signals()?;
-            briefly(py, || estimates.extend(some.iter().map(estimate)))?;
+            briefly(py, || estimates.extend(predicted(&fit, some)))?;
         }
         let column = |pick: fn(&Estimate) -> f64| array(py, estimates.iter().map(pick));
         let value = column(|estimate| estimate.value)?;

@@ -8,7 +8,7 @@ use palpate::{
 };
 
 use super::{
-    named_body::{protocol_tables, tables_with},
+    named_body::{names_material, protocol_tables, tables_with},
     steps::{Steps, steps},
     tables::{OutputTable, ProtocolTables},
 };
@@ -115,7 +115,12 @@ pub fn parse_scene(text: &str, path: &Path) -> Result<(Option<String>, Contact),
 /// # Errors
 /// As for [`read_material`](crate::description::read_material), and where the text is no TOML.
 pub fn self_contained(text: &str, path: &Path) -> Result<String, DescriptionError> {
-    let tables: toml::Table = protocol_tables(&Source { path, text })?;
+    let source = Source { path, text };
+    // A key can only be spelled otherwise by escapes.
+    if !text.contains("material") && !text.contains('\\') || !names_material(&source.root()?) {
+        return Ok(text.to_owned());
+    }
+    let tables: toml::Table = protocol_tables(&source)?;
     Ok(tables.to_string())
 }
 

@@ -3,6 +3,7 @@
 use std::path::Path;
 
 use serde::de::DeserializeOwned;
+use toml::{Spanned, de::DeTable};
 
 use crate::description::{
     material::parse_material,
@@ -15,7 +16,21 @@ use crate::description::{
 
 /// The tables of a protocol whose body may be that of a material file: `material = "file"` stands for specimen, law and contact.
 pub(crate) fn protocol_tables<T: DeserializeOwned>(source: &Source<'_>) -> Result<T, DescriptionError> {
-    protocol_tables_of(source, named_material(source)?.as_deref())
+    let root = source.root()?;
+    if names_material(&root) {
+        return protocol_tables_of(source, named_material(source)?.as_deref());
+    }
+    source.refuse_if(|key| has(&root, key), &[DescriptionKind::Test], DescriptionKind::Protocol)?;
+    source.read(root)
+}
+
+/// Whether a text of a protocol names a material file.
+pub(crate) fn names_material(root: &Spanned<DeTable<'_>>) -> bool {
+    has(root, "material")
+}
+
+fn has(root: &Spanned<DeTable<'_>>, key: &str) -> bool {
+    root.get_ref().keys().any(|name| name.get_ref() == key)
 }
 
 /// The text of the material file that a protocol names, if it names one.

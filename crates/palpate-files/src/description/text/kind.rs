@@ -28,8 +28,8 @@ const TABLES: [(DescriptionKind, &[&str]); 3] = [
 
 impl DescriptionKind {
     /// The kind, by the tables that only it has; `None` where there are none of those.
-    pub(crate) fn of(tables: &toml::Table) -> Option<Self> {
-        let known = TABLES.into_iter().find(|(_, own)| own.iter().any(|key| tables.contains_key(*key)));
+    pub(crate) fn of(has: impl Fn(&str) -> bool) -> Option<Self> {
+        let known = TABLES.into_iter().find(|(_, own)| own.iter().any(|key| has(key)));
         known.map(|(kind, _)| kind)
     }
 

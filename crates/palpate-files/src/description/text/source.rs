@@ -4,6 +4,7 @@ use std::path::Path;
 
 use palpate::units::{self, Dimension, UnitError};
 use serde::de::DeserializeOwned;
+use toml::{Spanned, de::DeTable};
 
 use super::{
     error::{BELIEVABLE, DescriptionError, KeyPosition, KeyProblem},
@@ -50,15 +51,34 @@ pub(crate) struct Source<'t> {
 impl Source<'_> {
     /// The tables of the text, unchecked.
     pub(crate) fn tables<T: DeserializeOwned>(&self) -> Result<T, DescriptionError> {
-        let deserializer = toml::Deserializer::parse(self.text).map_err(|error| self.syntax(&error))?;
-        T::deserialize(deserializer).map_err(|error| self.unfit(&error))
+        self.read(self.root()?)
+    }
+
+    /// The text as TOML.
+    pub(crate) fn root(&self) -> Result<Spanned<DeTable<'_>>, DescriptionError> {
+        DeTable::parse(self.text).map_err(|error| self.syntax(&error))
+    }
+
+    /// Its tables, unchecked.
+    pub(crate) fn read<T: DeserializeOwned>(&self, root: Spanned<DeTable<'_>>) -> Result<T, DescriptionError> {
+        T::deserialize(toml::Deserializer::from(root)).map_err(|error| self.unfit(&error))
     }
 
     /// Refuses a description of one of these kinds. What is no TOML, or of no kind, is for those to refuse who know what belongs there.
     pub(crate) fn refuse(&self, refused: &[Kind], expected: Kind) -> Result<(), DescriptionError> {
-        let kind = self.tables().ok().and_then(|tables| Kind::of(&tables));
+        let tables: toml::Table = self.tables().unwrap_or_default();
+        self.refuse_if(|key| tables.contains_key(key), refused, expected)
+    }
+
+    /// The same by the keys that it has.
+    pub(crate) fn refuse_if(
+        &self,
+        has: impl Fn(&str) -> bool,
+        refused: &[Kind],
+        expected: Kind,
+    ) -> Result<(), DescriptionError> {
         let path = self.path.to_owned();
-        match kind.filter(|found| refused.contains(found)) {
+        match Kind::of(has).filter(|found| refused.contains(found)) {
             Some(found) => Err(DescriptionError::Kind { path, expected, found }),
             None => Ok(()),
         }
