@@ -126,7 +126,7 @@ fn constant(paper: &Published) -> Claim {
     };
     claim
         .compared([Comparison::new(
-            "v of the last legible step of Table I against that of the first",
+            "last legible v of Table I against the first",
             "s⁻¹",
             (first, Relation::Equal, last),
             (2.0 * Published::COEFFICIENT_ROUNDING, "rounding of the table"),
