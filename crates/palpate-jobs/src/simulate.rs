@@ -6,13 +6,14 @@ use std::path::Path;
 use palpate::contact::RateDependence;
 use palpate::record::Record;
 use palpate::simulate::{
-    Contact, ContactModel, Drive, Energy, ForceHistory, Memory, Motion, Sampling, SimulateError, StepWork, StrainWave,
-    Trajectory, WAVE_TOLERANCE, cycles, energy_watched, simulate_watched, strain_wave_within, work_by_step_watched,
+    Contact, ContactModel, Cycle, Drive, Energy, ForceHistory, Memory, Motion, Sampling, SimulateError, StepWork,
+    StrainWave, Trajectory, WAVE_TOLERANCE, cycles, energy_watched, simulate_watched, strain_wave_within,
+    work_by_step_watched,
 };
 use palpate::test_problems::Rng;
 use palpate::units::quantity;
 use palpate::watch::Watch;
-use palpate_files::description::{Protocol, read_protocol, read_scene};
+use palpate_files::description::{Protocol, parse_protocol, parse_scene, read_protocol_text};
 use palpate_report::figure::Figure;
 use palpate_report::result::word;
 use palpate_report::study::{
@@ -84,9 +85,23 @@ impl Simulate {
         driver: Option<(&Record, &str)>,
         watch: &mut dyn Watch,
     ) -> Result<Outcome<Simulated>, JobError> {
+        self.run_text(&read_protocol_text(path)?, path, driver, watch)
+    }
+
+    /// Likewise, of the text of a protocol; `path` is used in messages, and for the files that it names.
+    ///
+    /// # Errors
+    /// As for [`run`](Self::run).
+    pub fn run_text(
+        self,
+        text: &str,
+        path: &Path,
+        driver: Option<(&Record, &str)>,
+        watch: &mut dyn Watch,
+    ) -> Result<Outcome<Simulated>, JobError> {
         let (scene, mut notes) = match driver {
-            None => stepped(path)?,
-            Some((record, place)) => (self.driven(path, record, place)?, Vec::new()),
+            None => stepped(text, path)?,
+            Some((record, place)) => (self.driven(text, path, record, place)?, Vec::new()),
         };
         let trajectory = simulate_watched(scene.drive(), &scene.contact, &scene.sampling, watch);
         let trajectory = trajectory.map_err(|error| scene.refused(error))?;
@@ -101,8 +116,8 @@ impl Simulate {
     }
 
     /// The body of the protocol, driven by a record from its first row on.
-    fn driven(self, protocol: &Path, record: &Record, place: &str) -> Result<Scene, JobError> {
-        let (title, contact) = read_scene(protocol)?;
+    fn driven(self, text: &str, protocol: &Path, record: &Record, place: &str) -> Result<Scene, JobError> {
+        let (title, contact) = parse_scene(text, protocol)?;
         let times = record.time().to_vec();
         let sampling = Sampling::Times(times.clone());
         let driver = match self.drive_by {
@@ -165,8 +180,34 @@ impl Simulated {
     /// [`JobError`] where the work of a step cannot be computed, or the watch ends it.
     pub fn hysteresis(&self, path: &Path, watch: &mut dyn Watch) -> Result<Figure, JobError> {
         let what = "Force against displacement of the jaw; the area of a loop is the energy loss of the cycle";
-        let cycles = cycles(&self.scene.steps(watch)?);
+        let cycles = self.cycles(watch)?;
         Ok(hysteresis_figure(&self.trajectory, &cycles, &stem(path), &self.scene.caption(what)))
+    }
+
+    /// What every step cost.
+    ///
+    /// # Errors
+    /// As for [`hysteresis`](Self::hysteresis).
+    pub fn steps(&self, watch: &mut dyn Watch) -> Result<Vec<StepWork>, JobError> {
+        let scene = &self.scene;
+        work_by_step_watched(scene.drive(), &scene.contact, watch).map_err(|error| scene.refused(error))
+    }
+
+    /// What every cycle cost.
+    ///
+    /// # Errors
+    /// As for [`hysteresis`](Self::hysteresis).
+    pub fn cycles(&self, watch: &mut dyn Watch) -> Result<Vec<Cycle>, JobError> {
+        Ok(cycles(&self.steps(watch)?))
+    }
+
+    /// Work over time.
+    ///
+    /// # Errors
+    /// [`JobError`] where it cannot be computed, or the watch ends it.
+    pub fn work(&self, watch: &mut dyn Watch) -> Result<Energy, JobError> {
+        let scene = &self.scene;
+        energy_watched(scene.drive(), &scene.contact, &scene.sampling, watch).map_err(|error| scene.refused(error))
     }
 
     /// What every step cost, as CSV.
@@ -174,7 +215,7 @@ impl Simulated {
     /// # Errors
     /// As for [`hysteresis`](Self::hysteresis).
     pub fn energy_by_step(&self, watch: &mut dyn Watch) -> Result<String, JobError> {
-        Ok(step_work_table(&self.scene.steps(watch)?).to_csv(self.job.csv_locale))
+        Ok(step_work_table(&self.steps(watch)?).to_csv(self.job.csv_locale))
     }
 
     /// What every cycle cost, as CSV.
@@ -182,17 +223,15 @@ impl Simulated {
     /// # Errors
     /// As for [`hysteresis`](Self::hysteresis).
     pub fn energy_by_cycle(&self, watch: &mut dyn Watch) -> Result<String, JobError> {
-        Ok(cycle_table(&cycles(&self.scene.steps(watch)?)).to_csv(self.job.csv_locale))
+        Ok(cycle_table(&self.cycles(watch)?).to_csv(self.job.csv_locale))
     }
 
     /// Work over time, as CSV.
     ///
     /// # Errors
-    /// [`JobError`] where it cannot be computed, or the watch ends it.
+    /// As for [`work`](Self::work).
     pub fn energy(&self, watch: &mut dyn Watch) -> Result<String, JobError> {
-        let scene = &self.scene;
-        let energy = energy_watched(scene.drive(), &scene.contact, &scene.sampling, watch);
-        Ok(energy_table(&energy.map_err(|error| scene.refused(error))?).to_csv(self.job.csv_locale))
+        Ok(energy_table(&self.work(watch)?).to_csv(self.job.csv_locale))
     }
 
     /// Strain of every layer over time.
@@ -280,10 +319,6 @@ impl Scene {
         }
     }
 
-    fn steps(&self, watch: &mut dyn Watch) -> Result<Vec<StepWork>, JobError> {
-        work_by_step_watched(self.drive(), &self.contact, watch).map_err(|error| self.refused(error))
-    }
-
     fn refused(&self, error: SimulateError) -> JobError {
         JobError::simulation(error).of(&self.place)
     }
@@ -295,8 +330,8 @@ impl Scene {
 }
 
 /// The body and the steps of a protocol, and what to know of them.
-fn stepped(path: &Path) -> Result<(Scene, Vec<String>), JobError> {
-    let protocol = read_protocol(path)?;
+fn stepped(text: &str, path: &Path) -> Result<(Scene, Vec<String>), JobError> {
+    let protocol = parse_protocol(text, path)?;
     let one = "one run with the parameters of the protocol: only palpate sweep uses the table [sweep]";
     let notes = if protocol.has_sweep { vec![one.to_owned()] } else { Vec::new() };
     let scene = Scene {

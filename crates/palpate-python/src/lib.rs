@@ -38,11 +38,18 @@ use pyo3::prelude::*;
 /// The compiled part of the package.
 #[pymodule(gil_used = false)]
 mod _palpate {
+    use pyo3::prelude::*;
+
+    #[pymodule_init]
+    fn init(module: &Bound<'_, PyModule>) -> PyResult<()> {
+        module.add("__version__", env!("CARGO_PKG_VERSION"))
+    }
+
     #[pymodule_export]
     use crate::{
         command::command,
         contacts::contact_state::{ContactState, ContactStates},
-        contacts::simulate::{Trajectory, simulate},
+        contacts::simulate::{Trajectory, energy, simulate},
         contacts::simulate_many::simulate_many,
         errors::{FitError, ModelError, OptionError, PalpateError, PalpateWarning, RecordError},
         files::{BatchResult, batch, convert, inspect, reproduce, sweep, watch},

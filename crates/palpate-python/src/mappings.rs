@@ -145,6 +145,9 @@ fn write_value(text: &mut String, value: &Bound<'_, PyAny>, place: &Place<'_>) -
         text.push_str(value.call_method0("__int__")?.str()?.to_str()?);
     } else if let Some(number) = real(value)? {
         text.push_str(&format!("{:?}", finite(number, place)?));
+    } else if is_with_unit(value)? {
+        let stated = units(value)?.call_method1("stated", (value, place.to_string()))?;
+        write_value(text, &stated, place)?;
     } else {
         let found = value.get_type().name()?;
         let message = format!("{place}: expected a text, a number, a list or a table, found {found}");
@@ -163,6 +166,10 @@ fn write_quantity(
     let several = value.is_instance_of::<PyList>() || value.is_instance_of::<PyTuple>();
     if place.depth < DEEPEST && (several || value.is_instance_of::<PyUntypedArray>()) {
         return write_list(text, value, place, |text, entry, place| write_quantity(text, entry, unit, (bare, place)));
+    }
+    if is_with_unit(value)? {
+        let in_si = units(value)?.call_method1("in_si", (value, place.to_string()))?;
+        return write_quantity(text, &in_si, unit, (bare, place));
     }
     let number = if value.is_instance_of::<PyBool>() { None } else { real(value)? };
     let Some(number) = number else {
@@ -229,6 +236,16 @@ fn finite(number: f64, place: &Place<'_>) -> PyResult<f64> {
             Err(refused_plainly::<OptionError>(format!("{place}: expected a finite number, found {found}")))
         }
     }
+}
+
+/// Whether a value is a number with a unit, of pint.
+fn is_with_unit(value: &Bound<'_, PyAny>) -> PyResult<bool> {
+    Ok(value.hasattr("magnitude")? && value.hasattr("to_base_units")?)
+}
+
+/// The module that converts such values.
+fn units<'py>(value: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyModule>> {
+    value.py().import("palpate._units")
 }
 
 /// Whether a value is of a class of Python's.

@@ -19,7 +19,7 @@ use crate::errors::{PalpateError, refused};
 use crate::work::{Heard, at_length};
 
 /// The format of pickles: another number where their content has another form.
-pub(crate) const PICKLE: u32 = 3;
+pub(crate) const PICKLE: u32 = 4;
 
 /// Bytes of a piece.
 const PIECE: usize = 1 << 20;

@@ -16,7 +16,7 @@ use palpate::number::significant;
 use palpate_report::document::{BudgetDocument, ContributionDocument};
 use palpate_report::result::{PARAMETER_COLUMNS, ParameterColumn, ParameterRow};
 use pyo3::IntoPyObjectExt;
-use pyo3::exceptions::{PyKeyError, PyRuntimeError, PyTypeError};
+use pyo3::exceptions::{PyIndexError, PyKeyError, PyRuntimeError, PyTypeError};
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList, PyString, PyType};
 use pyo3_arrow::PyTable;
@@ -31,7 +31,7 @@ use crate::work::{Heard, at_length};
 /// ``table["force_n"]`` is an array where the column holds numbers (NaN where one is missing) and a list with None where it holds
 /// texts or truths. ``polars.DataFrame(table)``, ``pandas.DataFrame.from_arrow(table)`` and ``pyarrow.table(table)`` take it without
 /// a copy; ``pandas.DataFrame(table)`` copies it, row by row, and of a table without rows it has no columns. ``for row in table`` goes
-/// through the rows, a dict each.
+/// through the rows, a dict each; ``table[0]`` and ``table[-1]`` are one.
 ///
 /// Examples
 /// --------
@@ -46,6 +46,30 @@ pub(crate) struct Table {
 }
 
 impl Table {
+    /// Tables with the same columns one below the other; the column `label` has the name of the table that a row is of.
+    pub(crate) fn stacked(label: &str, parts: &[(&str, Self)]) -> PyResult<Self> {
+        let names = parts.iter().flat_map(|(name, part)| std::iter::repeat_n(*name, part.batch.num_rows()));
+        let mut columns: Vec<(&str, ArrayRef)> = vec![(label, Column::column(names))];
+        let schema = parts.first().map(|(_, first)| first.batch.schema());
+        for field in schema.iter().flat_map(|schema| schema.fields()) {
+            let of_part = |(_, part): &(&str, Self)| part.batch.column_by_name(field.name()).cloned();
+            let found: Vec<ArrayRef> = parts.iter().filter_map(of_part).collect();
+            let arrays: Vec<&dyn Array> = found.iter().map(AsRef::as_ref).collect();
+            columns.push((field.name(), concat(&arrays).map_err(refused_plainly::<PyRuntimeError>)?));
+        }
+        Self::of(columns)
+    }
+
+    /// A row as a dict, by its number from the first, or, below 0, from the last.
+    fn row<'py>(&self, py: Python<'py>, number: isize) -> PyResult<Bound<'py, PyAny>> {
+        let rows = self.batch.num_rows();
+        let from_first = if number < 0 { rows.checked_sub(number.unsigned_abs()) } else { Some(number.unsigned_abs()) };
+        let within = from_first.filter(|row| *row < rows);
+        let missing = || PyIndexError::new_err(format!("no row has the number {number}; there are {rows}"));
+        let batch = self.batch.slice(within.ok_or_else(missing)?, 1);
+        Self { batch }.__iter__(py)?.call_method0("__next__")
+    }
+
     /// From columns of one length.
     pub(crate) fn of(columns: Vec<(&str, ArrayRef)>) -> PyResult<Self> {
         // A column without a missing value may get one in the next table of its kind.
@@ -193,8 +217,11 @@ impl Table {
     }
 
     fn __getitem__<'py>(&self, py: Python<'py>, name: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
+        if let Ok(row) = name.extract::<isize>() {
+            return self.row(py, row);
+        }
         let names = self.column_names().join(", ");
-        let wrong = "a table is indexed by the name of a column; a row is polars.DataFrame(table).row(0, named=True)";
+        let wrong = "a table is indexed by the name of a column or the number of a row";
         let found = |_| PyTypeError::new_err(format!("{wrong}; found {name:?}, columns are {names}"));
         let name: String = name.extract().map_err(found)?;
         let missing = || PyKeyError::new_err(format!("no column is called {name:?}; columns are {names}"));
@@ -211,6 +238,21 @@ impl Table {
     ) -> PyResult<Py<PyAny>> {
         let table = PyTable::try_new(vec![self.batch.clone()], self.batch.schema())?.into_pyobject(py)?;
         Ok(table.call_method1("__arrow_c_stream__", (requested_schema,))?.unbind())
+    }
+
+    /// The same rows with a column before the others, which replaces one of its name.
+    fn _labelled(&self, name: &str, labels: &Bound<'_, PyAny>) -> PyResult<Self> {
+        let column: ArrayRef = if let Ok(counts) = labels.extract::<Vec<Option<i64>>>() {
+            Arc::new(Int64Array::from(counts))
+        } else if let Ok(numbers) = labels.extract::<Vec<f64>>() {
+            Column::column(numbers.into_iter())
+        } else {
+            Column::column(labels.extract::<Vec<String>>()?.into_iter())
+        };
+        let (schema, old) = (self.batch.schema(), self.batch.columns().iter());
+        let others = schema.fields().iter().map(|field| field.name().as_str()).zip(old.map(Arc::clone));
+        let others = others.filter(|(other, _)| *other != name);
+        Self::of(std::iter::once((name, column)).chain(others).collect())
     }
 
     #[classmethod]

@@ -15,11 +15,11 @@ QUICK = [
 
 # Damage that has caused a panic before.
 KNOWN = [
-    ("Fit, stretched", "$.searched without the last"),
-    ("Fit", "$.uncertainty.covariance[2] = []"),
-    ("Fit", "$.uncertainty.covariance[0] without the last"),
-    ("Fit", "$.curve.terms[0].parameters without the first"),
-    ("Fit, stretched", "$.curve.terms[0].parameters first one 2000 times"),
+    ("Fit, stretched", "$.fit.searched without the last"),
+    ("Fit", "$.fit.uncertainty.covariance[2] = []"),
+    ("Fit", "$.fit.uncertainty.covariance[0] without the last"),
+    ("Fit", "$.fit.curve.terms[0].parameters without the first"),
+    ("Fit, stretched", "$.fit.curve.terms[0].parameters first one 2000 times"),
     ("Prediction", "$.trajectory.time twice"),
     ("Prediction", "$.force_standard_error without the last"),
     ("Trajectory", "$.force = []"),

@@ -101,9 +101,45 @@ def test_a_prediction_is_on_the_clock_of_the_record() -> None:
     np.testing.assert_allclose(late.predict(elapsed_s=t), fit.predict(t), rtol=1e-9)
     np.testing.assert_allclose(late.predict(time_s=[160.0], interval=0.9), fit.predict([60.0], interval=0.9), rtol=1e-6)
     with pytest.raises(palpate.OptionError, match="either time_s"):
-        late.predict()
-    with pytest.raises(palpate.OptionError, match="either time_s"):
         late.predict(t, elapsed_s=t)
+
+
+def test_a_fit_keeps_its_samples() -> None:
+    t, y = relaxation(noise=1e-4)
+    fit = palpate.fit_hold(t + 3.0, y)
+    assert np.array_equal(fit.time_s, t + 3.0) and np.array_equal(fit.signal, y) and fit.weights is None
+    assert np.array_equal(fit.best_fit, fit.predict()) and np.array_equal(fit.predict(), fit.predict(t + 3.0))
+    np.testing.assert_array_equal(fit.residual, y - fit.best_fit)
+    assert np.sum(fit.residual**2) == pytest.approx(fit.residual_square, rel=1e-12)
+    weights = np.linspace(1.0, 3.0, t.size)
+    weighted = palpate.fit_hold(t, y, weights=weights)
+    assert weighted.weights is not None
+    np.testing.assert_allclose(weighted.weights, weights, rtol=1e-15)
+    table = fit.to_arrow()
+    assert table.keys() == ["time_s", "signal", "best_fit", "residual"] and len(table) == len(fit) == 400
+    assert fit != palpate.fit_hold(t + 3.0, np.where(t == 0, y + 1e-16, y))
+
+
+def test_criteria_are_those_of_lmfit() -> None:
+    t, y = relaxation(noise=1e-3)
+    model = lmfit.Model(lambda x, a, b, c: a + b * np.exp(-x / c))
+    result: Any = model.fit(y, x=t, a=0.2, b=0.1, c=5.0)
+    fit = palpate.fit_hold(t, y, law="standard-linear-solid")
+    assert (fit.aic, fit.bic) == pytest.approx((result.aic, result.bic), rel=1e-9)
+
+
+def test_a_number_is_predicted_as_a_number() -> None:
+    t, y = relaxation(noise=1e-4)
+    fit = palpate.fit_hold(t + 3.0, y)
+    times: list[Any] = [23, 23.0, np.float64(23.0), np.array(23.0)]
+    for time in times:
+        value: Any = fit.predict(time)
+        assert type(value) is float and value == fit.predict([23.0])[0]
+    assert fit.predict(elapsed_s=20.0) == fit.predict(23.0)
+    band = fit.predict(23.0, interval=0.9)
+    assert band == tuple(float(end[0]) for end in fit.predict([23.0], interval=0.9))
+    with pytest.raises(palpate.OptionError, match=r"predict\(time_s\): expected a column of numbers, found str '23'"):
+        fit.predict("23")
 
 
 def test_a_fit_can_be_kept_sent_and_compared() -> None:

@@ -4,8 +4,11 @@ from __future__ import annotations
 
 from importlib.metadata import distribution
 from pathlib import Path
+from typing import Any, get_args
 
+import palpate
 import pytest
+from palpate._options import Intervals, LawName, Loss, Missing, Noise, Response
 
 LICENCES = {
     "LICENSE-MIT": "LICENSE-MIT",
@@ -20,3 +23,32 @@ def test_the_wheel_holds_the_licences_of_its_content(root: Path, name: str, sour
     package = distribution("palpate")
     assert name in (package.metadata.get_all("License-File") or [])
     assert package.read_text(f"licenses/{name}") == (root / source).read_text(encoding="utf-8")
+
+
+def test_the_package_says_what_it_offers() -> None:
+    assert palpate.__version__ == distribution("palpate").version
+    offered = {name for name in dir(palpate) if not name.startswith("_")}
+    assert offered == set(palpate.__all__)
+    assert all(hasattr(palpate, name) for name in dir(palpate))
+
+
+def words_of(option: str) -> dict[str, Any]:
+    return {option: "nothing"}
+
+
+@pytest.mark.parametrize(
+    ("option", "words"), [("response", Response), ("loss", Loss), ("noise", Noise), ("intervals", Intervals), ("nan", Missing)]
+)
+def test_the_words_of_options_are_those_of_the_compiled_part(option: str, words: Any) -> None:
+    with pytest.raises(palpate.OptionError) as caught:
+        palpate.fit_hold([0.0], [0.0], **words_of(option))
+    known = str(caught.value).partition("one of ")[2].partition(", found")[0]
+    assert known.split(", ") == [f'"{word}"' for word in get_args(words)]
+
+
+def test_the_laws_that_editors_offer_are_laws() -> None:
+    offered = set(get_args(get_args(LawName)[0]))
+    assert {name for name in palpate.laws.names() if ":" not in name} <= offered
+    for law in offered - {"spectrum"}:
+        with pytest.raises(palpate.FitError):
+            palpate.fit_hold([], [], law=law, response="creep" if law == "kelvin-voigt" else "relaxation")

@@ -41,11 +41,13 @@ def test_an_analysis_is_that_of_the_command_line_to_the_last_bit(root: Path) -> 
 @pytest.mark.filterwarnings("ignore::palpate.PalpateWarning")
 def test_a_table_says_how_it_is_indexed(root: Path) -> None:
     table = palpate.read(root / "examples/records/ball.csv", test=root / "examples/records/ball.toml").analyze(compare=False).holds
-    with pytest.raises(TypeError, match=r"by the name of a column; .*row\(0, named=True\); found 0, columns are index, "):
-        table[0]  # type: ignore[index] # pyright: ignore[reportArgumentType]
+    with pytest.raises(TypeError, match=r"by the name of a column or the number of a row; found 0.5, columns are index, "):
+        table[0.5]  # type: ignore[call-overload] # pyright: ignore
     with pytest.raises(KeyError, match="no column is called"):
         table["force"]
-    assert polars.DataFrame(table).row(0, named=True)["index"] == table["index"][0]
+    assert table[0]["index"] == table["index"][0] and table[-1] == list(table)[-1]
+    with pytest.raises(IndexError, match="no row has the number 99; there are"):
+        table[99]
 
 
 @pytest.mark.filterwarnings("ignore::palpate.PalpateWarning")

@@ -7,6 +7,7 @@ import pickle
 import subprocess
 import sys
 from pathlib import Path
+from typing import Literal
 
 import palpate
 import pytest
@@ -43,7 +44,7 @@ def test_analyze() -> None:
 
 
 @pytest.mark.parametrize("intervals", ["profile", "bootstrap"])
-def test_intervals(intervals: str) -> None:
+def test_intervals(intervals: Literal["profile", "bootstrap"]) -> None:
     flags = ["--test", TEST, "--intervals", intervals, "--format", "json"]
     assert record().analyze(intervals=intervals, compare=False).to_json() == command("analyze", RECORD, "--no-compare", *flags)
     laws = ["latency", "maxwell"]

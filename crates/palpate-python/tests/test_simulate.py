@@ -14,6 +14,7 @@ import numpy as np
 import palpate
 import polars
 import pytest
+from palpate._palpate import mapping_text
 from conftest import ROOT, relaxation
 
 PAPER: dict[str, Any] = {
@@ -180,11 +181,11 @@ def test_laws_are_compared_by_what_they_predict() -> None:
     with pytest.raises(palpate.OptionError, match='no law is called "x"'):
         palpate.compare(t, y, laws=["x"])
     with pytest.raises(palpate.OptionError, match="quantity is"):
-        palpate.compare(t, y, quantity="charge")
+        palpate.compare(t, y, quantity="charge")  # type: ignore[arg-type] # pyright: ignore[reportArgumentType]
 
 
 def test_a_mapping_is_the_text_that_it_says() -> None:
-    text = palpate._palpate.mapping_text({
+    text = mapping_text({
         "title": 'a "b" \\ \x7f \n é',
         "specimen": {"radius_m": 0.035, "areas": [["1 mm", "2 mm^2"]], "poisson_ratio": np.float32(0.5)},
         "contact": {"layers": np.int64(8), "can_separate": np.bool_(True)},
@@ -198,8 +199,9 @@ def test_a_mapping_is_the_text_that_it_says() -> None:
         "contact": {"layers": 8, "can_separate": True},
         "output": {"times": ["0.0 s", "1.5 s"]},
     }
-    endless: dict[str, object] = {}
+    endless: dict[str, Any] = {}
     endless["step"] = endless
+    wrong: Any
     for wrong, message in [
         ({"law": {"exponent": float("inf")}}, "law.exponent: expected a finite number, found inf"),
         ({"step": [{}, {"hold": None}]}, r"step\[2\].hold: expected a text, a number, a list or a table, found NoneType"),
@@ -207,4 +209,4 @@ def test_a_mapping_is_the_text_that_it_says() -> None:
         (endless, "at most 64 deep"),
     ]:
         with pytest.raises(palpate.OptionError, match=message):
-            palpate._palpate.mapping_text(wrong)
+            mapping_text(wrong)

@@ -18,11 +18,12 @@ from collections.abc import Callable, Generator, Mapping, Sequence
 from contextlib import contextmanager
 from inspect import iscoroutinefunction
 from pathlib import PurePath
-from typing import Any, Union
+from typing import Any, Union, overload
 
 import numpy as np
 
-from palpate import laws
+from palpate import _arrays, _long, _results, laws, protocols
+from palpate._options import DriveBy, EnergyBy, Intervals, LawName, Loss, Missing, Noise, Response
 from palpate._palpate import (
     Analysis,
     BackOff,
@@ -66,11 +67,14 @@ from palpate._palpate import (
     sweep,
     watch,
 )
+from palpate._palpate import __version__ as __version__
+from palpate._palpate import energy as _energy
 from palpate._palpate import fit_hold as _fit_hold
 from palpate._palpate import fit_many as _fit_many
 from palpate._palpate import mapping_text as _mapping_text
 from palpate._palpate import simulate as _simulate
 from palpate._palpate import simulate_many as _simulate_many
+from palpate.protocols import Law, Protocol, Specimen, Step
 
 __all__ = [
     "Analysis",
@@ -86,6 +90,7 @@ __all__ = [
     "FitError",
     "ForceHold",
     "Grip",
+    "Law",
     "PositionHold",
     "Material",
     "ModelError",
@@ -95,22 +100,27 @@ __all__ = [
     "PalpateError",
     "PalpateWarning",
     "Prediction",
+    "Protocol",
     "Record",
     "RecordComparison",
     "RecordError",
     "Schedule",
     "SeveralCalibrations",
+    "Specimen",
+    "Step",
     "Table",
     "Trajectory",
     "batch",
     "calibrate",
     "compare",
     "convert",
+    "energy",
     "fit_hold",
     "fit_many",
     "forecast",
     "inspect",
     "laws",
+    "protocols",
     "read",
     "read_all",
     "report_all",
@@ -120,6 +130,13 @@ __all__ = [
     "sweep",
     "watch",
 ]
+_results.attach()
+
+
+def __dir__() -> list[str]:
+    # What is offered, without what this file imports for itself.
+    return sorted([*__all__, "__all__", "__doc__", "__file__", "__name__", "__path__", "__version__"])
+
 
 #: Lower and upper end of what a number may be; None leaves an end open.
 Bound = Union[tuple[Union[float, None], Union[float, None]], Sequence[Union[float, None]]]
@@ -254,8 +271,9 @@ def _keywords(
     confidence: float,
     log_spaced: int | None,
     intervals: str,
+    nan: str,
 ) -> dict[str, Any]:
-    words = {"law": law, "response": response, "loss": loss, "noise": noise, "intervals": intervals}
+    words = {"law": law, "response": response, "loss": loss, "noise": noise, "intervals": intervals, "nan": nan}
     for name, word in words.items():
         if not isinstance(word, str):
             raise OptionError(f"{name}: expected a word, found {word!r}")
@@ -276,16 +294,17 @@ def fit_hold(
     time_s: Any,
     signal: Any,
     *,
-    law: str = "latency",
+    law: LawName = "latency",
     weights: Any = None,
-    response: str = "relaxation",
+    response: Response = "relaxation",
     fixed: Mapping[str, float] | None = None,
     bounds: Mapping[str, Bound] | None = None,
-    loss: str = "squares",
-    noise: str = "residuals",
+    loss: Loss = "squares",
+    noise: Noise = "residuals",
     confidence: float = 0.95,
     log_spaced: int | None = None,
-    intervals: str = "automatic",
+    intervals: Intervals = "automatic",
+    nan: Missing = "raise",
 ) -> Fit:
     """Fit a law to one hold; no starting values.
 
@@ -295,9 +314,9 @@ def fit_hold(
     Parameters
     ----------
     time_s : array_like, shape (N,)
-        Times in s, rising; the first is the start of the hold.
+        Times in s, rising; the first is the start of the hold. Durations are times too, and so are dates: seconds since the first.
     signal : array_like, shape (N,)
-        Force, stress or strain (displacement or strain for creep), in any unit.
+        Force, stress or strain (displacement or strain for creep), in any unit; quantities of pint are converted to SI.
     law
         A name of ``palpate.laws.names()``: "latency" (n found), "latency:5", "standard-linear-solid", "prony:2", ...
     weights : array_like, shape (N,), optional
@@ -321,11 +340,13 @@ def fit_hold(
         data do not close it, "bootstrap", residuals resampled in blocks, or "automatic": the profile where
         an interval of curvature is wider than a third of its parameter to a side (a tenth, if a time constant is longer than
         the hold), and where terms merge or vanish.
+    nan
+        Samples without a time, a value or a weight (NaN, None, masked) "raise" an error, or "omit" leaves them out.
 
     Returns
     -------
     Fit
-        Estimates with errors and intervals, covariance, and why it ended.
+        Estimates with errors and intervals, covariance, why it ended, and the samples.
 
     Raises
     ------
@@ -342,24 +363,69 @@ def fit_hold(
     >>> round(fit.parameters["time_constant_s"], 6)
     8.0
     """
-    keywords = _keywords(law, response, fixed, bounds, loss, noise, confidence, log_spaced, intervals)
+    keywords = _keywords(law, response, fixed, bounds, loss, noise, confidence, log_spaced, intervals, nan)
+    if nan == "omit":
+        time_s, signal = _arrays.as_doubles(time_s, "time_s", True), _arrays.as_doubles(signal, "signal", True)
+        weights = None if weights is None else _arrays.as_doubles(weights, "weights", True)
     return _fit_hold(time_s, signal, weights, keywords)
 
 
+@overload
 def fit_many(
     time_s: Any,
     signal: Any,
     *,
-    law: str = "latency",
+    law: LawName = "latency",
     weights: Any = None,
-    response: str = "relaxation",
+    response: Response = "relaxation",
     fixed: Mapping[str, float] | None = None,
     bounds: Mapping[str, Bound] | None = None,
-    loss: str = "squares",
-    noise: str = "residuals",
+    loss: Loss = "squares",
+    noise: Noise = "residuals",
     confidence: float = 0.95,
     log_spaced: int | None = None,
-    intervals: str = "automatic",
+    intervals: Intervals = "automatic",
+    nan: Missing = "raise",
+    progress: bool | None = None,
+) -> Table: ...
+@overload
+def fit_many(
+    table: Any,
+    /,
+    *,
+    by: str | Sequence[str],
+    time: str,
+    signal: str,
+    law: LawName = "latency",
+    weights: str | None = None,
+    response: Response = "relaxation",
+    fixed: Mapping[str, float] | None = None,
+    bounds: Mapping[str, Bound] | None = None,
+    loss: Loss = "squares",
+    noise: Noise = "residuals",
+    confidence: float = 0.95,
+    log_spaced: int | None = None,
+    intervals: Intervals = "automatic",
+    nan: Missing = "raise",
+    progress: bool | None = None,
+) -> Table: ...
+def fit_many(
+    time_s: Any,
+    signal: Any = None,
+    *,
+    by: str | Sequence[str] | None = None,
+    time: str | None = None,
+    law: LawName = "latency",
+    weights: Any = None,
+    response: Response = "relaxation",
+    fixed: Mapping[str, float] | None = None,
+    bounds: Mapping[str, Bound] | None = None,
+    loss: Loss = "squares",
+    noise: Noise = "residuals",
+    confidence: float = 0.95,
+    log_spaced: int | None = None,
+    intervals: Intervals = "automatic",
+    nan: Missing = "raise",
     progress: bool | None = None,
 ) -> Table:
     """Fit a law to many holds, on all processors and without the GIL.
@@ -367,10 +433,15 @@ def fit_many(
     Parameters
     ----------
     time_s, signal, weights
-        A list of arrays of any lengths, an array of shape (curves, samples), or a column of lists in Arrow (pyarrow,
-        polars). One column of times, or of weights, stands for all curves.
-    law, response, fixed, bounds, loss, noise, confidence, log_spaced, intervals
-        As for `fit_hold`.
+        A list of arrays of any lengths, an array of shape (curves, samples), of NumPy or xarray, or a column of lists in Arrow
+        (pyarrow, polars). One column of times, or of weights, stands for all curves. With `by`, `time_s` is a long table of pandas,
+        polars or pyarrow, a row a sample, and `time`, `signal` and `weights` are names of its columns.
+    by
+        Name of the column that tells the curves of a long table apart, or several names.
+    time
+        Name of its column of times, in s, dates or durations.
+    law, response, fixed, bounds, loss, noise, confidence, log_spaced, intervals, nan
+        As for `fit_hold`; ``nan="omit"`` takes rows that are padded with NaN to one length.
     progress
         Whether to show a bar of tqdm; if left out, where tqdm is there, standard error is a terminal and it takes a while.
 
@@ -378,24 +449,54 @@ def fit_many(
     -------
     Table
         A row a curve, in order: every number with its standard error and interval, root mean square residual, ending. A curve
-        that no law can be fitted to, or that is no column of numbers, says why in ``error``, and its numbers are missing.
+        that no law can be fitted to, or that is no column of numbers, says why in ``error``, and its numbers are missing. The curves
+        of a long table stand in the order in which they first appear, with the columns of `by`.
 
     Raises
     ------
     OptionError
-        As for `fit_hold`; no list of curves; times or weights that are meant for all curves and are none.
+        As for `fit_hold`; no list of curves; times or weights that are meant for all curves and are none; a column that there is
+        not, or a row without a label.
+
+    Examples
+    --------
+    >>> import numpy as np, palpate
+    >>> t = np.linspace(0.0, 40.0, 100)
+    >>> samples = {
+    ...     "specimen": ["a"] * 100 + ["b"] * 100,
+    ...     "t": np.concatenate([t, t]),
+    ...     "force": np.concatenate([1 + 2 * np.exp(-t / 8), 1 + np.exp(-t / 5)]),
+    ... }
+    >>> fits = palpate.fit_many(samples, by="specimen", time="t", signal="force", law="standard-linear-solid")
+    >>> fits["specimen"], fits["time_constant_s"].round(3).tolist()
+    (['a', 'b'], [8.0, 5.0])
     """
-    keywords = _keywords(law, response, fixed, bounds, loss, noise, confidence, log_spaced, intervals)
-    columns = {"time_s": time_s, "signal": signal, "weights": weights}
-    for name, found in columns.items():
+    keywords = _keywords(law, response, fixed, bounds, loss, noise, confidence, log_spaced, intervals, nan)
+    labels: _long.Labels = {}
+    if by is not None:
+        names = {"time": time, "signal": signal, "weights": weights}
+        for name, found in names.items():
+            if not isinstance(found, str) and not (name == "weights" and found is None):
+                raise OptionError(f"{name}: expected the name of a column beside by, found {type(found).__name__}")
+        labels, columns = _long.curves(time_s, by, [name for name in names.values() if name is not None])
+        time_s, signal, weights = (*columns, None)[:3]
+    elif time is not None:
+        raise OptionError("time: expected by beside it, the column that tells curves apart\nhint: by=\"...\"")
+    given = {"time_s": time_s, "signal": signal, "weights": weights}
+    for name, found in given.items():
         if isinstance(found, Mapping):
-            raise OptionError(f"{name}: expected a list of curves, found a mapping\nhint: pass list(curves.values())")
+            raise OptionError(f"{name}: expected a list of curves, found a mapping\nhint: pass list(curves.values()), or a long table with by=")
         if found is None and name != "weights":
             raise OptionError(f"{name}: expected a list of curves, found None")
+    if hasattr(signal, "dims") and len(getattr(time_s, "dims", ())) == 1 and time_s.dims[0] in signal.dims:
+        # Dimensions of xarray have names: a curve goes along that of the times.
+        signal = signal.transpose(..., time_s.dims[0])
     curves = len(signal) if hasattr(signal, "__len__") else 0
     with _bar(progress, curves, "fit") as tell:
-        return _fit_many(time_s, signal, weights, keywords, tell)
-
+        table = _fit_many(time_s, signal, weights, keywords, tell)
+    for name, values in reversed(labels.items()):
+        table = table._labelled(name, values)
+    return table
 
 
 def simulate(
@@ -405,18 +506,24 @@ def simulate(
     law: Mapping[str, Any] | None = None,
     contact: Mapping[str, Any] | None = None,
     output: Mapping[str, Any] | None = None,
+    drive: Record | None = None,
+    drive_by: DriveBy = "displacement",
 ) -> Trajectory:
     """Simulate squeeze, hold, creep and release by a protocol.
 
     Parameters
     ----------
     protocol
-        Path of a protocol (TOML), or a mapping with its tables: ``{"specimen": {...}, "law": {...}, "step": [{...}, ...]}``.
-        Quantities are texts with a unit, such as ``"radius": "35 mm"``, or numbers in SI under a key that says the unit, such as
-        ``"radius_m": 0.035``; ``_m``, ``_s``, ``_n``, ``_pa``, ``_m2``, ``_per_s``, ``_m_per_s`` and ``_n_per_s`` do. ``"material"``, a `Material` or the path of its file, stands for
-        specimen, law and contact.
+        Path of a protocol (TOML), a `Protocol`, or a mapping with its tables: ``{"specimen": {...}, "law": {...}, "step": [{...}, ...]}``.
+        Quantities are texts with a unit, such as ``"radius": "35 mm"``, quantities of pint, or numbers in SI under a key that says the
+        unit, such as ``"radius_m": 0.035``; ``_m``, ``_s``, ``_n``, ``_pa``, ``_m2``, ``_per_s``, ``_m_per_s`` and ``_n_per_s`` do.
+        ``"material"``, a `Material` or the path of its file, stands for specimen, law and contact.
     specimen, law, contact, output
         Tables that stand in place of those of a mapping.
+    drive
+        A measured record whose displacement, or force, the body follows in place of the steps.
+    drive_by
+        Which of both: "displacement" or "force".
 
     Returns
     -------
@@ -427,6 +534,8 @@ def simulate(
     ------
     OptionError
         A protocol that says what no contact can do; the message names the key.
+    RecordError
+        A record without a displacement that is to drive by it.
     ModelError
         A motion that the body cannot take.
 
@@ -443,11 +552,68 @@ def simulate(
     """
     replaced = {"specimen": specimen, "law": law, "contact": contact, "output": output}
     replaced = {name: table for name, table in replaced.items() if table is not None}
+    driver = _driver(drive, drive_by)
     if isinstance(protocol, Mapping):
-        return _simulate(None, _toml({**protocol, **replaced}))
+        return _simulate(None, _toml({**protocol, **replaced}), *driver)
     if replaced:
         raise OptionError(f"{', '.join(replaced)}: tables replace those of a mapping, found the path of a protocol")
-    return _simulate(protocol, None)
+    return _simulate(protocol, None, *driver)
+
+
+def _driver(drive: Any, drive_by: str) -> tuple[Any, str]:
+    """The columns of the record that drives, and which of them does."""
+    if drive is None:
+        return None, drive_by
+    if not isinstance(drive, Record):
+        raise OptionError(f"drive: expected a Record, found {type(drive).__name__}\nhint: read it with palpate.read(...)")
+    return (drive.time_s, drive.displacement_m, drive.force_n), drive_by
+
+
+def energy(
+    protocol: str | os.PathLike[str] | Mapping[str, Any],
+    *,
+    by: EnergyBy = "time",
+    drive: Record | None = None,
+    drive_by: DriveBy = "displacement",
+) -> Table:
+    """Work of the jaw in a protocol: what the body gives back, stores and loses.
+
+    Work is integrated along with the contact, not from samples. ``simulate(protocol).plot(x="displacement_m")`` draws the loops of
+    force against displacement whose areas the cycles have.
+
+    Parameters
+    ----------
+    protocol, drive, drive_by
+        As for `simulate`.
+    by
+        Rows by "time", by "step" of the drive, or by "cycle" of squeeze and release.
+
+    Returns
+    -------
+    Table
+        Energies in J, of both contacts of a body that is squeezed from two sides. By time: ``time_s``, ``work_j``, ``given_back_j``,
+        ``stored_j``, ``lost_j``. By step: ``step``, ``from_s``, ``until_s``, displacements, ``work_j``, ``given_back_j``, ``lost_j``. By
+        cycle: ``cycle``, ``from_s``, ``until_s``, ``done_j``, ``given_back_j``, ``lost_j``, ``share_lost``, and whether the loop is
+        ``closed``. What the law does not say of a body whose contact grows is missing.
+
+    Raises
+    ------
+    OptionError, RecordError, ModelError
+        As for `simulate`.
+
+    Examples
+    --------
+    >>> import palpate
+    >>> cycle = palpate.energy({
+    ...     "specimen": {"shape": "block", "area": "10 cm^2", "length": "40 mm", "modulus": "100 kPa"},
+    ...     "law": {"name": "latency", "exponent": 3, "rate_coefficient": "100 /s"},
+    ...     "step": [{"to": "4 mm", "rate": "4 mm/s"}, {"to": "0 mm", "rate": "4 mm/s"}],
+    ... }, by="cycle")
+    >>> round(float(cycle["share_lost"][0]), 3)
+    0.793
+    """
+    path, text = _described(protocol)
+    return _energy(path, text, *_driver(drive, drive_by), by)
 
 
 def simulate_many(

@@ -2,21 +2,28 @@
 
 from __future__ import annotations
 
+from datetime import timedelta
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from palpate import _units
 from palpate._palpate import OptionError
 
 
-def as_doubles(values: Any, name: str) -> NDArray[np.float64]:
+def as_doubles(values: Any, name: str, omit_nan: bool = False) -> NDArray[np.float64]:
     """One column of numbers as contiguous doubles.
 
-    Takes arrays of any real type, order and stride, lists, and columns of pandas, polars and pyarrow.
-    Text, complex numbers, masked values and more than one dimension are refused.
+    Takes arrays of any real type, order and stride, lists, and columns of pandas, polars and pyarrow. Quantities of pint are
+    converted to the unit in which the name ends, or to SI. Durations are seconds where the name ends in ``_s``; ``time_s`` also
+    takes dates, as seconds since the first. Text, complex numbers and more than one dimension are refused, and so is what is
+    missing, unless `omit_nan`: then it is NaN.
     """
+    values = _units.in_si(values, name)
     if isinstance(values, np.ma.MaskedArray) and np.ma.is_masked(values):
+        if omit_nan:
+            return as_doubles(np.ma.filled(values.astype(np.float64), np.nan), name)
         at = int(np.flatnonzero(np.ma.getmaskarray(values))[0])
         raise OptionError(f"{name}: expected a number everywhere, found a masked one at index {at}")
     try:
@@ -29,40 +36,69 @@ def as_doubles(values: Any, name: str) -> NDArray[np.float64]:
         raise OptionError(f"{name}: expected one column of numbers, found an array of shape {array.shape}")
     if array.size == 0:
         return np.empty(0)
-    if array.dtype.kind == "O":
+    if array.dtype.kind == "O" and not omit_nan:
         missing = [index for index, value in enumerate(array) if value is None]
         if missing:
             raise OptionError(f"{name}: expected a number everywhere, found None at index {missing[0]}")
+    array = _seconds(array, name)
     if array.dtype.kind not in "biufO":
         raise OptionError(f"{name}: expected numbers, found {array.dtype}")
+    if array.dtype.kind == "O" and omit_nan:
+        array = np.array([np.nan if type(value).__name__ in ("NoneType", "NAType", "NaTType") else value for value in array])
     try:
         return np.ascontiguousarray(array, dtype=np.float64)
     except (TypeError, ValueError):
         raise OptionError(f"{name}: expected numbers, found {_reported(array[0])}") from None
 
 
-def as_ragged(curves: Any, name: str) -> tuple[NDArray[np.float64], NDArray[np.int64], dict[int, str]]:
+def _seconds(array: NDArray[Any], name: str) -> NDArray[Any]:
+    """Durations in s, and dates in s since the first; other columns as they are."""
+    if array.dtype.kind == "O" and isinstance(array[0], timedelta):
+        array = array.astype("timedelta64[ns]")
+    elif array.dtype.kind == "O" and hasattr(array[0], "timestamp"):
+        # Dates with a time zone are objects: those of pandas keep nanoseconds in `value`.
+        moments = [moment.value if hasattr(moment, "value") else round(1e6 * moment.timestamp()) * 1000 for moment in array]
+        array = np.array(moments, dtype="datetime64[ns]")
+    if array.dtype.kind == "M":
+        if name != "time_s":
+            raise OptionError(f"{name}: expected numbers in s, found dates\nhint: subtract the first date of the samples")
+        array = array - array[0]
+    if array.dtype.kind == "m" and name.rstrip(")").endswith("_s"):
+        return np.where(np.isnat(array), np.nan, array / np.timedelta64(1, "s"))
+    return array
+
+
+def as_ragged(curves: Any, name: str, omit_nan: bool = False) -> tuple[NDArray[np.float64], NDArray[np.int64], dict[int, str]]:
     """Curves of any lengths one behind the other, where each begins and the last ends, and what is wrong with which.
 
     A column of numbers is one curve; the rows of an array of two dimensions are one each.
     """
+    curves = _units.in_si(curves, name)
+    if hasattr(curves, "columns"):
+        # To go through a table of pandas is to go through the names of its columns.
+        hint = 'hint: pass one column, such as table["force_n"], or the rows of table.to_numpy()'
+        raise OptionError(f"{name}: expected a list of curves, found a table of {len(curves.columns)} columns\n{hint}")
+    # Columns of Arrow come here where they are dates or durations; older pandas and polars have no Arrow for them.
+    is_time = str(getattr(curves, "dtype", "")).lower().startswith(("date", "timedelta", "duration"))
+    if is_time or hasattr(curves, "dims") or hasattr(curves, "__arrow_c_stream__") or hasattr(curves, "__arrow_c_array__"):
+        curves = np.asarray(curves)
     if isinstance(curves, np.ndarray) and curves.ndim == 2:
-        flat = as_doubles(curves.reshape(-1), name)
+        flat = as_doubles(curves.reshape(-1), name, omit_nan)
         return flat, np.arange(curves.shape[0] + 1, dtype=np.int64) * curves.shape[1], {}
     if isinstance(curves, np.ndarray) and curves.dtype.kind != "O":
-        flat = as_doubles(curves, name)
+        flat = as_doubles(curves, name, omit_nan)
         return flat, np.array([0, flat.size], dtype=np.int64), {}
     try:
         rows = list(curves)
     except TypeError:
         raise OptionError(f"{name}: expected a list of curves, found {_reported(curves)}") from None
     if rows and all(row is None or np.ndim(row) == 0 for row in rows) and any(row is not None for row in rows):
-        flat = as_doubles(rows, name)
+        flat = as_doubles(rows, name, omit_nan)
         return flat, np.array([0, flat.size], dtype=np.int64), {}
     columns, wrong = [], {}
     for index, row in enumerate(rows):
         try:
-            columns.append(as_doubles(row, name))
+            columns.append(as_doubles(row, name, omit_nan))
         except OptionError as error:
             columns.append(np.empty(0))
             wrong[index] = str(error)

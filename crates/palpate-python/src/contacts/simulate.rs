@@ -1,19 +1,23 @@
 //! A simulated protocol.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
+use arrow_array::ArrayRef;
 use numpy::PyArray1;
-use palpate::simulate::{ContactEvent, Trajectory as Simulated, simulate_watched};
-use palpate_files::description::{parse_protocol, read_protocol};
+use palpate::record::Record;
+use palpate::simulate::{ContactEvent, Cycle, StepWork, Trajectory as Series};
+use palpate::watch::Watch;
+use palpate_files::description::{parse_protocol, parse_scene, read_protocol_text};
+use palpate_jobs::{DriveBy, JobError, Simulate, Simulated};
 use palpate_report::result::word;
 use palpate_report::study::write_trajectory;
 use pyo3::prelude::*;
 use serde::{Deserialize, Serialize};
 
-use crate::errors::{ModelError, of_mapping, refused_plainly, undescribed};
+use crate::errors::{RecordError, failed, of_mapping, one_of, refused, undescribed};
 use crate::report_files::csv_locale as readers;
 use crate::shown::shown;
-use crate::table::{Column, Table};
+use crate::table::{Column, Table, columns};
 use crate::work::{Heard, Long, at_length};
 
 /// A simulated contact over time, in SI, compression positive: arrays of one length, and a table for polars, pandas and pyarrow.
@@ -21,24 +25,105 @@ use crate::work::{Heard, Long, at_length};
 #[derive(Clone, PartialEq, Serialize, Deserialize)]
 #[serde(transparent)]
 pub(crate) struct Trajectory {
-    pub(crate) series: Simulated,
+    pub(crate) series: Series,
 }
 
-/// Simulates a protocol in a file, or in a text.
-#[pyfunction]
-pub(crate) fn simulate(py: Python<'_>, path: Option<PathBuf>, text: Option<String>) -> PyResult<Trajectory> {
-    let run = move |mut heard: Heard| {
-        let protocol = match path {
-            Some(path) => read_protocol(&path),
-            None => parse_protocol(&text.unwrap_or_default(), Path::new("protocol")).map_err(of_mapping),
-        };
-        let protocol = protocol.map_err(undescribed)?;
-        let series = simulate_watched(protocol.drive(), &protocol.contact, &protocol.sampling, &mut heard);
-        Ok(Trajectory {
-            series: series.map_err(refused_plainly::<ModelError>)?,
-        })
+/// What a record drives a contact with: time, displacement and force.
+type Driver = (Vec<f64>, Option<Vec<f64>>, Vec<f64>);
+
+/// Simulates the protocol in a file, or in a text, or its body under what a record says.
+fn simulated(
+    path: Option<PathBuf>,
+    text: Option<String>,
+    driver: Option<Driver>,
+    drive_by: DriveBy,
+    watch: &mut dyn Watch,
+) -> PyResult<Simulated> {
+    let is_mapping = path.is_none();
+    let (text, path) = match path {
+        Some(path) => (read_protocol_text(&path).map_err(undescribed)?, path),
+        None => (text.unwrap_or_default(), PathBuf::from("protocol")),
     };
-    at_length(py, run)?
+    // Errors of a mapping name keys and no lines.
+    let checked = match driver {
+        None => parse_protocol(&text, &path).map(drop),
+        Some(_) => parse_scene(&text, &path).map(drop),
+    };
+    checked.map_err(|error| undescribed(if is_mapping { of_mapping(error) } else { error }))?;
+    let record = driver.map(|(time, displacement, force)| Record::new(time, displacement, force)).transpose();
+    let record = record.map_err(|error| refused::<RecordError>(&error, Some(error.hint())))?;
+    let job = Simulate {
+        drive_by,
+        ..Simulate::default()
+    };
+    let driver = record.as_ref().map(|record| (record, "drive"));
+    Ok(job.run_text(&text, &path, driver, watch).map_err(failed)?.result)
+}
+
+/// Which column drives, as a keyword says it.
+fn driving(name: &str) -> PyResult<DriveBy> {
+    one_of("drive_by", &[("displacement", DriveBy::Displacement), ("force", DriveBy::Force)], name)
+}
+
+#[pyfunction]
+pub(crate) fn simulate(
+    py: Python<'_>,
+    path: Option<PathBuf>,
+    text: Option<String>,
+    driver: Option<Driver>,
+    drive_by: &str,
+) -> PyResult<Trajectory> {
+    let drive_by = driving(drive_by)?;
+    let run = move |mut heard: Heard| simulated(path, text, driver, drive_by, &mut heard);
+    Ok(Trajectory {
+        series: at_length(py, run)??.trajectory,
+    })
+}
+
+/// Work of the jaw over time, by step or by cycle.
+#[pyfunction]
+pub(crate) fn energy(
+    py: Python<'_>,
+    path: Option<PathBuf>,
+    text: Option<String>,
+    driver: Option<Driver>,
+    drive_by: &str,
+    by: &str,
+) -> PyResult<Table> {
+    type Columns = fn(&Simulated, &mut dyn Watch) -> Result<Vec<(&'static str, ArrayRef)>, JobError>;
+    let kinds: [(&str, Columns); 3] = [("time", over_time), ("step", by_step), ("cycle", by_cycle)];
+    let (drive_by, columns) = (driving(drive_by)?, one_of("by", &kinds, by)?);
+    let run = move |mut heard: Heard| {
+        let simulated = simulated(path, text, driver, drive_by, &mut heard)?;
+        columns(&simulated, &mut heard).map_err(failed)
+    };
+    Table::of(at_length(py, run)??)
+}
+
+fn over_time(simulated: &Simulated, watch: &mut dyn Watch) -> Result<Vec<(&'static str, ArrayRef)>, JobError> {
+    let energy = simulated.work(watch)?;
+    let rows: Vec<usize> = (0..energy.time.len()).collect();
+    let split = energy.split.as_ref();
+    Ok(columns!(rows, row =>
+        time_s = energy.time[*row], work_j = energy.work[*row], given_back_j = energy.given_back[*row],
+        stored_j = split.map(|split| split.stored[*row]), lost_j = split.map(|split| split.lost[*row])
+    ))
+}
+
+fn by_step(simulated: &Simulated, watch: &mut dyn Watch) -> Result<Vec<(&'static str, ArrayRef)>, JobError> {
+    let steps: Vec<(usize, StepWork)> = (1..).zip(simulated.steps(watch)?).collect();
+    Ok(columns!(steps, row =>
+        step = row.0, from_s = row.1.from, until_s = row.1.until, displacement_from_m = row.1.displacement_from,
+        displacement_until_m = row.1.displacement_until, work_j = row.1.work, given_back_j = row.1.given_back, lost_j = row.1.lost
+    ))
+}
+
+fn by_cycle(simulated: &Simulated, watch: &mut dyn Watch) -> Result<Vec<(&'static str, ArrayRef)>, JobError> {
+    let cycles: Vec<(usize, Cycle)> = (1..).zip(simulated.cycles(watch)?).collect();
+    Ok(columns!(cycles, row =>
+        cycle = row.0, from_s = row.1.from, until_s = row.1.until, done_j = row.1.done, given_back_j = row.1.given_back,
+        lost_j = row.1.lost, share_lost = row.1.share_lost, closed = row.1.is_closed
+    ))
 }
 
 fn reported(event: &ContactEvent) -> (String, f64, f64) {

@@ -7,6 +7,7 @@ use palpate::fit::{
     BootstrapOptions, Estimate, Fit, IntervalMethod, LawOptions, NoiseChoice, Parameter, ParameterRole, ParameterUnit,
     SampleChoice, Samples, fit_law_watched,
 };
+use palpate::forecast::{Criteria, criteria};
 use palpate::laws::Law;
 use palpate::number::{significant, with_interval};
 use palpate::watch::{Unwatched, Watch};
@@ -18,6 +19,7 @@ use serde::{Deserialize, Serialize};
 use crate::arrays::{array, doubles};
 use crate::errors::{FitError, OptionError, choice, one_of, refused_plainly, unfitted};
 use crate::shown::shown;
+use crate::table::Table;
 use crate::work::{at_length, briefly, plain};
 
 /// A parameter that was found or given.
@@ -88,12 +90,54 @@ fn unit_word(unit: ParameterUnit) -> &'static str {
 /// ('s', True, 1.0001)
 #[pyclass(name = "Fit", module = "palpate", frozen, eq)]
 #[derive(Clone, PartialEq, Serialize, Deserialize)]
-#[serde(transparent)]
+#[serde(try_from = "Parts")]
 pub(crate) struct PyFit {
     fit: Fit,
+    samples: Fitted,
+}
+
+/// The samples of a fit, one column each; weights are 1/σ.
+#[derive(Clone, PartialEq, Serialize, Deserialize)]
+struct Fitted {
+    times: Vec<f64>,
+    values: Vec<f64>,
+    weights: Option<Vec<f64>>,
+}
+
+/// What a pickle holds of a fit.
+#[derive(Deserialize)]
+struct Parts {
+    fit: Fit,
+    samples: Fitted,
+}
+
+impl TryFrom<Parts> for PyFit {
+    type Error = &'static str;
+
+    fn try_from(Parts { fit, samples }: Parts) -> Result<Self, Self::Error> {
+        let count = samples.times.len();
+        let is_valid = samples.values.len() == count
+            && samples.weights.as_ref().is_none_or(|weights| weights.len() == count)
+            && fit.samples <= count;
+        if is_valid {
+            Ok(Self { fit, samples })
+        } else {
+            Err("a time and a value for each sample of a fit")
+        }
+    }
 }
 
 impl PyFit {
+    /// The fitted curve at the times of the samples.
+    fn curve(&self) -> Vec<f64> {
+        let elapsed: Vec<f64> = self.samples.times.iter().map(|time| time - self.fit.start).collect();
+        self.fit.predict_many(&elapsed)
+    }
+
+    fn criteria(&self) -> Criteria {
+        criteria(self.fit.residual_square, self.fit.samples as f64, self.fit.free_parameters() as f64)
+    }
+
     fn with_confidence(&self, confidence: f64) -> PyResult<Fit> {
         if !(confidence > 0.0 && confidence < 1.0) {
             let message = format!("an interval covers a share between 0 and 1, found {confidence}");
@@ -114,7 +158,24 @@ pub(crate) fn square<'py>(py: Python<'py>, rows: &[Vec<f64>]) -> PyResult<Bound<
 
 shown! {
     PyFit: self
+    arrays {
+        /// Times of the samples on their own clock, s.
+        time_s: self.samples.times.clone(),
+        /// The samples.
+        signal: self.samples.values.clone(),
+        /// The fitted curve at those times.
+        best_fit: self.curve(),
+        /// Signal less fitted curve.
+        residual: self.samples.values.iter().zip(self.curve()).map(|(value, best)| value - best).collect::<Vec<f64>>(),
+    }
     values {
+        /// 1/σ of every sample as it was given; None where all count alike.
+        weights<'py>(py): Option<Bound<'py, PyArray1<f64>>> =
+            self.samples.weights.as_ref().map(|weights| PyArray1::from_slice(py, weights)),
+        /// Akaike's information criterion, N ln(RSS/N) + 2p; only differences between laws on the same samples mean anything.
+        aic: f64 = self.criteria().aic,
+        /// Schwarz's, N ln(RSS/N) + p ln N.
+        bic: f64 = self.criteria().bic,
         /// Name of the law, such as "latency" or "prony:2".
         law: String = self.fit.law.to_string(),
         /// What was searched, in the order of `covariance`, with its scale: "equilibrium", "ln relative_rate_per_s", "-ln time_constant_s".
@@ -169,10 +230,10 @@ shown! {
     ///
     /// Parameters
     /// ----------
-    /// time_s : array_like, shape (N,)
+    /// time_s : float or array_like, shape (N,), optional
     ///     Time on the clock of the samples that were fitted, s; before the first of them the signal is that at the start, at NaN
-    ///     it is NaN.
-    /// elapsed_s : array_like, shape (N,)
+    ///     it is NaN. Without any, the times of the samples.
+    /// elapsed_s : float or array_like, shape (N,), optional
     ///     Instead of `time_s`: time since the first sample, s.
     /// interval : float, optional
     ///     Coverage of the band, between 0 and 1.
@@ -181,13 +242,13 @@ shown! {
     ///
     /// Returns
     /// -------
-    /// ndarray, shape (N,), or three of them
+    /// float or ndarray, shape (N,), or three of them
     ///     The curve; with `interval` the curve, the lower and the upper end of the band.
     ///
     /// Raises
     /// ------
     /// OptionError
-    ///     A coverage outside 0 to 1, another word, or not exactly one of `time_s` and `elapsed_s`.
+    ///     A coverage outside 0 to 1, another word, or both of `time_s` and `elapsed_s`.
     #[pyo3(signature = (time_s=None, *, elapsed_s=None, interval=None, of="curve"))]
     fn predict<'py>(
         &self,
@@ -197,13 +258,17 @@ shown! {
         interval: Option<f64>,
         of: &str,
     ) -> PyResult<Bound<'py, PyAny>> {
-        let (mut elapsed, start) = match (time_s, elapsed_s) {
-            (Some(times), None) => (doubles(times, "time_s")?, self.fit.start),
-            (None, Some(elapsed)) => (doubles(elapsed, "elapsed_s")?, 0.0),
-            _ => {
+        let ((mut elapsed, is_scalar), start) = match (time_s, elapsed_s) {
+            (Some(times), None) => (scalar_or_doubles(times, "predict(time_s)")?, self.fit.start),
+            (None, Some(elapsed)) => (scalar_or_doubles(elapsed, "predict(elapsed_s)")?, 0.0),
+            (None, None) => ((self.samples.times.clone(), false), self.fit.start),
+            (Some(_), Some(_)) => {
                 let message = "predict takes either time_s, on the clock of the record, or elapsed_s, since its first sample";
                 return Err(refused_plainly::<OptionError>(message));
             }
+        };
+        let shaped = |values: Bound<'py, PyArray1<f64>>| {
+            if is_scalar { values.get_item(0)?.call_method0("item") } else { Ok(values.into_any()) }
         };
         let sample = match of {
             "curve" => false,
@@ -223,7 +288,7 @@ shown! {
                 py.check_signals()?;
                 briefly(py, || values.extend(self.fit.predict_many(some)))?;
             }
-            return Ok(PyArray1::from_vec(py, values).into_any());
+            return shaped(PyArray1::from_vec(py, values));
         };
         let fit = self.with_confidence(confidence)?;
         let predicted = if sample { Fit::predict_samples } else { Fit::predict_intervals };
@@ -233,7 +298,7 @@ shown! {
             py.check_signals()?;
             briefly(py, || estimates.extend(predicted(&fit, some)))?;
         }
-        let column = |pick: fn(&Estimate) -> f64| array(py, estimates.iter().map(pick));
+        let column = |pick: fn(&Estimate) -> f64| shaped(array(py, estimates.iter().map(pick))?);
         let value = column(|estimate| estimate.value)?;
         let low = column(|estimate| estimate.interval.map_or(f64::NAN, |interval| interval.0))?;
         let high = column(|estimate| estimate.interval.map_or(f64::NAN, |interval| interval.1))?;
@@ -245,7 +310,16 @@ shown! {
         report(&self.fit)
     }
 
-    /// Everything about the fit as plain objects.
+    fn __len__(&self) -> usize {
+        self.samples.times.len()
+    }
+
+    /// Columns ``time_s``, ``signal``, ``best_fit`` and ``residual`` as a table.
+    fn to_arrow(&self) -> PyResult<Table> {
+        Table::of(self.columns())
+    }
+
+    /// Everything about the fit but its samples as plain objects.
     fn to_dict<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         plain(py, &self.fit)
     }
@@ -255,6 +329,19 @@ shown! {
         let parameters: Vec<String> = self.fit.parameters.iter().map(parameter).collect();
         format!("<palpate.Fit {}: {}; {}>", self.fit.law, parameters.join(", "), word(self.fit.termination))
     }
+}
+
+/// One number or a column of them, and which of both.
+fn scalar_or_doubles(values: &Bound<'_, PyAny>, name: &str) -> PyResult<(Vec<f64>, bool)> {
+    let is_scalar = match values.getattr("ndim") {
+        Ok(dimensions) => dimensions.eq(0)?,
+        Err(_) => values.extract::<f64>().is_ok(),
+    };
+    if !is_scalar {
+        return Ok((doubles(values, name)?, false));
+    }
+    let column = values.py().import("numpy")?.call_method1("atleast_1d", (values,))?;
+    Ok((doubles(&column, name)?, true))
 }
 
 fn report(fit: &Fit) -> String {
@@ -319,6 +406,8 @@ pub(crate) fn intervals(name: &str) -> PyResult<IntervalMethod> {
 pub(crate) struct Requested {
     pub(crate) law: Law,
     pub(crate) options: LawOptions,
+    /// Whether samples that lack a number are left out.
+    pub(crate) omit_nan: bool,
 }
 
 /// What the keywords of `fit_hold` and `fit_many` say.
@@ -334,6 +423,7 @@ pub(crate) struct Keywords {
     confidence: f64,
     log_spaced: Option<usize>,
     intervals: String,
+    nan: String,
 }
 
 impl Keywords {
@@ -356,13 +446,15 @@ impl Keywords {
             ..LawOptions::default()
         };
         options.suit(law).map_err(unfitted)?;
-        Ok(Requested { law, options })
+        let omit_nan = one_of("nan", &[("raise", false), ("omit", true)], &self.nan)?;
+        Ok(Requested { law, options, omit_nan })
     }
 }
 
-/// Standard deviations that weights, their inverses, stand for.
-pub(crate) fn standard_deviations(weights: &[f64]) -> Result<Vec<f64>, String> {
-    match weights.iter().position(|weight| !(weight.is_finite() && *weight >= 0.0)) {
+/// Standard deviations that weights, their inverses, stand for; with `omit_nan` that of a weight that is missing is too.
+pub(crate) fn standard_deviations(weights: &[f64], omit_nan: bool) -> Result<Vec<f64>, String> {
+    let is_known = |weight: &f64| (weight.is_finite() && *weight >= 0.0) || (omit_nan && weight.is_nan());
+    match weights.iter().position(|weight| !is_known(weight)) {
         Some(index) => {
             let found = weights[index];
             Err(format!("weights: expected 1/σ, finite and 0 or more, found {found} at index {index}"))
@@ -372,11 +464,26 @@ pub(crate) fn standard_deviations(weights: &[f64]) -> Result<Vec<f64>, String> {
 }
 
 /// Those of one column of weights.
-pub(crate) fn standard_deviations_of(weights: Option<&Bound<'_, PyAny>>) -> PyResult<Option<Vec<f64>>> {
+pub(crate) fn standard_deviations_of(weights: Option<&Bound<'_, PyAny>>, omit_nan: bool) -> PyResult<Option<Vec<f64>>> {
     let weights = weights.map(|weights| doubles(weights, "weights")).transpose()?;
     weights
-        .map(|weights| standard_deviations(&weights).map_err(refused_plainly::<OptionError>))
+        .map(|weights| standard_deviations(&weights, omit_nan).map_err(refused_plainly::<OptionError>))
         .transpose()
+}
+
+/// The columns without the rows in which any of them is NaN; columns of different lengths stay, for the fit to refuse.
+pub(crate) fn without_nan(columns: &mut [&mut Vec<f64>]) {
+    let Some(rows) = columns.first().map(|column| column.len()) else {
+        return;
+    };
+    if columns.iter().any(|column| column.len() != rows) {
+        return;
+    }
+    let kept: Vec<bool> = (0..rows).map(|row| columns.iter().all(|column| !column[row].is_nan())).collect();
+    for column in columns {
+        let mut kept = kept.iter();
+        column.retain(|_| kept.next().is_some_and(|kept| *kept));
+    }
 }
 
 /// Up to so many samples are fitted in a few milliseconds, without a thread.
@@ -417,8 +524,9 @@ pub(crate) fn fit_hold<'py>(
     weights: Option<&Bound<'py, PyAny>>,
     keywords: Keywords,
 ) -> PyResult<PyFit> {
-    let (times, values) = (doubles(time_s, "time_s")?, doubles(signal, "signal")?);
-    let standard_deviations = standard_deviations_of(weights)?;
+    let (mut times, mut values) = (doubles(time_s, "time_s")?, doubles(signal, "signal")?);
+    let requested = keywords.requested()?;
+    let mut standard_deviations = standard_deviations_of(weights, requested.omit_nan)?;
     if let Some(standard_deviations) =
         standard_deviations.as_ref().filter(|standard_deviations| standard_deviations.len() != times.len())
     {
@@ -426,19 +534,24 @@ pub(crate) fn fit_hold<'py>(
         let message = format!("a fit needs as many weights as times, found {weights} and {times}");
         return Err(refused_plainly::<FitError>(message));
     }
-    let requested = keywords.requested()?;
+    if requested.omit_nan {
+        let columns = [&mut times, &mut values].into_iter().chain(&mut standard_deviations);
+        without_nan(&mut columns.collect::<Vec<_>>());
+    }
     let is_brief = match requested.options.intervals {
         IntervalMethod::Curvature => times.len() <= BRIEF,
         IntervalMethod::Automatic => times.len() <= BRIEF / FITS_OF_A_PROFILE,
         IntervalMethod::Profile | IntervalMethod::Bootstrap(_) => false,
     };
-    let fit = match is_brief {
-        true => briefly(py, || fitted(&times, &values, standard_deviations.as_deref(), &requested, &mut Unwatched))?,
-        false => at_length(py, move |mut heard| {
-            fitted(&times, &values, standard_deviations.as_deref(), &requested, &mut heard)
-        })?,
+    let fit = move |watch: &mut dyn Watch| {
+        let fit = fitted(&times, &values, standard_deviations.as_deref(), &requested, watch)?;
+        let weights = standard_deviations.map(|found| found.iter().map(|deviation| deviation.recip()).collect());
+        let samples = Fitted { times, values, weights };
+        Ok(PyFit { fit, samples })
     };
-    Ok(PyFit {
-        fit: fit.map_err(unfitted)?,
-    })
+    let fit = match is_brief {
+        true => briefly(py, || fit(&mut Unwatched))?,
+        false => at_length(py, move |mut heard| fit(&mut heard))?,
+    };
+    fit.map_err(unfitted)
 }

@@ -20,7 +20,7 @@ use pyo3_arrow::input::AnyArray;
 use rayon::prelude::*;
 
 use crate::errors::{OptionError, PalpateError, refused, refused_plainly, unfitted};
-use crate::fits::fit::{Keywords, Requested, fitted, standard_deviations};
+use crate::fits::fit::{Keywords, Requested, fitted, standard_deviations, without_nan};
 use crate::table::{Column, Table};
 use crate::work::{Heard, at_length_reported, in_parallel};
 
@@ -35,11 +35,18 @@ fn numbers(curve: &Curve) -> Result<&[f64], String> {
 }
 
 /// Lists of numbers from Arrow, or from anything that `palpate._arrays.as_ragged` understands.
-fn ragged(curves: &Bound<'_, PyAny>, name: &str) -> PyResult<Ragged> {
-    if curves.hasattr("__arrow_c_stream__")? || curves.hasattr("__arrow_c_array__")? {
-        return of_arrow(&curves.extract::<AnyArray>()?.into_chunked_array()?, name);
+///
+/// An array with named dimensions, of xarray, offers itself to Arrow as a table of one column; it is an array here, and so is one
+/// column of dates or durations.
+fn ragged(curves: &Bound<'_, PyAny>, name: &str, omit_nan: bool) -> PyResult<Ragged> {
+    let is_of_arrow = curves.hasattr("__arrow_c_stream__")? || curves.hasattr("__arrow_c_array__")?;
+    if is_of_arrow && !curves.hasattr("dims")? {
+        let column = curves.extract::<AnyArray>()?.into_chunked_array()?;
+        if !column.data_type().is_temporal() {
+            return of_arrow(&column, name, omit_nan);
+        }
     }
-    let found = curves.py().import("palpate._arrays")?.call_method1("as_ragged", (curves, name))?;
+    let found = curves.py().import("palpate._arrays")?.call_method1("as_ragged", (curves, name, omit_nan))?;
     type Found<'py> = (Bound<'py, PyArray1<f64>>, Bound<'py, PyArray1<i64>>, HashMap<usize, String>);
     let (values, offsets, mut wrong): Found<'_> = found.extract()?;
     let offsets: Vec<usize> = offsets.try_readonly()?.as_array().iter().map(|offset| *offset as usize).collect();
@@ -62,7 +69,7 @@ fn ragged(curves: &Bound<'_, PyAny>, name: &str) -> PyResult<Ragged> {
 /// Parameters that are copied in some milliseconds.
 const AT_ONCE: usize = 4 << 20;
 
-fn of_arrow(column: &PyChunkedArray, name: &str) -> PyResult<Ragged> {
+fn of_arrow(column: &PyChunkedArray, name: &str, omit_nan: bool) -> PyResult<Ragged> {
     let wrong = |kind: &DataType| {
         let found = match kind {
             DataType::Struct(fields) => format!("a table of {} columns", fields.len()),
@@ -79,9 +86,9 @@ fn of_arrow(column: &PyChunkedArray, name: &str) -> PyResult<Ragged> {
             // Whatever kind of list of whatever kind of number: lists of doubles pass as they are.
             Some(item) if item.is_numeric() || *item == DataType::Null => {
                 let rows = made_of(&DataType::LargeList(Arc::new(Field::new("item", DataType::Float64, true))))?;
-                curves.extend(rows.as_list::<i64>().iter().map(|row| whole(row, name)));
+                curves.extend(rows.as_list::<i64>().iter().map(|row| whole(row, name, omit_nan)));
             }
-            None if kind.is_numeric() => curves.push(whole(Some(made_of(&DataType::Float64)?), name)),
+            None if kind.is_numeric() => curves.push(whole(Some(made_of(&DataType::Float64)?), name, omit_nan)),
             _ => return Err(wrong(kind)),
         }
     }
@@ -97,10 +104,13 @@ fn nested(kind: &DataType) -> Option<&DataType> {
     }
 }
 
-/// A curve of doubles all of which are there.
-fn whole(row: Option<ArrayRef>, name: &str) -> Curve {
+/// A curve of doubles all of which are there; with `omit_nan` one that is missing is NaN.
+fn whole(row: Option<ArrayRef>, name: &str, omit_nan: bool) -> Curve {
     let row = row.ok_or_else(|| format!("{name}: expected a list of numbers, found none"))?;
     let numbers = row.as_primitive::<Float64Type>();
+    if omit_nan && numbers.null_count() > 0 {
+        return Ok(numbers.iter().map(|number| number.unwrap_or(f64::NAN)).collect());
+    }
     match (0..numbers.len()).find(|index| numbers.is_null(*index)) {
         Some(index) => Err(format!("{name}: expected a number everywhere, found none at index {index}")),
         None => Ok(numbers.values().clone()),
@@ -132,30 +142,37 @@ pub(crate) fn fit_many(
     keywords: Keywords,
     progress: Option<Py<PyAny>>,
 ) -> PyResult<Table> {
-    let (times, values) = (ragged(time_s, "time_s")?, ragged(signal, "signal")?);
+    let requested = keywords.requested()?;
+    let omit_nan = requested.omit_nan;
+    let (times, values) = (ragged(time_s, "time_s", omit_nan)?, ragged(signal, "signal", omit_nan)?);
     let curves = values.len();
     let one_time = one_for_all(&times, curves, "time_s")?;
     let weights = match weights {
         Some(weights) => {
-            let of_one = |weights: Curve| standard_deviations(&weights?).map(ScalarBuffer::from);
-            let found: Ragged = ragged(weights, "weights")?.into_iter().map(of_one).collect();
+            let of_one = |weights: Curve| standard_deviations(&weights?, omit_nan).map(ScalarBuffer::from);
+            let found: Ragged = ragged(weights, "weights", omit_nan)?.into_iter().map(of_one).collect();
             Some((one_for_all(&found, curves, "weights")?, found))
         }
         None => None,
     };
-    let requested = keywords.requested()?;
     let shape = requested.clone();
     let work = move |heard: Heard| {
         let fit = |index: usize| {
             let time = numbers(&times[if one_time { 0 } else { index }])?;
             let standard_deviations =
                 weights.as_ref().map(|(one, found)| numbers(&found[if *one { 0 } else { index }]));
-            fitted(time, numbers(&values[index])?, standard_deviations.transpose()?, &requested, &mut |_: Progress<
-                '_,
-            >| {
-                heard.look()
-            })
-            .map_err(|error| error.to_string())
+            let (value, standard_deviations) = (numbers(&values[index])?, standard_deviations.transpose()?);
+            let mut watch = |_: Progress<'_>| heard.look();
+            if !omit_nan {
+                return fitted(time, value, standard_deviations, &requested, &mut watch)
+                    .map_err(|error| error.to_string());
+            }
+            let (mut time, mut value) = (time.to_vec(), value.to_vec());
+            let mut standard_deviations = standard_deviations.map(<[f64]>::to_vec);
+            let columns = [&mut time, &mut value].into_iter().chain(&mut standard_deviations);
+            without_nan(&mut columns.collect::<Vec<_>>());
+            fitted(&time, &value, standard_deviations.as_deref(), &requested, &mut watch)
+                .map_err(|error| error.to_string())
         };
         let one = |index: usize| {
             let fit = fit(index);

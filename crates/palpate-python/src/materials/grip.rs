@@ -15,6 +15,7 @@ use serde::{Deserialize, Serialize};
 use crate::errors::{unwritten, warn};
 use crate::html::framed;
 use crate::materials::grip_parts::{BackOff, ForceHold, PositionHold, Schedule, seconds, slip_interval};
+use crate::materials::prediction::Prediction;
 use crate::shown::shown;
 use crate::table::{Table, columns};
 use crate::work::{job, plain, printed};
@@ -129,6 +130,20 @@ shown! {
     /// The same as text, as the command prints it.
     fn to_json(&self) -> PyResult<String> {
         printed(&self.document)
+    }
+
+    /// The course of every grip over time, one below the other: ``grip`` ("squeeze", "back_off", "force_held" or "schedule"), and the columns
+    /// of `Prediction.to_arrow`.
+    fn to_arrow(&self) -> PyResult<Table> {
+        let courses = [
+            ("squeeze", &self.squeeze),
+            ("back_off", &self.back_off),
+            ("force_held", &self.force_held),
+            ("schedule", &self.schedule),
+        ];
+        let there = courses.iter().filter_map(|(name, course)| Some((*name, course.as_ref()?.clone())));
+        let tables = there.map(|(name, course)| Ok((name, Prediction::kept(course).to_arrow()?)));
+        Table::stacked("grip", &tables.collect::<PyResult<Vec<_>>>()?)
     }
 
     /// Force, margin and displacement of the grips over time, as SVG.

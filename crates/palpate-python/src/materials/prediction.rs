@@ -96,7 +96,7 @@ shown! {
     }
 
     /// All series as a table.
-    fn to_arrow(&self) -> PyResult<Table> {
+    pub(crate) fn to_arrow(&self) -> PyResult<Table> {
         Table::of(self.columns())
     }
 

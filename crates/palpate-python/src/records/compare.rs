@@ -1,5 +1,6 @@
 //! Laws compared on one hold by what they predict.
 
+use numpy::PyArray1;
 use palpate::fit::LawOptions;
 use palpate::forecast::{CompareOptions, compare_laws_watched};
 use palpate::laws::Response;
@@ -21,9 +22,10 @@ use crate::work::{at_length, job, plain, printed};
 /// Laws compared on one hold: each was fitted to its first part and held against the rest.
 #[pyclass(name = "Comparison", module = "palpate", frozen, eq)]
 #[derive(PartialEq, Serialize, Deserialize)]
-#[serde(transparent)]
 pub(crate) struct Comparison {
     document: HoldComparisonDocument,
+    times: Vec<f64>,
+    values: Vec<f64>,
 }
 
 /// Fit laws to the first part of a hold, hold each against the rest, say which to use, and forecast what follows.
@@ -62,7 +64,7 @@ pub(crate) fn compare(
     cuts: Option<Vec<f64>>,
 ) -> PyResult<Comparison> {
     let (times, values) = (doubles(time_s, "time_s")?, doubles(signal, "signal")?);
-    let standard_deviations = standard_deviations_of(weights)?;
+    let standard_deviations = standard_deviations_of(weights, false)?;
     let (quantity, response) = quantity_of(quantity)?;
     let usual = CompareOptions::default();
     let options = CompareOptions {
@@ -76,11 +78,15 @@ pub(crate) fn compare(
     };
     let compared = at_length(py, move |mut heard| {
         let samples = samples_of(&times, &values, standard_deviations.as_deref());
-        compare_laws_watched(&samples, &options, &[], &mut heard)
+        let compared = compare_laws_watched(&samples, &options, &[], &mut heard)?;
+        let document = HoldComparisonDocument::new(&compared, quantity);
+        Ok::<_, palpate::fit::FitError>(Comparison {
+            document,
+            times,
+            values,
+        })
     })?;
-    let compared = compared.map_err(refused_plainly::<FitError>)?;
-    let document = HoldComparisonDocument::new(&compared, quantity);
-    Ok(Comparison { document })
+    compared.map_err(refused_plainly::<FitError>)
 }
 
 /// What a signal is, by its name, and what it answers to.
@@ -113,6 +119,10 @@ shown! {
         certainty: Option<&str> = self.verdict(|verdict| &verdict.certainty),
         /// Probability that no law that was compared predicts what follows better by more than a fifth.
         probability: Option<f64> = self.document.verdict.as_ref().map(|verdict| verdict.probability),
+        /// Times of the samples on their own clock, s.
+        time_s<'py>(py): Bound<'py, PyArray1<f64>> = PyArray1::from_slice(py, &self.times),
+        /// The samples.
+        signal<'py>(py): Bound<'py, PyArray1<f64>> = PyArray1::from_slice(py, &self.values),
         /// All that in one sentence.
         sentence: Option<&str> = self.verdict(|verdict| &verdict.sentence),
         /// What stands against every law, so that the one named is the best approximation and no recommendation: "refuted" by the hold
@@ -129,9 +139,14 @@ shown! {
         )),
     }
 
-    /// Everything as plain objects.
+    /// Everything but the samples as plain objects.
     fn to_dict<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         plain(py, &self.document)
+    }
+
+    /// The table of laws.
+    fn to_arrow(&self) -> PyResult<Table> {
+        self.laws()
     }
 
     fn __repr__(&self) -> String {
@@ -185,6 +200,11 @@ shown! {
     /// The same as text, as the command prints it.
     fn to_json(&self) -> PyResult<String> {
         printed(&self.document)
+    }
+
+    /// The table of laws.
+    fn to_arrow(&self) -> PyResult<Table> {
+        self.laws()
     }
 
     fn __str__(&self) -> &str {

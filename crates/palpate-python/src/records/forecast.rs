@@ -65,7 +65,7 @@ pub(crate) fn forecast(
     confidence: f64,
 ) -> PyResult<Table> {
     let (times, values, at) = (doubles(time_s, "time_s")?, doubles(signal, "signal")?, doubles(at_s, "at_s")?);
-    let standard_deviations = standard_deviations_of(weights)?;
+    let standard_deviations = standard_deviations_of(weights, false)?;
     let (_, response) = quantity_of(quantity)?;
     if !(confidence > 0.0 && confidence < 1.0) {
         let message = format!("confidence: expected a number between 0 and 1, found {confidence}");

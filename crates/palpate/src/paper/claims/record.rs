@@ -33,7 +33,7 @@ const EVIDENCE: f64 = 2.0;
 /// let claims = record_claims(&study.test_a.analysis);
 /// let of = |start: &str| claims.iter().find(|claim| claim.statement.starts_with(start)).unwrap().verdict();
 /// assert_eq!(of("n = 5"), Verdict::Reproduced);
-/// assert_eq!(of("v falls"), Verdict::CannotBeChecked); // v has its error
+/// assert_eq!(of("v falls"), Verdict::NotReproduced); // without noise v has no error
 /// assert_eq!(of("εₑ agrees"), Verdict::CannotBeChecked); // no hold after unloading
 /// # Ok::<(), palpate::paper::PaperError>(())
 /// ```

@@ -1,0 +1,135 @@
+"""Parameters of a fit as samples of their distribution, and its law with other ones."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from palpate import laws
+from palpate._convert import needed
+from palpate._palpate import FitError, OptionError
+
+#: How a parameter follows from what was searched, by the scale that its name begins with, and back.
+_SCALES: dict[str, tuple[Any, Any]] = {
+    "-ln ": (lambda x: -np.log(x), lambda z: np.exp(-z)),
+    "ln ": (np.log, np.exp),
+    "": (lambda x: x, lambda z: z),
+}
+
+
+def _scale(searched: str) -> tuple[str, Any, Any]:
+    prefix = next(prefix for prefix in _SCALES if searched.startswith(prefix))
+    return searched.removeprefix(prefix), *_SCALES[prefix]
+
+
+def sample(self: Any, n: int = 1000, *, seed: int | None = None) -> dict[str, NDArray[np.float64]]:
+    """Draw sets of parameters from the distribution that the fit leaves for them.
+
+    A multivariate normal distribution in the scales of `searched`, with `covariance`: rates and times, whose logarithms were
+    searched, are log-normal. It is what the curvature at the optimum says; where `interval_method` is another one, the true
+    distribution is not normal and its tails are those of the intervals.
+
+    Parameters
+    ----------
+    n : int
+        How many sets.
+    seed : int, optional
+        Of the random generator; the same seed gives the same sets.
+
+    Returns
+    -------
+    dict of ndarray, shape (n,)
+        By the names of `parameters`; one that was held has its value throughout.
+
+    Raises
+    ------
+    FitError
+        The data leave a parameter open: there is no covariance.
+    OptionError
+        Fewer than one set.
+
+    Examples
+    --------
+    >>> import numpy as np, palpate
+    >>> t = np.linspace(0.0, 40.0, 400)
+    >>> noise = np.random.default_rng(1).normal(0.0, 0.01, 400)
+    >>> fit = palpate.fit_hold(t, 1 + 2 * np.exp(-t / 8) + noise, law="standard-linear-solid")
+    >>> draws = fit.sample(20_000, seed=1)
+    >>> round(float(draws["time_constant_s"].std()) / fit.estimates["time_constant_s"].standard_error, 1)
+    1.0
+    """
+    if isinstance(n, bool) or not hasattr(n, "__index__") or n < 1:
+        raise OptionError(f"n: expected a number of sets, 1 or more, found {n!r}")
+    if self.covariance is None:
+        raise FitError("expected a fit with a covariance, found one whose data leave a parameter open\nhint: hold a parameter with fixed=, or fit a law with fewer")
+    scales = [_scale(name) for name in self.searched]
+    centre = [forward(self.parameters[name]) for name, forward, _ in scales]
+    drawn = np.random.default_rng(seed).multivariate_normal(centre, self.covariance, size=n, method="eigh")
+    found = {name: back(drawn[:, place]) for place, (name, _, back) in enumerate(scales)}
+    return {name: found.get(name, np.full(n, value)) for name, value in self.parameters.items()}
+
+
+def to_arviz(self: Any, draws: int = 1000, *, chains: int = 4, seed: int | None = None) -> Any:
+    """Draws of `sample` as an ArviZ ``DataTree``; without arviz_base an ImportError.
+
+    Parameters
+    ----------
+    draws, chains : int
+        How many sets of parameters a chain, and how many chains; all are independent.
+    seed : int, optional
+        As for `sample`.
+
+    Returns
+    -------
+    xarray.DataTree
+        ``posterior``, with the parameters that were searched, and the samples of the fit as ``observed_data`` and
+        ``constant_data``.
+
+    Raises
+    ------
+    FitError, OptionError
+        As for `sample`.
+    """
+    arviz = needed("arviz_base", "to_arviz")
+    for name, count in (("draws", draws), ("chains", chains)):
+        if isinstance(count, bool) or not hasattr(count, "__index__") or count < 1:
+            raise OptionError(f"{name}: expected 1 or more, found {count!r}")
+    searched = {_scale(name)[0] for name in self.searched}
+    drawn = sample(self, draws * chains, seed=seed)
+    posterior = {name: values.reshape(chains, draws) for name, values in drawn.items() if name in searched}
+    groups = {"posterior": posterior, "observed_data": {"signal": self.signal}, "constant_data": {"time_s": self.time_s}}
+    dimensions = {"signal": ["sample"], "time_s": ["sample"]}
+    return arviz.from_dict(groups, dims=dimensions, coords={"sample": np.arange(len(self))})
+
+
+def evaluate(self: Any, time_s: Any = None, **parameters: float) -> Any:
+    """The law at times of the record, with some of the parameters replaced.
+
+    Parameters
+    ----------
+    time_s : float or array_like, shape (N,), optional
+        Time on the clock of the samples, s; the times of the samples if left out.
+    parameters
+        Values in place of those that were found: ``fit.eval(exponent=3)``.
+
+    Returns
+    -------
+    float or ndarray, shape (N,)
+
+    Raises
+    ------
+    OptionError
+        A parameter that the law has not; replaced parameters of a law that is no function of `palpate.laws`.
+    """
+    unknown = [name for name in parameters if name not in self.parameters]
+    if unknown:
+        raise OptionError(f"expected parameters of {self.law} ({', '.join(self.parameters)}), found {', '.join(unknown)}")
+    if not parameters:
+        return self.predict(time_s)
+    from palpate._arrays import as_doubles
+
+    times = self.time_s if time_s is None else as_doubles(np.atleast_1d(time_s), "eval(time_s)")
+    values = laws.function(self.law)(times - self.start_s, **{**self.parameters, **parameters})
+    return float(values[0]) if time_s is not None and np.ndim(time_s) == 0 else values

@@ -1,0 +1,64 @@
+"""Quantities with a unit, of pint or of a library with the same two methods, as numbers in SI."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from palpate._palpate import OptionError
+
+#: What a key or an argument may end in, where it is a number in SI, or several: ``radius_m`` is ``radius`` in m.
+ENDINGS = {
+    "_m_per_s": "m/s",
+    "_n_per_s": "N/s",
+    "_per_s": "/s",
+    "_pa": "Pa",
+    "_m2": "m^2",
+    "_n": "N",
+    "_s": "s",
+    "_m": "m",
+}
+
+
+def ending(name: str) -> str:
+    """The ending of a name that states a unit; empty where there is none."""
+    return next((end for end in ENDINGS if name.endswith(end) and len(name) > len(end)), "")
+
+
+def is_quantity(value: Any) -> bool:
+    """Whether a value is a number, or an array of them, with a unit."""
+    return hasattr(value, "magnitude") and hasattr(value, "to_base_units")
+
+
+def in_si(values: Any, name: str) -> Any:
+    """The numbers of quantities: in the unit in which the name ends, or in the base units of SI; other values as they are."""
+    if isinstance(values, (list, tuple)) and values and is_quantity(values[0]):
+        bare = next((index for index, value in enumerate(values) if not is_quantity(value)), None)
+        if bare is not None:
+            raise OptionError(f"{name}: expected quantities with a unit everywhere, found one without at index {bare}")
+        return [in_si(value, name) for value in values]
+    if isinstance(values, (list, tuple)) or not is_quantity(values):
+        return values
+    unit = ENDINGS.get(ending(name.rstrip(")")), "")
+    if not unit:
+        return values.to_base_units().magnitude
+    try:
+        return values.to(_of_pint(unit)).magnitude
+    except Exception as error:
+        if type(error).__name__ != "DimensionalityError":
+            raise
+        raise OptionError(f"{name}: expected a quantity in {unit}, found one in {values.units}") from None
+
+
+def stated(quantity: Any, key: str) -> str | float:
+    """One quantity as a description states it: a text with a unit of SI; a plain number where it has no dimension."""
+    if quantity.dimensionless:
+        return float(quantity.to_base_units().magnitude)
+    units = *dict.fromkeys(ENDINGS.values()), "K"
+    for unit in units:
+        if quantity.is_compatible_with(_of_pint(unit)):
+            return f"{float(quantity.to(_of_pint(unit)).magnitude)!r} {unit}"
+    raise OptionError(f"{key}: expected a quantity in one of {', '.join(units)}, found one in {quantity.units}")
+
+
+def _of_pint(unit: str) -> str:
+    return f"1{unit}" if unit.startswith("/") else unit

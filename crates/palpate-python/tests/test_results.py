@@ -1,0 +1,236 @@
+"""What results have besides their numbers: tables of other libraries, figures, text, samples of parameters."""
+
+from __future__ import annotations
+
+import copy
+import pickle
+import subprocess
+import sys
+import warnings
+from typing import Any
+
+import arviz_base
+import matplotlib
+import numpy as np
+import palpate
+import pandas
+import polars
+import pytest
+import xarray
+from conftest import ROOT, relaxation
+
+matplotlib.use("Agg")
+from matplotlib import pyplot
+
+pytestmark = pytest.mark.filterwarnings("ignore::palpate.PalpateWarning")
+
+T, Y = relaxation(noise=1e-3)
+BALL = ROOT / "examples/records/ball.csv", ROOT / "examples/records/ball.toml"
+STEPS = [{"to": "5 mm", "rate": "500 mm/min", "hold": "10 s"}]
+
+
+def results() -> dict[str, Any]:
+    record = palpate.read(BALL[0], test=BALL[1])
+    material = palpate.Material.read(ROOT / "examples/records/ball-material.toml")
+    return {
+        "Record": record,
+        "Fit": palpate.fit_hold(T, Y),
+        "Comparison": palpate.compare(T, Y, laws=["latency", "maxwell", "standard-linear-solid"]),
+        "RecordComparison": record.compare(laws=["latency", "maxwell"]),
+        "Analysis": record.analyze(compare=False),
+        "Calibration": record.calibrate(alternatives=[]),
+        "Prediction": material.predict(STEPS),
+        "Trajectory": material.predict(STEPS).trajectory,
+        "Grip": material.grip(mass_kg=0.25, friction=0.6),
+        "Table": palpate.fit_many([T, T[:3]], [Y, Y[:3]]),
+    }
+
+
+with warnings.catch_warnings():
+    # The example goes beyond its test.
+    warnings.simplefilter("ignore", palpate.PalpateWarning)
+    RESULTS = results()
+DRAWN = ["Record", "Fit", "Comparison", "Calibration", "Prediction", "Trajectory", "Grip"]
+
+
+@pytest.mark.parametrize("name", RESULTS)
+def test_a_result_is_a_table_for_every_library(name: str) -> None:
+    result = RESULTS[name]
+    table = result if name == "Table" else result.to_arrow()
+    assert len(table) > 0
+    frame, polar, dataset = result.to_pandas(), result.to_polars(), result.to_xarray()
+    assert isinstance(frame, pandas.DataFrame) and isinstance(polar, polars.DataFrame) and isinstance(dataset, xarray.Dataset)
+    assert list(frame.columns) == polar.columns == table.column_names and len(frame) == len(polar) == len(table)
+    assert set(dataset.variables) >= set(table.column_names)
+    for column in table.column_names:
+        if isinstance(table[column], np.ndarray):
+            np.testing.assert_array_equal(frame[column].to_numpy(float), table[column])
+            np.testing.assert_array_equal(dataset[column].to_numpy().astype(float), table[column])
+        else:
+            # What is missing among texts is NaN in xarray.
+            missing = [None if value != value else value for value in dataset[column].to_numpy().tolist()]
+            assert polar[column].to_list() == table[column] == missing
+
+
+@pytest.mark.parametrize("name", RESULTS)
+def test_a_result_goes_into_plain_objects_and_back_from_a_pickle(name: str) -> None:
+    result = RESULTS[name]
+    assert isinstance(result.to_dict(), dict) and result.to_dict()
+    for twin in (pickle.loads(pickle.dumps(result)), copy.copy(result), copy.deepcopy(result)):
+        assert twin == result
+
+
+def test_an_empty_table_keeps_its_columns_in_pandas() -> None:
+    none = palpate.fit_many([], [])
+    assert list(none.to_pandas().columns) == none.column_names and len(none.to_pandas()) == 0
+
+
+def test_dimensions_and_units_of_a_dataset() -> None:
+    record = RESULTS["Record"].to_xarray()
+    assert dict(record.sizes) == {"time_s": len(RESULTS["Record"])} and record["force_n"].attrs == {"units": "N"}
+    assert dict(RESULTS["Comparison"].to_xarray().sizes) == {"law": 3}
+    assert list(RESULTS["Grip"].to_xarray().sizes) == ["row"]
+    protocol = {"specimen": {"shape": "ball", "radius": "35 mm", "modulus": "28 kPa"}, "law": {"name": "latency", "exponent": 5, "rate_coefficient": "2e4 /s"}, "step": STEPS}
+    runs = palpate.simulate_many(protocol, {"specimen.radius": [0.03, 0.035]}, times_s=[0.6, 10.6]).to_xarray()
+    assert runs["force_n"].shape == (2, 2)
+    assert np.stack(list(palpate.simulate_many(protocol, {"specimen.radius": [0.03, 0.035]}, times_s=[0.6, 10.6]).to_pandas()["force_n"])).shape == (2, 2)
+
+
+def test_the_table_of_a_grip_has_all_courses() -> None:
+    grip = RESULTS["Grip"]
+    table = grip.to_arrow()
+    assert grip.squeeze is not None and grip.squeeze.course is not None
+    rows = np.array(table["grip"]) == "squeeze"
+    np.testing.assert_array_equal(table["force_n"][rows], grip.squeeze.course.force_n)
+    assert list(dict.fromkeys(table["grip"])) == ["squeeze", "back_off", "force_held"]
+
+
+@pytest.mark.parametrize("name", DRAWN)
+def test_a_result_draws_itself(name: str) -> None:
+    result = RESULTS[name]
+    own = result.plot()
+    figure, given = pyplot.subplots()
+    assert result.plot(given) is given and own is not given
+    assert own.get_xlabel() and (own.lines or own.patches)
+    figure.canvas.draw()
+    own.figure.canvas.draw()
+    pyplot.close("all")
+
+
+def test_no_grip_is_an_empty_table_and_figure() -> None:
+    material = palpate.Material.read(ROOT / "examples/records/ball-material.toml")
+    refused = material.grip(mass_kg=50.0, friction=0.1)
+    assert set(refused.refused) >= {"squeeze"} and refused.squeeze is None
+    assert len(refused.to_arrow()) == len(refused.to_pandas()) == 0 and len(refused.plot().lines) == 0
+    assert "2451.6625 N are needed" in " ".join(refused.summary().split())
+    pyplot.close("all")
+
+
+def test_a_comparison_keeps_its_samples() -> None:
+    comparison = RESULTS["Comparison"]
+    assert np.array_equal(comparison.time_s, T) and np.array_equal(comparison.signal, Y)
+    assert comparison != palpate.compare(T, Y + 1.0, laws=["latency", "maxwell", "standard-linear-solid"])
+
+
+def test_figures_show_the_numbers() -> None:
+    fit, trajectory = RESULTS["Fit"], RESULTS["Trajectory"]
+    ax = fit.plot(interval=0.9, color="red")
+    np.testing.assert_array_equal(ax.lines[0].get_ydata(), Y)
+    np.testing.assert_array_equal(ax.lines[1].get_ydata(), fit.best_fit)
+    assert ax.lines[1].get_color() == "red" and len(ax.collections) == 1
+    loop = trajectory.plot(x="displacement_m", y="force_n")
+    np.testing.assert_array_equal(loop.lines[0].get_xdata(), trajectory.displacement_m)
+    assert (loop.get_xlabel(), loop.get_ylabel()) == ("Displacement (m)", "Force (N)")
+    with pytest.raises(palpate.OptionError, match="expected one of the series time_s, .*, found 'nothing'"):
+        trajectory.plot(y="nothing")
+    pyplot.close("all")
+
+
+def test_a_library_that_is_missing_is_named() -> None:
+    script = "import sys\nfor name in ('matplotlib.pyplot', 'pandas'): sys.modules[name] = None\nimport palpate\nrecord = palpate.Record.from_arrays(time_s=[0, 1, 2], force_n=[0, 1, 2])\n"
+    for call, library in (("plot", "matplotlib.pyplot"), ("to_pandas", "pandas")):
+        ran = subprocess.run([sys.executable, "-c", f"{script}record.{call}()"], capture_output=True, text=True)
+        assert f"ImportError: {call} needs {library}, which is not installed" in ran.stderr
+    loaded = subprocess.run([sys.executable, "-c", "import palpate, sys\nprint(*sorted(sys.modules))"], capture_output=True, text=True, check=True)
+    assert not {"pandas", "polars", "xarray", "matplotlib", "arviz_base", "pint"} & set(loaded.stdout.split())
+
+
+@pytest.mark.parametrize("name", [name for name in RESULTS if name != "Table"])
+def test_a_result_sums_itself_up(name: str) -> None:
+    text = RESULTS[name].summary()
+    assert text.endswith("\n") and "nan" not in text and len(text.splitlines()) > 1
+
+
+def test_a_summary_has_the_numbers() -> None:
+    fit, record = RESULTS["Fit"], RESULTS["Record"]
+    [row] = [line.split() for line in fit.summary().splitlines() if line.startswith("exponent ")]
+    assert row[1] == f"{fit.parameters['exponent']:.6g}" and row[-1] == "1"
+    [row] = [line.split() for line in record.summary().splitlines() if line.startswith("force_n ")]
+    assert row[-1] == f"{record.force_n.max():.6g}"
+    assert fit.law in fit.summary() and record.title in record.summary()
+
+
+@pytest.mark.parametrize("name", [name for name in RESULTS if name != "RecordComparison"])
+def test_a_notebook_shows_a_result(name: str) -> None:
+    page = RESULTS[name]._repr_html_()
+    assert page.startswith("<") and page.endswith(">")
+    if name in ("Record", "Fit", "Comparison", "Trajectory"):
+        cells = [line.split()[0] for line in RESULTS[name].summary().splitlines()[2:] if line.strip()]
+        assert cells and all(f"<td>{cell}</td>" in page for cell in cells)
+
+
+def test_a_title_is_no_markup() -> None:
+    record = palpate.Record.from_arrays(time_s=[0, 1, 2], force_n=[0, 1, 2], title="<b>")
+    assert "<b>" not in record._repr_html_() and "&lt;b&gt;" in record._repr_html_()
+
+
+def test_samples_have_the_covariance_in_the_scales_searched() -> None:
+    fit = RESULTS["Fit"]
+    draws = fit.sample(200_000, seed=2)
+    assert list(draws) == list(fit.parameters)
+    searched = np.array([np.log(draws["relative_rate_per_s"]) if name.startswith("ln") else draws[name] for name in fit.searched])
+    centre = [np.log(fit.parameters["relative_rate_per_s"]) if name.startswith("ln") else fit.parameters[name] for name in fit.searched]
+    errors = np.sqrt(np.diag(fit.covariance))
+    np.testing.assert_allclose((searched.mean(axis=1) - centre) / errors, 0.0, atol=0.01)
+    np.testing.assert_allclose(np.cov(searched) / np.outer(errors, errors), fit.correlation, atol=0.01)
+    assert np.array_equal(fit.sample(5, seed=3)["exponent"], fit.sample(5, seed=3)["exponent"])
+
+
+def test_samples_of_times_are_positive_and_held_parameters_stay() -> None:
+    fit = palpate.fit_hold(T, Y, law="prony:2", fixed={"equilibrium": 0.2})
+    draws = fit.sample(5000, seed=1)
+    assert np.all(draws["time_constant_1_s"] > 0) and np.all(draws["equilibrium"] == 0.2)
+    estimate = fit.estimates["time_constant_1_s"]
+    assert estimate.standard_error is not None
+    spread = np.log(draws["time_constant_1_s"]).std()
+    assert spread == pytest.approx(estimate.standard_error / estimate.value, rel=0.1)
+
+
+def test_no_samples_without_a_covariance() -> None:
+    fit = palpate.fit_hold(T, 1 + 2 * np.exp(-T / 8), law="prony:3")
+    assert fit.covariance is None
+    with pytest.raises(palpate.FitError, match="a fit with a covariance"):
+        fit.sample(3)
+    for wrong in (0, -1, 2.5, True):
+        with pytest.raises(palpate.OptionError, match="n: expected a number of sets, 1 or more"):
+            RESULTS["Fit"].sample(wrong)
+
+
+def test_arviz_has_a_posterior() -> None:
+    fit = palpate.fit_hold(T, Y, law="latency:5")
+    tree = fit.to_arviz(500, chains=2, seed=1)
+    assert isinstance(tree, xarray.DataTree)
+    posterior = tree["posterior"].dataset
+    assert dict(posterior.sizes) == {"chain": 2, "draw": 500} and "exponent" not in posterior
+    assert float(posterior["equilibrium"].mean()) == pytest.approx(fit.parameters["equilibrium"], abs=fit.estimates["equilibrium"].standard_error)
+    np.testing.assert_array_equal(tree["observed_data"]["signal"], Y)
+    assert arviz_base.extract(tree).sizes["sample"] == 1000
+
+
+def test_a_law_is_evaluated_with_other_parameters() -> None:
+    fit = palpate.fit_hold(T + 3.0, Y)
+    assert np.array_equal(fit.eval(), fit.best_fit) and fit.eval(13.0) == fit.predict(13.0)
+    np.testing.assert_allclose(fit.eval(exponent=3.0), palpate.laws.latency(T, **{**fit.parameters, "exponent": 3.0}), rtol=1e-14)
+    assert fit.eval(13.0, equilibrium=0.0) == pytest.approx(fit.eval(13.0) - fit.parameters["equilibrium"], rel=1e-12)
+    with pytest.raises(palpate.OptionError, match=r"expected parameters of latency \(equilibrium, .*\), found time_constant_s"):
+        fit.eval(time_constant_s=3.0)

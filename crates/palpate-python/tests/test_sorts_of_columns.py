@@ -1,0 +1,177 @@
+"""Times, quantities, labelled arrays and long tables as other libraries have them."""
+
+from __future__ import annotations
+
+import datetime
+from typing import Any
+
+import numpy as np
+import palpate
+import pandas
+import pint
+import polars
+import pyarrow
+import pytest
+import xarray
+from conftest import relaxation
+
+T, Y = relaxation(noise=1e-4)
+FIT = palpate.fit_hold(T, Y)
+NANOSECONDS = np.round(1e9 * T).astype("timedelta64[ns]")
+DATES = np.datetime64("2024-02-29T23:59:30", "ns") + NANOSECONDS
+UNITS: Any = pint.UnitRegistry()
+PROTOCOL: dict[str, Any] = {
+    "specimen": {"shape": "ball", "radius": "35 mm", "modulus": "28 kPa"},
+    "law": {"name": "latency", "exponent": 5, "rate_coefficient": "2e4 /s"},
+    "step": [{"to": "5 mm", "rate": "500 mm/min", "hold": "10 s"}],
+}
+
+
+@pytest.mark.parametrize(
+    "times",
+    [
+        NANOSECONDS,
+        DATES,
+        pandas.Series(NANOSECONDS),
+        pandas.Series(DATES),
+        pandas.Series(DATES).dt.tz_localize("UTC"),
+        polars.Series(NANOSECONDS),
+        polars.Series(DATES),
+        polars.Series(DATES).dt.replace_time_zone("UTC"),
+        pyarrow.array(NANOSECONDS),
+        xarray.DataArray(NANOSECONDS, dims="sample"),
+        [datetime.timedelta(microseconds=float(1e6 * t)) for t in T],
+        [datetime.datetime(2024, 2, 29, tzinfo=datetime.UTC) + datetime.timedelta(microseconds=float(1e6 * t)) for t in T],
+    ],
+    ids=lambda times: f"{type(times).__module__}-{getattr(times, 'dtype', type(times[0]).__name__)}",
+)
+def test_durations_and_dates_are_times(times: Any) -> None:
+    fit = palpate.fit_hold(times, Y)
+    assert fit.start_s == 0.0 and fit.duration_s == pytest.approx(40.0, abs=1e-6)
+    assert fit.parameters["exponent"] == pytest.approx(FIT.parameters["exponent"], rel=1e-4)
+    table = palpate.fit_many(times, [Y, Y])
+    assert table["exponent"].tolist() == [fit.parameters["exponent"]] * 2
+
+
+def test_a_duration_is_a_time_wherever_one_is_taken() -> None:
+    record = palpate.Record.from_arrays(time_s=DATES, force_n=Y)
+    np.testing.assert_allclose(record.time_s, T, atol=1e-9)
+    assert FIT.predict(np.timedelta64(20, "s")) == FIT.predict(20.0)
+    with pytest.raises(palpate.OptionError, match=r"predict\(time_s\): expected numbers in s, found dates\nhint: subtract the first date"):
+        FIT.predict(DATES)
+    with pytest.raises(palpate.OptionError, match="signal: expected numbers, found timedelta64"):
+        palpate.fit_hold(T, NANOSECONDS)
+    assert "NaN" in str(pytest.raises(palpate.FitError, palpate.fit_hold, np.where(T > 3, np.timedelta64("NaT", "ns"), NANOSECONDS), Y).value)
+
+
+def test_quantities_are_converted() -> None:
+    far = palpate.fit_hold(1e3 * T * UNITS.ms, Y * UNITS.kN)
+    assert far.parameters["relative_rate_per_s"] == pytest.approx(FIT.parameters["relative_rate_per_s"], rel=1e-6)
+    assert far.parameters["equilibrium"] == pytest.approx(1e3 * FIT.parameters["equilibrium"], rel=1e-6)
+    one_by_one: Any = [1e3 * t * UNITS.ms for t in T]
+    assert palpate.fit_hold(one_by_one, Y).parameters["exponent"] == pytest.approx(FIT.parameters["exponent"], rel=1e-6)
+    many = palpate.fit_many(1e3 * T * UNITS.ms, np.array([Y, Y]) * UNITS.N)
+    assert many["exponent"] == pytest.approx([FIT.parameters["exponent"]] * 2, rel=1e-6)
+    assert FIT.predict(1e3 * UNITS.ms) == pytest.approx(FIT.predict(1.0), rel=1e-14)
+    record = palpate.Record.from_arrays(time_s=T * UNITS.minute, force_n=Y * UNITS.kN, displacement_m=T * UNITS.mm)
+    assert record.displacement_m is not None
+    assert (record.time_s[-1], record.displacement_m[-1]) == pytest.approx((2400.0, 0.04))
+    np.testing.assert_allclose(record.force_n, 1e3 * Y, rtol=1e-14)
+    mixed: list[Any]
+    for mixed in ([T[0] * UNITS.ms, *T[1:]], [T[0], *(t * UNITS.ms for t in T[1:])]):
+        with pytest.raises(palpate.OptionError, match="time_s: expected"):
+            palpate.fit_hold(mixed, Y)
+    with pytest.raises(palpate.OptionError, match="time_s: expected a quantity in s, found one in newton"):
+        palpate.fit_hold(T * UNITS.N, Y)
+
+
+def test_a_protocol_takes_quantities() -> None:
+    described = {
+        "specimen": {"shape": "ball", "radius": 3.5 * UNITS.cm, "modulus_pa": 28 * UNITS.kPa},
+        "law": {"name": "latency", "exponent": 5 * UNITS.dimensionless, "rate_coefficient": 2e4 / UNITS.s},
+        "step": [{"to": 5 * UNITS.mm, "rate": 0.5 * UNITS.m / UNITS.minute, "hold": 10 * UNITS.s}],
+    }
+    plain, quantities = palpate.simulate(PROTOCOL), palpate.simulate(described)
+    assert quantities.force_n[-1] == pytest.approx(plain.force_n[-1], rel=1e-9)
+    wrong = {**described, "step": [{"to": 5 * UNITS.mm, "rate": 1 * UNITS.mm / UNITS.s, "hold": 10 * UNITS.mm}]}
+    with pytest.raises(palpate.OptionError, match=r"step\[1\]\.hold"):
+        palpate.simulate(wrong)
+    wrong = {**described, "specimen": {"shape": "ball", "radius": 3 * UNITS.candela, "modulus": "28 kPa"}}
+    with pytest.raises(palpate.OptionError, match=r"specimen\.radius: expected a quantity in one of .*, found one in candela"):
+        palpate.simulate(wrong)
+
+
+def test_dimensions_of_xarray_have_names() -> None:
+    rows = np.array([Y, 2 * Y, 3 * Y])
+    expected = palpate.fit_many(T, rows)
+    time = xarray.DataArray(T, dims="sample")
+    assert palpate.fit_many(time, xarray.DataArray(rows, dims=("specimen", "sample"))) == expected
+    assert palpate.fit_many(time, xarray.DataArray(rows.T, dims=("sample", "specimen"))) == expected
+
+
+def test_rows_that_are_padded_are_cut() -> None:
+    short, y = relaxation(300, 1e-4, 1)[0] * 0 + T[:300], Y[:300]
+    alone = palpate.fit_hold(short, y)
+    padded = np.array([Y, np.append(y, np.full(100, np.nan))])
+    assert "found NaN" in palpate.fit_many(T, padded)["error"][1]
+    columns: list[Any] = [padded, list(padded), polars.Series(padded.tolist(), nan_to_null=True), pyarrow.array([list(Y), [*y, *[None] * 100]])]
+    for signal in columns:
+        table = palpate.fit_many(T, signal, nan="omit")
+        assert table["error"] == [None, None], signal
+        assert table["exponent"].tolist() == [FIT.parameters["exponent"], alone.parameters["exponent"]]
+        assert table["samples"].tolist() == [400, 300]
+    weighted = palpate.fit_many(T, padded, weights=np.where(np.isnan(padded), np.nan, 2.0), nan="omit")
+    assert weighted["exponent"] == pytest.approx([FIT.parameters["exponent"], alone.parameters["exponent"]], rel=1e-6)
+    gaps: list[Any] = [padded[1], np.ma.masked_invalid(padded[1]), [*y, *[None] * 100], pandas.Series([*y, *[None] * 100], dtype="Float64")]
+    for one in gaps:
+        fit = palpate.fit_hold(T, one, nan="omit")
+        assert fit.parameters == alone.parameters and np.array_equal(fit.signal, y)
+    with pytest.raises(palpate.FitError, match="found 400 and 300"):
+        palpate.fit_hold(T, y, nan="omit")
+    with pytest.raises(palpate.OptionError, match='nan is one of "raise", "omit", found "skip"'):
+        palpate.fit_hold(T, Y, nan="skip")  # type: ignore[arg-type] # pyright: ignore[reportArgumentType]
+
+
+LONG = {"specimen": ["b"] * 400 + ["a"] * 300, "run": [1] * 400 + [2] * 300, "t": [*T, *T[:300]], "y": [*Y, *Y[:300]], "w": [2.0] * 700}
+
+
+@pytest.mark.parametrize("kind", [dict, pandas.DataFrame, polars.DataFrame, pyarrow.table, xarray.Dataset], ids=lambda kind: kind.__name__)
+def test_a_long_table_has_a_curve_for_each_label(kind: Any) -> None:
+    given = {name: ("row", values) for name, values in LONG.items()} if kind is xarray.Dataset else LONG
+    table = palpate.fit_many(kind(given), by="specimen", time="t", signal="y")
+    assert table.column_names[:3] == ["specimen", "curve", "law"]
+    assert table["specimen"] == ["b", "a"] and table["samples"].tolist() == [400, 300]
+    assert table["exponent"].tolist() == [FIT.parameters["exponent"], palpate.fit_hold(T[:300], Y[:300]).parameters["exponent"]]
+    two = palpate.fit_many(kind(given), by=["run", "specimen"], time="t", signal="y", weights="w")
+    assert two.column_names[:3] == ["run", "specimen", "curve"] and two["run"].tolist() == [1, 2]
+
+
+def test_rows_of_a_long_table_may_be_mixed() -> None:
+    by_time = pandas.DataFrame(LONG).sort_values("t", kind="stable")
+    fits = palpate.fit_many(by_time, by="specimen", time="t", signal="y")
+    assert fits == palpate.fit_many(LONG, by="specimen", time="t", signal="y")
+    # Rows of a curve keep their order: its times have to rise.
+    upside_down = palpate.fit_many(by_time[::-1], by="specimen", time="t", signal="y")
+    assert all("time" in error for error in upside_down["error"])
+    dates = pandas.DataFrame(LONG).assign(t=pandas.Timestamp("2024-01-01") + pandas.to_timedelta(LONG["t"], unit="s"))
+    assert palpate.fit_many(dates, by="run", time="t", signal="y")["error"] == [None, None]
+
+
+def test_what_is_no_long_table_is_stated() -> None:
+    frame = pandas.DataFrame(LONG)
+    for table in (frame, polars.DataFrame(LONG), pyarrow.table(LONG), LONG):
+        with pytest.raises(palpate.OptionError, match="expected a table with a column 'nothing', found"):
+            palpate.fit_many(table, by="nothing", time="t", signal="y")
+    with pytest.raises(palpate.OptionError, match="time: expected the name of a column beside by, found NoneType"):
+        palpate.fit_many(frame, by="run", signal="y")  # type: ignore[call-overload] # pyright: ignore
+    with pytest.raises(palpate.OptionError, match="by: expected a label in every row, found none in row 3"):
+        palpate.fit_many(frame.assign(run=frame["run"].where(frame.index != 3)), by="run", time="t", signal="y")
+    # Older versions of pandas are no tables of Arrow: a table must not be taken for the names of its columns.
+    class Older(list[str]):
+        columns = ["0", "1"]
+
+    with pytest.raises(palpate.OptionError, match="signal: expected a list of curves, found a table of 2 columns\nhint: pass one column"):
+        palpate.fit_many(T, Older(["0", "1"]))
+    with pytest.raises(palpate.OptionError, match="time: expected by beside it"):
+        palpate.fit_many(T, Y, time="t")  # type: ignore[call-overload] # pyright: ignore
+    assert len(palpate.fit_many(frame.iloc[:0], by="run", time="t", signal="y")) == 0
