@@ -145,7 +145,8 @@ def test_reproduce(tmp_path: Path, of_record: bool) -> None:
         summary = palpate.reproduce(tmp_path / "own", seeds=4, sample_rate_hz=20.0)
     assert summary == json.loads((tmp_path / "its" / "summary.json").read_text())
     verdicts = {claim["verdict"] for claim in summary["claims"]}
-    assert "reproduced" in verdicts and "not_reproduced" in verdicts
+    # Of the record, whose law is that of the paper, nothing fails; some of it the errors of the fits leave open.
+    assert "reproduced" in verdicts and ("cannot_be_checked" if of_record else "not_reproduced") in verdicts
     files = sorted(path.relative_to(tmp_path / "its") for path in (tmp_path / "its").rglob("*") if path.is_file())
     assert files == sorted(path.relative_to(tmp_path / "own") for path in (tmp_path / "own").rglob("*") if path.is_file())
     for file in files:

@@ -59,6 +59,7 @@ __all__ = [
     "inspect",
     "latency",
     "law_names",
+    "mapping_text",
     "read",
     "read_all",
     "report_all",

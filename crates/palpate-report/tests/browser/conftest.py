@@ -18,9 +18,13 @@ from playwright.sync_api import Browser, BrowserContext, Dialog, Page, sync_play
 HOSTILE = "\"><img src=x onerror=alert(1)><script>alert(2)<" + "/script>"
 
 
+def command(folder: Path, *arguments: str | Path) -> subprocess.Popen[str]:
+    words = [os.environ["PALPATE"], *map(str, arguments)]
+    return subprocess.Popen(words, cwd=folder, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
+
+
 def analyze(folder: Path, out: Path, *arguments: str | Path) -> subprocess.Popen[str]:
-    command = [os.environ["PALPATE"], "analyze", *map(str, arguments), "--out", str(out)]
-    return subprocess.Popen(command, cwd=folder, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
+    return command(folder, "analyze", *arguments, "--out", out)
 
 
 def steps(levels_mm: list[float], hold_s: float, rate_hz: float, seed: int) -> np.ndarray:
@@ -54,6 +58,7 @@ class Reports:
     long: Path
     hostile: Path
     index: Path
+    paper: Path
 
 
 @pytest.fixture(scope="session")
@@ -71,12 +76,14 @@ def reports(tmp_path_factory: pytest.TempPathFactory) -> Reports:
     described.write_text(f"[about]\ntitle = '''{HOSTILE}'''\n")
     pads = [write(folder / f"{name}.csv", steps([3.0, 1.0], 12.0, 12.0, 3 + k)) for k, name in enumerate(names)]
     works.append(analyze(folder, folder / "set", *pads, "--test", described))
+    works.append(command(folder, "reproduce", "--seeds", "2", "--out", folder / "paper"))
     for work in works:
         messages = work.communicate()[1]
         assert work.returncode == 0, messages
     hostile = sorted((folder / "set").glob("*/report.html"))
     assert len(hostile) == 2
-    return Reports(folder / "many/report.html", folder / "long/report.html", hostile[0], folder / "set/index.html")
+    pages = [folder / f"{name}/report.html" for name in ("many", "long", "paper")]
+    return Reports(pages[0], pages[1], hostile[0], folder / "set/index.html", pages[2])
 
 
 @pytest.fixture(scope="session")

@@ -15,7 +15,7 @@ from playwright.sync_api import Browser, Locator
 from pypdf import PdfReader
 
 WIDTHS = [420, 768, 1280, 1920]
-PAGES = ["many", "long", "hostile", "index"]
+PAGES = ["many", "long", "hostile", "index", "paper"]
 # A4 less its margins at 96 picture elements to an inch.
 PAPER = (178 / 25.4 * 96, 267 / 25.4 * 96)
 
@@ -254,6 +254,24 @@ def test_the_page_is_complete_without_a_script(browser: Browser, reports: Report
     assert page.locator("#findings .finding").first.is_visible()
     pages = texts(page.pdf(prefer_css_page_size=True))
     assert "Provenance" in pages[-1] and sum("Hold 24" in text for text in pages) >= 5
+    found.context.close()
+
+
+@pytest.mark.parametrize("width", WIDTHS)
+def test_a_statement_shows_its_verdict_and_what_shows_it(browser: Browser, reports: Reports, width: int) -> None:
+    found = opened(browser, reports.paper, width)
+    page = found.page
+    verdicts = page.locator(".claims tbody > tr:first-child > td:first-of-type")
+    assert verdicts.count() > 50
+    # The verdict stands beside the statement, before anything is scrolled.
+    box = verdicts.first.bounding_box()
+    assert box is not None and box["x"] + box["width"] <= width
+    gone = """() => [...document.querySelectorAll("a[href^='#']")].map((one) => one.getAttribute("href"))
+        .filter((target) => !document.getElementById(target.slice(1)))"""
+    assert page.evaluate(gone) == []
+    page.locator(".claims a", has_text="Table S4").first.click()
+    assert "laboratories" in (page.locator(":target .caption").text_content() or "")
+    assert found.is_quiet()
     found.context.close()
 
 
