@@ -66,11 +66,11 @@ pub(super) fn holds(analysis: &Analysis) -> Table {
                 RelaxationType::None => "none",
             })
         })
-        .column("p", "p_value", "", |hold| Cell::Number(hold.relaxation.p_value, 2))
+        .column("p", "p_value", "", |hold| Cell::Number(hold.relaxation.p_value.max(f64::MIN_POSITIVE), 2))
         .table()
         .note("Held: the displacement (the force relaxes), the force (the displacement creeps) or neither.")
         .note("Type I: the force falls; Type II: it rises. The laws are fitted from the time “Fit from” on, which may lie after the start of the hold.")
-        .note("p: probability of a force change of this size by noise alone.")
+        .note("p: probability of a force change of this size by noise alone; 2.2×10⁻³⁰⁸, the smallest number, stands for anything below.")
 }
 
 /// The displacement that was held.

@@ -100,7 +100,8 @@ fn loading_rates(paper: &Published) -> Claim {
             (0.0, Relation::AtLeast, (fast - slow, std::f64::consts::SQRT_2 * paper.force_accuracy)),
             (0.0, "√2 times 0.2 N of the load cell is in the interval"),
         )])
-        .remark("The result is that of its reference [27]; its numbers are not in the paper.")
+        .remark("The result is that of its reference [27]; its numbers are not in the paper. The peak at 500 mm/min is that of figure 4(a).")
+        .shown_by(Evidence::Figure("figure_4a"))
 }
 
 fn matching(study: &Reproduction) -> Claim {
