@@ -27,7 +27,7 @@ pub(crate) type Given<'py, 'a> = Option<&'a Bound<'py, PyAny>>;
 
 /// A path, or a text, as a function of the package tells of what was given.
 pub(crate) fn stated(tell: &str, given: &Bound<'_, PyAny>) -> PyResult<(Option<PathBuf>, Option<String>)> {
-    given.py().import("palpate")?.call_method1(tell, (given,))?.extract()
+    given.py().import("palpate._descriptions")?.call_method1(tell, (given,))?.extract()
 }
 
 /// A file of records as the package tells it apart: by its path, or by a name and its bytes.
@@ -42,19 +42,25 @@ fn named((name, bytes): FileOfPython) -> NamedFile {
 
 /// The file of a record: a path, bytes, or an object that is read, with the name that is given beside it.
 pub(crate) fn record_file(given: &Bound<'_, PyAny>, name: Option<&str>) -> PyResult<NamedFile> {
-    given.py().import("palpate")?.call_method1("_record_file", (given, name))?.extract().map(named)
+    given
+        .py()
+        .import("palpate._files")?
+        .call_method1("record_file", (given, name))?
+        .extract()
+        .map(named)
 }
 
 /// Several files of records.
 fn record_files(given: &Bound<'_, PyAny>) -> PyResult<Vec<NamedFile>> {
-    let found: Vec<FileOfPython> = given.py().import("palpate")?.call_method1("_record_files", (given,))?.extract()?;
+    let found: Vec<FileOfPython> =
+        given.py().import("palpate._files")?.call_method1("record_files", (given,))?.extract()?;
     Ok(found.into_iter().map(named).collect())
 }
 
 /// The description of records in a file, with the part that is meant, and the path that it has.
 pub(crate) fn described(test: Given<'_, '_>, part: Given<'_, '_>) -> PyResult<(Described, Option<PathBuf>)> {
     let part = part.map(|part| part.str()?.extract::<String>()).transpose()?;
-    let (path, text) = test.map(|test| stated("_described", test)).transpose()?.unwrap_or_default();
+    let (path, text) = test.map(|test| stated("described", test)).transpose()?.unwrap_or_default();
     Ok((read_or_parsed(path.as_deref(), text, part.as_deref())?, path))
 }
 

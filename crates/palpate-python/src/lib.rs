@@ -39,10 +39,12 @@ use pyo3::prelude::*;
 #[pymodule(gil_used = false)]
 mod _palpate {
     use pyo3::prelude::*;
+    use pyo3::types::IntoPyDict;
 
     #[pymodule_init]
     fn init(module: &Bound<'_, PyModule>) -> PyResult<()> {
-        module.add("__version__", env!("CARGO_PKG_VERSION"))
+        module.add("__version__", env!("CARGO_PKG_VERSION"))?;
+        module.add("_SI_ENDINGS", crate::mappings::UNITS.into_py_dict(module.py())?)
     }
 
     #[pymodule_export]

@@ -8,8 +8,8 @@ use pyo3::types::{PyBool, PyDict, PyFloat, PyInt, PyList, PyMapping, PyString, P
 
 use crate::errors::{OptionError, refused, refused_plainly};
 
-/// What a key of a mapping may end in, where its value is a number in SI, or several: `radius_m` is `radius` in m.
-const UNITS: [(&str, &str); 8] = [
+/// What a key of a mapping, or an argument, may end in where it is a number in SI, or several: `radius_m` is `radius` in m.
+pub(crate) const UNITS: [(&str, &str); 8] = [
     ("_m_per_s", "m/s"),
     ("_n_per_s", "N/s"),
     ("_per_s", "/s"),

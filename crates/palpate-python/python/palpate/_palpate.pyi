@@ -17,6 +17,7 @@ from palpate._options import Control, Intervals, LawName, Quantity
 
 __all__ = [
     "__version__",
+    "_SI_ENDINGS",
     "Analysis",
     "BackOff",
     "BatchResult",
@@ -71,6 +72,7 @@ __all__ = [
 ]
 
 __version__: Final[str]
+_SI_ENDINGS: Final[dict[str, str]]
 
 _Doubles: TypeAlias = NDArray[np.float64]
 _Path: TypeAlias = str | os.PathLike[str]

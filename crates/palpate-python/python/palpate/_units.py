@@ -4,19 +4,10 @@ from __future__ import annotations
 
 from typing import Any
 
-from palpate._palpate import OptionError
+from palpate._palpate import _SI_ENDINGS, OptionError
 
-#: What a key or an argument may end in, where it is a number in SI, or several: ``radius_m`` is ``radius`` in m.
-ENDINGS = {
-    "_m_per_s": "m/s",
-    "_n_per_s": "N/s",
-    "_per_s": "/s",
-    "_pa": "Pa",
-    "_m2": "m^2",
-    "_n": "N",
-    "_s": "s",
-    "_m": "m",
-}
+#: What a key or an argument may end in where it is a number in SI, or several, with the unit: ``radius_m`` is ``radius`` in m.
+ENDINGS = _SI_ENDINGS
 
 
 def ending(name: str) -> str:

@@ -35,7 +35,7 @@ impl Given {
             let text = mapping_text(table)?;
             return Ok(Self { path: None, text });
         }
-        let (path, text) = stated("_described", model)?;
+        let (path, text) = stated("described", model)?;
         let text = match &path {
             Some(path) => read_protocol_text(path).map_err(undescribed)?,
             None => text.unwrap_or_default(),

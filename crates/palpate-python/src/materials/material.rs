@@ -259,7 +259,7 @@ shown! {
             self.warn_of_open(py)?;
             return Ok(predicted.cast::<Prediction>()?.get().clone());
         }
-        let (path, text) = stated("_driven", protocol)?;
+        let (path, text) = stated("driven", protocol)?;
         let place = path.clone().unwrap_or_else(|| PathBuf::from("protocol"));
         let protocol = match path {
             Some(path) => read_protocol_of(&path, &self.source.file),

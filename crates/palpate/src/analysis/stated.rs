@@ -74,16 +74,14 @@ impl Analysis {
         let ramp = ramp.filter(|ramp| ramp.phase == Phase::Loading && Some(After::Loading) == hold.after);
         let (initial_force, relaxation) = self.stated_relaxation(hold).unzip();
         let measured = |time: &f64| relaxation.iter().flatten().any(|stated: &StatedRelaxation| stated.time == *time);
-        // The usual times are a list to take what was measured from; those that a description states are all of interest.
-        let conditions = &self.options.conditions;
-        let is_stated = initial_force.is_some() && conditions.relaxation_at != Conditions::default().relaxation_at;
-        let stated = if is_stated { &conditions.relaxation_at[..] } else { &[] };
+        // Of the usual times those count that were measured; of chosen ones all.
+        let chosen = self.options.conditions.relaxation_at.as_deref().filter(|_| initial_force.is_some());
         HoldReport {
             applied_in: ramp.map(|ramp| time[segment.start] - time[ramp.start]),
             constraint_variation,
             relative_constraint_variation: constraint_variation.and_then(relative),
             initial_force,
-            not_measured: stated.iter().copied().filter(|time| !measured(time)).collect(),
+            not_measured: chosen.unwrap_or_default().iter().copied().filter(|time| !measured(time)).collect(),
             relaxation: relaxation.unwrap_or_default(),
         }
     }
@@ -126,7 +124,8 @@ impl Analysis {
                 relaxation: relaxation.estimate(confidence),
             })
         };
-        Some((initial.estimate(confidence), conditions.relaxation_at.iter().filter_map(stated).collect()))
+        let times = conditions.relaxation_at.as_deref().unwrap_or(&Conditions::USUAL_TIMES);
+        Some((initial.estimate(confidence), times.iter().filter_map(stated).collect()))
     }
 }
 

@@ -30,13 +30,12 @@ pub(crate) struct ConditionsTable {
     /// Time from the start of the fit of a hold at which its initial force is taken, such as "30 min"; from there the times below count.
     /// Default: the start of the fit.
     initial_force_after: Option<QuantityText>,
-    /// Times at which R(t) = (F₀ − F(t))/F₀ is stated, such as ["30 s", "1 min"]; 1 s to 24 h if omitted. A time beyond the hold is left out.
+    /// Times at which R(t) = (F₀ − F(t))/F₀ is stated, such as ["30 s", "1 min"]; of 1 s to 24 h those that a hold reaches, if omitted.
     relaxation_at: Option<Vec<QuantityText>>,
 }
 
 /// The conditions in SI.
 pub(crate) fn checked(source: &Source<'_>, table: &ConditionsTable) -> Result<Conditions, DescriptionError> {
-    let usual = Conditions::default();
     let humidity =
         source.positive_if("conditions.relative_humidity", table.relative_humidity.as_ref(), Dimension::Share)?;
     if let Some(text) = table.relative_humidity.as_ref().filter(|_| humidity.is_some_and(|share| share > 1.0)) {
@@ -49,10 +48,12 @@ pub(crate) fn checked(source: &Source<'_>, table: &ConditionsTable) -> Result<Co
         let key = format!("conditions.relaxation_at[{}]", index + 1);
         source.positive(&key, text, Dimension::Time)
     };
-    let times = |texts: &Vec<QuantityText>| texts.iter().enumerate().map(time).collect::<Result<Vec<f64>, _>>();
-    let mut relaxation_at = table.relaxation_at.as_ref().map(times).transpose()?.unwrap_or(usual.relaxation_at);
-    relaxation_at.sort_by(f64::total_cmp);
-    relaxation_at.dedup();
+    let times = |texts: &Vec<QuantityText>| {
+        let mut times = texts.iter().enumerate().map(time).collect::<Result<Vec<f64>, _>>()?;
+        times.sort_by(f64::total_cmp);
+        times.dedup();
+        Ok::<_, DescriptionError>(times)
+    };
     Ok(Conditions {
         temperature: table.temperature.as_deref().map(|text| temperature(source, text)).transpose()?,
         relative_humidity: humidity,
@@ -60,8 +61,8 @@ pub(crate) fn checked(source: &Source<'_>, table: &ConditionsTable) -> Result<Co
         conditioning: table.conditioning.clone(),
         specimen_form: table.specimen_form.clone(),
         lubricant: table.lubricant.clone(),
-        initial_force_after: after.unwrap_or(usual.initial_force_after),
-        relaxation_at,
+        initial_force_after: after.unwrap_or_default(),
+        relaxation_at: table.relaxation_at.as_ref().map(times).transpose()?,
     })
 }
 

@@ -86,7 +86,7 @@ fn explanations(study: &Reproduction) -> Table {
         .column("Root mean square difference", "rms_difference", "", |row| Cell::Number(row.rms, 2))
         .table()
         .note(format!("Table I has {}.", printed.join(", ")))
-        .note("Contact area: what is computed with (7) becomes smaller if the contact is smaller, the wrong way. Modulus: no single one serves, since the strains are not proportional to the displacement. Finite layers and holds: the excess left after a hold is at most ((n − 1) v t)^(−1/(n − 1)), whatever m. Hertz's force with another modulus, and a first touch that was missed with another modulus, come nearest; which of them it was, the paper's numbers cannot tell. Not tried: errors of the fits by rates, whose εₑ in Table S5's laboratories differ between loading and unloading.")
+        .note("Contact area: what is computed with (7) becomes smaller if the contact is smaller, the wrong way. Modulus: no single one serves, since the strains are not proportional to the displacement. Finite layers and holds: the excess left after a hold is at most ((n − 1) v t)^(−1/(n − 1)), whatever m. Hertz's force with another modulus, and a first touch that was missed with another modulus, come nearest; which of them it was, the paper's numbers cannot tell. Not tried: errors of the fits by rates, whose εₑ laboratories find to differ between loading and unloading (Table S4).")
 }
 
 fn last_unloading(study: &Reproduction) -> Table {

@@ -5,7 +5,7 @@ use crate::fit::{Estimate, LatencyFit};
 use crate::paper::study::loaded;
 use crate::paper::{Claim, Comparison, Evidence, Place, Relation};
 use crate::segment::{After, RelaxationType};
-use crate::statistics::noise;
+use crate::statistics::{noise, normal_factor};
 
 use super::{millimetres, sorted};
 
@@ -13,8 +13,8 @@ use super::{millimetres, sorted};
 const ORDER: f64 = 5.0;
 /// Two displacements are the same up to this share of the larger.
 const SAME: f64 = 0.02;
-/// Half of a 95 % interval in standard errors.
-const COVERAGE: f64 = 1.959_963_984_540_054;
+/// Coverage of the intervals that verdicts go by.
+const CONFIDENCE: f64 = 0.95;
 /// Two equilibrium strains agree if they differ by no more than this, in percent.
 const AGREES: f64 = 10.0;
 /// Difference of an information criterion that is evidence.
@@ -69,7 +69,13 @@ fn has_strain(analysis: &Analysis) -> bool {
 }
 
 const NO_STRAIN: &str = "The record has no strain: its description lacks the body, or its columns the displacement.";
-const FEW: &str = "Fewer than two displacements are held after loading and fitted with n = 5.";
+const FEW: &str =
+    "Fewer than two displacements are held after loading and fitted with n = 5 and an error that the data determine.";
+
+/// Half of an interval of a number with this standard error.
+fn half(standard_error: f64) -> f64 {
+    normal_factor(CONFIDENCE) * standard_error
+}
 
 fn types(analysis: &Analysis, which: After) -> Claim {
     let (statement, kind, quantity) = match which {
@@ -93,8 +99,8 @@ fn types(analysis: &Analysis, which: After) -> Claim {
     claim.compared([Comparison::all(quantity, found, holds.len())])
 }
 
-/// The sum of an information criterion over all holds, less its least, with a free exponent.
-fn free_order(analysis: &Analysis) -> Option<f64> {
+/// The information criterion of n = 5 less that of a free exponent, summed over all holds.
+fn against_free(analysis: &Analysis) -> Option<f64> {
     let of_hold = |hold: &HoldAnalysis| {
         let candidates = &hold.order.as_ref()?.candidates;
         let five = candidates.iter().find(|one| !one.free && one.exponent == ORDER)?;
@@ -117,7 +123,7 @@ fn order(analysis: &Analysis) -> Claim {
         .filter(|(_, delta)| *delta <= EVIDENCE)
         .map(|(n, _)| n.to_string())
         .collect();
-    let free = free_order(analysis).map(|more| {
+    let free = against_free(analysis).map(|more| {
         Comparison::new(
             "summed information criterion of n = 5 less that of a free n, which pays for its further parameter",
             "",
@@ -158,7 +164,7 @@ fn stepwise(analysis: &Analysis) -> Claim {
     }
     let level = |(hold, fit): &(&HoldAnalysis, &LatencyFit)| {
         let found = fit.equilibrium();
-        Some((hold.displacement?, found.value, COVERAGE * found.standard_error?))
+        Some((hold.displacement?, found.value, half(found.standard_error?)))
     };
     let levels: Vec<_> = by_displacement(fitted(analysis, After::Loading)).iter().filter_map(level).collect();
     if levels.len() < 2 {
@@ -172,7 +178,7 @@ fn falling(analysis: &Analysis) -> Claim {
         .shown_by(Evidence::Figure("rate_coefficients"));
     let level = |(hold, fit): &(&HoldAnalysis, &LatencyFit)| {
         let v = fit.rate_coefficient();
-        Some((hold.displacement?, -v.value.ln(), COVERAGE * v.standard_error? / v.value))
+        Some((hold.displacement?, -v.value.ln(), half(v.standard_error? / v.value)))
     };
     let levels: Vec<_> = by_displacement(fitted(analysis, After::Loading)).iter().filter_map(level).collect();
     if levels.len() < 2 {
@@ -215,10 +221,7 @@ fn agreeing(analysis: &Analysis) -> Claim {
                 (
                     0.0,
                     Relation::AtMost,
-                    (
-                        percent * (a.value - b.value).abs(),
-                        percent * COVERAGE * a.standard_error?.hypot(b.standard_error?),
-                    ),
+                    (percent * (a.value - b.value).abs(), half(percent * a.standard_error?.hypot(b.standard_error?))),
                 ),
                 (AGREES, "the whole 95 % interval has to be below a tenth of εₑ"),
             ))
@@ -237,7 +240,7 @@ fn amounts(analysis: &Analysis) -> Claim {
             .shown_by(Evidence::Figure("figure_4"));
     let level = |hold: &HoldAnalysis| {
         let force = &analysis.record.force()[hold.segment.start..hold.segment.end];
-        let error = COVERAGE * std::f64::consts::SQRT_2 * noise(force);
+        let error = half(std::f64::consts::SQRT_2 * noise(force));
         Some((hold.displacement?, hold.force_start - hold.force_end, error))
     };
     let mut levels: Vec<_> = after(analysis, After::Loading).into_iter().filter_map(level).collect();

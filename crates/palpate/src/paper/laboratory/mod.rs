@@ -13,7 +13,7 @@ pub use ball::Ball;
 use serde::Serialize;
 
 use crate::parallel::for_each;
-use crate::statistics::median;
+use crate::statistics::{median, normal_factor};
 use crate::watch::{Progress, Watch};
 
 use super::published::STEPS;
@@ -172,10 +172,10 @@ impl Share {
     /// ```
     #[must_use]
     pub fn interval(self) -> (f64, f64) {
-        const Z: f64 = 1.959_963_984_540_054;
+        let z = normal_factor(0.95);
         let (n, p) = (self.of as f64, self.value());
-        let middle = (p + Z * Z / (2.0 * n)) / (1.0 + Z * Z / n);
-        let half = Z / (1.0 + Z * Z / n) * (p * (1.0 - p) / n + Z * Z / (4.0 * n * n)).sqrt();
+        let middle = (p + z * z / (2.0 * n)) / (1.0 + z * z / n);
+        let half = z / (1.0 + z * z / n) * (p * (1.0 - p) / n + z * z / (4.0 * n * n)).sqrt();
         ((middle - half).max(0.0), (middle + half).min(1.0))
     }
 }

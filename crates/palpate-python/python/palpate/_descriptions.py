@@ -1,0 +1,45 @@
+"""Descriptions of tests, bodies and protocols, as Python states them: paths, mappings, and materials."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Mapping
+from typing import Any, Union
+
+from palpate._palpate import Material, OptionError, mapping_text
+
+Description = Union[str, os.PathLike[str], Mapping[str, Any], Material, None]
+
+
+def described(test: Description) -> tuple[str | os.PathLike[str] | None, str | None]:
+    """A description as a path or as the text of one; a mapping has the tables of the file."""
+    if isinstance(test, Mapping):
+        return None, toml(test)
+    if isinstance(test, Material):
+        return None, test.to_toml()
+    return test, None
+
+
+def driven(protocol: Any) -> tuple[str | os.PathLike[str] | None, str | None]:
+    """A protocol of a body that is known, which may be its steps alone."""
+    return described({"step": protocol} if isinstance(protocol, (list, tuple)) else protocol)
+
+
+def _with_body(table: Mapping[str, Any]) -> Mapping[str, Any]:
+    """A protocol whose ``material`` is one in memory, with the tables of that body."""
+    material = table.get("material")
+    if not isinstance(material, Material):
+        return table
+    import tomllib
+
+    tables = ("specimen", "law", "contact")
+    for name in tables:
+        if name in table:
+            raise OptionError(f"{name}: expected either this or material, found both\nhint: remove {name} or material")
+    body = tomllib.loads(material.to_toml())
+    return {**{name: table[name] for name in table if name != "material"}, **{name: body[name] for name in tables}}
+
+
+def toml(table: Mapping[str, Any]) -> str:
+    """A mapping as the text of a description."""
+    return mapping_text(_with_body(table))

@@ -1,0 +1,278 @@
+"""Laws fitted to one hold, and to many."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Any, Union, overload
+
+from palpate import _arrays, _long, _palpate
+from palpate._options import Intervals, LawName, Loss, Missing, Noise, Response
+from palpate._palpate import Fit, OptionError, Table
+from palpate._progress import bar
+
+#: Lower and upper end of what a number may be; None leaves an end open.
+Bound = Union[tuple[Union[float, None], Union[float, None]], Sequence[Union[float, None]]]
+
+
+def _number(value: Any, name: str) -> float:
+    if isinstance(value, (bool, str)) or not hasattr(value, "__float__"):
+        raise OptionError(f"{name}: expected a number, found {value!r}")
+    try:
+        return float(value)
+    except (TypeError, ValueError):
+        raise OptionError(f"{name}: expected a number, found {value!r}") from None
+
+
+def _named(values: Any, name: str, example: str) -> list[tuple[str, Any]]:
+    if not isinstance(values, Mapping):
+        raise OptionError(f"{name}: expected numbers by name, such as {example}, found {values!r}")
+    return [(str(key), value) for key, value in values.items()]
+
+
+def _ends(pair: Any, name: str) -> tuple[float, float]:
+    """Both ends of a bound; one that is None is left open."""
+    if isinstance(pair, str) or not hasattr(pair, "__len__") or len(pair) != 2:
+        raise OptionError(f"{name}: expected a lower and an upper end, found {pair!r}")
+    low, high = pair
+    return (
+        float("-inf") if low is None else _number(low, name),
+        float("inf") if high is None else _number(high, name),
+    )
+
+
+def _keywords(
+    law: str,
+    response: str,
+    fixed: Mapping[str, float] | None,
+    bounds: Mapping[str, Bound] | None,
+    loss: str,
+    noise: str,
+    confidence: float,
+    log_spaced: int | None,
+    intervals: str,
+    nan: str,
+) -> dict[str, Any]:
+    words = {"law": law, "response": response, "loss": loss, "noise": noise, "intervals": intervals, "nan": nan}
+    for name, word in words.items():
+        if not isinstance(word, str):
+            raise OptionError(f"{name}: expected a word, found {word!r}")
+    held = _named(fixed, "fixed", '{"exponent": 5}') if fixed is not None else None
+    bounded = _named(bounds, "bounds", '{"exponent": (1, 10)}') if bounds is not None else None
+    if log_spaced is not None and (isinstance(log_spaced, bool) or not hasattr(log_spaced, "__index__") or log_spaced < 1):
+        raise OptionError(f"log_spaced: expected a number of samples, found {log_spaced!r}")
+    return {
+        **words,
+        "fixed": held and [(name, _number(value, f'fixed["{name}"]')) for name, value in held],
+        "bounds": bounded and [(name, _ends(pair, f'bounds["{name}"]')) for name, pair in bounded],
+        "confidence": _number(confidence, "confidence"),
+        "log_spaced": log_spaced,
+    }
+
+
+def fit_hold(
+    time_s: Any,
+    signal: Any,
+    *,
+    law: LawName = "latency",
+    weights: Any = None,
+    response: Response = "relaxation",
+    fixed: Mapping[str, float] | None = None,
+    bounds: Mapping[str, Bound] | None = None,
+    loss: Loss = "squares",
+    noise: Noise = "residuals",
+    confidence: float = 0.95,
+    log_spaced: int | None = None,
+    intervals: Intervals = "automatic",
+    nan: Missing = "raise",
+) -> Fit:
+    """Fit a law to one hold; no starting values.
+
+    The latency law is y(t) = y_e + D (1 + (n - 1) l t)^(-1/(n - 1)), equations (4) and (5) of Tsai, Kao et al.; for given
+    (l, n) it is linear in (y_e, D), which are solved for, and (ln l, n) are searched.
+
+    Parameters
+    ----------
+    time_s : array_like, shape (N,)
+        Times in s, rising; the first is the start of the hold. Durations are times too, and so are dates: seconds since the first.
+    signal : array_like, shape (N,)
+        Force, stress or strain (displacement or strain for creep), in any unit; quantities of pint are converted to SI.
+    law
+        A name of ``palpate.laws.names()``: "latency" (n found), "latency:5", "standard-linear-solid", "prony:2", ...
+    weights : array_like, shape (N,), optional
+        1/sigma of every sample, as in lmfit; 0 leaves one out.
+    response
+        "relaxation" or "creep".
+    fixed
+        Numbers held at a value, by name: ``{"exponent": 5, "equilibrium": 0}``; all but amplitudes.
+    bounds
+        Bounds of numbers, by name: ``{"exponent": (1, 10)}``; None leaves an end open.
+    loss
+        "squares", or "huber" or "tukey" where single samples stray.
+    noise
+        What intervals take the noise for: what the "residuals" show, or "white".
+    confidence
+        Coverage of the intervals, between 0 and 1.
+    log_spaced
+        Fit about this many samples, equally spaced in ln t.
+    intervals
+        Method of the intervals: "curvature" at the optimum, "profile" of the residual square, asymmetric and open where the
+        data do not close it, "bootstrap", residuals resampled in blocks, or "automatic": the profile where
+        an interval of curvature is wider than a third of its parameter to a side (a tenth, if a time constant is longer than
+        the hold), and where terms merge or vanish.
+    nan
+        Samples without a time, a value or a weight (NaN, None, masked) "raise" an error, or "omit" leaves them out.
+
+    Returns
+    -------
+    Fit
+        Estimates with errors and intervals, covariance, why it ended, and the samples.
+
+    Raises
+    ------
+    FitError
+        Too few samples, times that do not rise, values that are not finite or all the same.
+    OptionError
+        A law, a number or an option that is not known; a number held or bounded where it cannot be.
+
+    Examples
+    --------
+    >>> import numpy as np, palpate
+    >>> t = np.linspace(0.0, 40.0, 400)
+    >>> fit = palpate.fit_hold(t, 1 + 2 * np.exp(-t / 8), law="standard-linear-solid")
+    >>> round(fit.parameters["time_constant_s"], 6)
+    8.0
+    """
+    keywords = _keywords(law, response, fixed, bounds, loss, noise, confidence, log_spaced, intervals, nan)
+    if nan == "omit":
+        time_s, signal = _arrays.as_doubles(time_s, "time_s", True), _arrays.as_doubles(signal, "signal", True)
+        weights = None if weights is None else _arrays.as_doubles(weights, "weights", True)
+    return _palpate.fit_hold(time_s, signal, weights, keywords)
+
+
+@overload
+def fit_many(
+    time_s: Any,
+    signal: Any,
+    *,
+    law: LawName = "latency",
+    weights: Any = None,
+    response: Response = "relaxation",
+    fixed: Mapping[str, float] | None = None,
+    bounds: Mapping[str, Bound] | None = None,
+    loss: Loss = "squares",
+    noise: Noise = "residuals",
+    confidence: float = 0.95,
+    log_spaced: int | None = None,
+    intervals: Intervals = "automatic",
+    nan: Missing = "raise",
+    progress: bool | None = None,
+) -> Table: ...
+@overload
+def fit_many(
+    table: Any,
+    /,
+    *,
+    by: str | Sequence[str],
+    time: str,
+    signal: str,
+    law: LawName = "latency",
+    weights: str | None = None,
+    response: Response = "relaxation",
+    fixed: Mapping[str, float] | None = None,
+    bounds: Mapping[str, Bound] | None = None,
+    loss: Loss = "squares",
+    noise: Noise = "residuals",
+    confidence: float = 0.95,
+    log_spaced: int | None = None,
+    intervals: Intervals = "automatic",
+    nan: Missing = "raise",
+    progress: bool | None = None,
+) -> Table: ...
+def fit_many(
+    time_s: Any,
+    signal: Any = None,
+    *,
+    by: str | Sequence[str] | None = None,
+    time: str | None = None,
+    law: LawName = "latency",
+    weights: Any = None,
+    response: Response = "relaxation",
+    fixed: Mapping[str, float] | None = None,
+    bounds: Mapping[str, Bound] | None = None,
+    loss: Loss = "squares",
+    noise: Noise = "residuals",
+    confidence: float = 0.95,
+    log_spaced: int | None = None,
+    intervals: Intervals = "automatic",
+    nan: Missing = "raise",
+    progress: bool | None = None,
+) -> Table:
+    """Fit a law to many holds, on all processors and without the GIL.
+
+    Parameters
+    ----------
+    time_s, signal, weights
+        A list of arrays of any lengths, an array of shape (curves, samples), of NumPy or xarray, or a column of lists in Arrow
+        (pyarrow, polars). One column of times, or of weights, stands for all curves. With `by`, `time_s` is a long table of pandas,
+        polars or pyarrow, a row a sample, and `time`, `signal` and `weights` are names of its columns.
+    by
+        Name of the column that tells the curves of a long table apart, or several names.
+    time
+        Name of its column of times, in s, dates or durations.
+    law, response, fixed, bounds, loss, noise, confidence, log_spaced, intervals, nan
+        As for `fit_hold`; ``nan="omit"`` takes rows that are padded with NaN to one length.
+    progress
+        Whether to show a bar of tqdm; if left out, where tqdm is there, standard error is a terminal and it takes a while.
+
+    Returns
+    -------
+    Table
+        A row a curve, in order: every number with its standard error and interval, root mean square residual, ending. A curve
+        that no law can be fitted to, or that is no column of numbers, says why in ``error``, and its numbers are missing. The curves
+        of a long table stand in the order in which they first appear, with the columns of `by`.
+
+    Raises
+    ------
+    OptionError
+        As for `fit_hold`; no list of curves; times or weights that are meant for all curves and are none; a column that there is
+        not, or a row without a label.
+
+    Examples
+    --------
+    >>> import numpy as np, palpate
+    >>> t = np.linspace(0.0, 40.0, 100)
+    >>> samples = {
+    ...     "specimen": ["a"] * 100 + ["b"] * 100,
+    ...     "t": np.concatenate([t, t]),
+    ...     "force": np.concatenate([1 + 2 * np.exp(-t / 8), 1 + np.exp(-t / 5)]),
+    ... }
+    >>> fits = palpate.fit_many(samples, by="specimen", time="t", signal="force", law="standard-linear-solid")
+    >>> fits["specimen"], fits["time_constant_s"].round(3).tolist()
+    (['a', 'b'], [8.0, 5.0])
+    """
+    keywords = _keywords(law, response, fixed, bounds, loss, noise, confidence, log_spaced, intervals, nan)
+    labels: _long.Labels = {}
+    if by is not None:
+        names = {"time": time, "signal": signal, "weights": weights}
+        for name, found in names.items():
+            if not isinstance(found, str) and not (name == "weights" and found is None):
+                raise OptionError(f"{name}: expected the name of a column beside by, found {type(found).__name__}")
+        labels, columns = _long.curves(time_s, by, [name for name in names.values() if name is not None])
+        time_s, signal, weights = (*columns, None)[:3]
+    elif time is not None:
+        raise OptionError("time: expected by beside it, the column that tells curves apart\nhint: by=\"...\"")
+    given = {"time_s": time_s, "signal": signal, "weights": weights}
+    for name, found in given.items():
+        if isinstance(found, Mapping):
+            raise OptionError(f"{name}: expected a list of curves, found a mapping\nhint: pass list(curves.values()), or a long table with by=")
+        if found is None and name != "weights":
+            raise OptionError(f"{name}: expected a list of curves, found None")
+    if hasattr(signal, "dims") and len(getattr(time_s, "dims", ())) == 1 and time_s.dims[0] in signal.dims:
+        # Dimensions of xarray have names: a curve goes along that of the times.
+        signal = signal.transpose(..., time_s.dims[0])
+    curves = len(signal) if hasattr(signal, "__len__") else 0
+    with bar(progress, curves, "fit") as tell:
+        table = _palpate.fit_many(time_s, signal, weights, keywords, tell)
+    for name, values in reversed(labels.items()):
+        table = table._labelled(name, values)
+    return table
