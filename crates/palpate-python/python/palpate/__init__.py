@@ -59,7 +59,6 @@ from palpate._palpate import (
     watch,
 )
 from palpate._palpate import __version__ as __version__
-from palpate._palpate import __version__ as __version__
 from palpate.protocols import Law, Protocol, Specimen, Step
 
 __all__ = [
