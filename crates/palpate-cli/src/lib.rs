@@ -70,6 +70,8 @@ where
         Command::Reproduce(arguments) => commands::reproduce::run(&arguments),
         Command::Simulate(arguments) => commands::simulate::run(&arguments),
         Command::Sweep(arguments) => commands::sweep::run(&arguments),
+        #[cfg(feature = "lab")]
+        Command::Lab(arguments) => commands::lab::run(&arguments),
         Command::Inspect(arguments) => commands::inspect::run(&arguments),
         Command::Analyze(arguments) => commands::analyze::run(&arguments),
         Command::Batch(arguments) => commands::batch::run(&arguments),

@@ -3,11 +3,13 @@
 use std::path::Path;
 
 use palpate::calibrate::Material;
-use palpate::grip::{Band, Control, Grasp, Grip, GripError, Limits, Objective, Question, Regrip, STANDARD_GRAVITY};
-use palpate::watch::Watch;
+use palpate::grip::{
+    Band, Control, Grasp, Grip, GripError, Limits, Objective, Plan, Question, Regrip, STANDARD_GRAVITY,
+};
+use palpate::watch::{Progress, Watch};
 use palpate_files::description::{MaterialFile, parse_material, read_text};
 use palpate_report::document::GripDocument;
-use palpate_report::result::GrippedBody;
+use palpate_report::result::{GrippedBody, TriedSqueeze};
 use palpate_report::study::grip_text;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -322,6 +324,31 @@ impl PlanGrip {
             answer,
         };
         Ok(Outcome::of(result).answered(holds).noted(notes))
+    }
+}
+
+impl PlanGrip {
+    /// Only whether the squeeze that is stated holds as long as is stated, with the course of the force: quick enough to follow a person who
+    /// moves a slider.
+    ///
+    /// # Errors
+    /// [`JobError`] where squeeze or time are not stated, or the gripper may not take the squeeze.
+    pub fn try_squeeze(&self, source: &MaterialSource, watch: &mut dyn Watch) -> Result<TriedSqueeze, JobError> {
+        /// Samples of the course, a step.
+        const SAMPLES: usize = 80;
+        let (Some(squeeze), Some(duration), Control::Position) = (self.squeeze_m, self.hold_s, self.control) else {
+            return Err(JobError::option(
+                "⟨squeeze⟩ and ⟨hold⟩ are needed to try a squeeze whose displacement is held",
+                "",
+            ));
+        };
+        checked_confidence(self.confidence)?;
+        let grip = self.gripper(&source.file.material).map_err(|error| ungripped(&error))?;
+        let plan = Plan::squeeze(squeeze, grip.limits().speed);
+        watch.report(Progress::open("trying a squeeze", 0))?;
+        let course = grip.course(&plan, duration, SAMPLES).map_err(|error| ungripped(&error))?;
+        let probability = grip.probability(&plan, duration).map_err(|error| ungripped(&error))?;
+        Ok(TriedSqueeze::new(&grip, squeeze, duration, (course, probability, self.confidence)))
     }
 }
 

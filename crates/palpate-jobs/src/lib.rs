@@ -45,7 +45,7 @@ mod watch_log;
 mod written_by_batch;
 
 pub use analyze::{Analyze, Analyzed};
-pub use batch::{Batch, BatchAnswer, Batched, CurveMap, Refused, Spread};
+pub use batch::{Batch, BatchAnswer, Batched, BatchedTest, CurveMap, Refused, Spread};
 pub use calibrate::{Calibrate, Calibrated, Equilibrium};
 pub use calibrate_several::{CalibrateSeveral, CalibratedSeveral};
 pub use compare::{Compare, Compared};
@@ -53,7 +53,10 @@ pub use convert::{Convert, Converted};
 pub use depends::BUILD;
 pub use error::{ErrorKind, JobError};
 pub use grip::{MaterialSource, PlanGrip, RegripFor};
-pub use inspect::{Inspect, Inspected, machines_text};
+pub use inspect::{
+    ColumnRole, Inspect, Inspected, InspectedColumn, InspectedRecord, InspectedTest, InspectionDocument, PhaseDocument,
+    RefusalDocument, SkippedDocument, machines_text,
+};
 pub use outcome::{Outcome, Results, Verdict};
 pub use predict::{Predict, Predicted};
 pub use report_index::{ReportIndex, write_reports};

@@ -136,7 +136,8 @@ pub(crate) fn inspect(
     let (file, described) = (record_file(path, name)?, described_with(test, part, columns)?);
     job(py, move |watch| {
         let found = Inspect::default().run(&OpenedFile::named(&file, &described)?, watch)?.result;
-        found.refused.map_or(Ok(found.text), Err)
+        let text = found.text();
+        found.refused.map_or(Ok(text), Err)
     })
 }
 

@@ -10,6 +10,8 @@ mod contacts;
 mod files;
 mod records;
 
+use std::path::PathBuf;
+
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use palpate_files::description::{schema_material, schema_protocol, schema_test};
 use palpate_jobs as jobs;
@@ -61,6 +63,7 @@ const AFTER_HELP: &str = "\
 Examples:
   palpate reproduce                              the paper, claim by claim
   palpate inspect test.csv                       columns, units and phases of a record
+  palpate lab                                    all of it in the browser: drop a file
   palpate analyze test.csv --out study           phases, laws, tables, figures, report.html
   palpate analyze test.csv --test ball.toml      with geometry: also strains, and v in 1/s
   palpate batch curves --out holds.parquet       thousands of records, one table
@@ -80,6 +83,8 @@ pub(crate) enum Command {
     Reproduce(ReproduceArguments),
     Simulate(SimulateArguments),
     Sweep(SweepArguments),
+    #[cfg(feature = "lab")]
+    Lab(LabArguments),
     Inspect(InspectArguments),
     Analyze(AnalyzeArguments),
     Batch(BatchArguments),
@@ -91,6 +96,32 @@ pub(crate) enum Command {
     Convert(ConvertArguments),
     Schema(SchemaArguments),
     Completions(CompletionsArguments),
+}
+
+/// Open the lab in the browser: drop records, correct columns, holds and geometry, read laws, plan grips.
+///
+/// The page is served by this process on the loopback interface of this machine, to whoever has its address, until Ctrl-C.
+#[cfg(feature = "lab")]
+#[derive(Debug, Args)]
+#[command(after_help = "\
+Without a folder the records that are dropped lie in a temporary one, which is removed at the end.
+With a folder they are copied there; descriptions are written beside them (press.csv.test.toml), and
+materials (press.material.toml). No other file is changed.
+
+Examples:
+  palpate lab                       drop files onto the page
+  palpate lab measurements          the records in a folder
+  palpate lab --no-open --port 8080 prints the address, for a browser that is opened by hand")]
+pub(crate) struct LabArguments {
+    /// Folder of the records; a temporary one if not given
+    #[arg(value_name = "FOLDER")]
+    pub(crate) folder: Option<PathBuf>,
+    /// Port of the loopback interface; a free one if not given
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
+    pub(crate) port: Option<u16>,
+    /// Print the address, and open no browser
+    #[arg(long)]
+    pub(crate) no_open: bool,
 }
 
 /// Output of `analyze` on standard output.
@@ -126,6 +157,7 @@ const SCHEMAS: &[Choice<fn() -> Value>] = &[
     ("protocol", "Protocol of `palpate simulate`", schema_protocol),
     ("test", "Test description of `palpate analyze`", schema_test),
     ("material", "Material file of `palpate calibrate`", schema_material),
+    ("inspection", "Result of `palpate inspect --format json`", schema::<jobs::InspectionDocument>),
     ("analysis", "Result of `palpate analyze --format json`", schema::<AnalysisDocument>),
     ("calibration", "Result of `palpate calibrate --format json`", schema::<CalibrationDocument>),
     (

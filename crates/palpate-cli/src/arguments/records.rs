@@ -76,7 +76,7 @@ pub(crate) struct InspectArguments {
     #[arg(value_name = "RECORD", required_unless_present = "machines")]
     pub(crate) record: Option<PathBuf>,
     /// List the machines and grippers that a test description can name, and exit
-    #[arg(long, conflicts_with_all = ["record", "test", "columns", "part", "then", "figure", "write_test"])]
+    #[arg(long, conflicts_with_all = ["record", "test", "columns", "part", "then", "figure", "write_test", "format"])]
     pub(crate) machines: bool,
     #[command(flatten)]
     pub(crate) described: DescribedArguments,
@@ -86,6 +86,9 @@ pub(crate) struct InspectArguments {
     /// File for a draft test description, with each guess commented; an existing file is not overwritten
     #[arg(long, value_name = "TEST.toml")]
     pub(crate) write_test: Option<PathBuf>,
+    /// Format of standard output
+    #[arg(long, value_enum, default_value_t = Format::Text)]
+    pub(crate) format: Format,
 }
 
 /// Convert a record of any format to a plain table in SI units, with its provenance.

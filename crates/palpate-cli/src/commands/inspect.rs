@@ -2,9 +2,9 @@
 
 use palpate_jobs::input::OpenedFile;
 use palpate_jobs::output::{check_figure, check_new, keep_apart, picture, write_file};
-use palpate_jobs::{Inspect, JobError, Verdict, machines_text};
+use palpate_jobs::{Inspect, JobError, Results, Verdict, machines_text};
 
-use crate::arguments::InspectArguments;
+use crate::arguments::{Format, InspectArguments};
 use crate::progress::Bars;
 use crate::terminal::{note, notes, print};
 
@@ -37,6 +37,9 @@ pub(crate) fn run(requested: &InspectArguments) -> Result<Verdict, JobError> {
         Ok(())
     };
     let written = written();
-    print(&found.text)?;
+    print(&match requested.format {
+        Format::Text => found.text(),
+        Format::Json => found.json()?,
+    })?;
     written.and(found.refused.map_or(Ok(outcome.verdict), Err))
 }

@@ -8,6 +8,8 @@ pub(crate) mod completions;
 pub(crate) mod convert;
 pub(crate) mod grip;
 pub(crate) mod inspect;
+#[cfg(feature = "lab")]
+pub(crate) mod lab;
 pub(crate) mod predict;
 pub(crate) mod reproduce;
 pub(crate) mod schema;

@@ -272,7 +272,8 @@ fn nothing_opens_a_connection_or_starts_a_program() {
     let python = ["subprocess", "socket", "urllib", "os.system"];
     let sources = files("crates", "rs")
         .into_iter()
-        .filter(|path| path.contains("/src/"))
+        // The lab is a server, and says in SECURITY.md what it answers.
+        .filter(|path| path.contains("/src/") && !path.contains("crates/palpate-lab/"))
         .map(|path| (path, &rust[..]));
     let scripts = files("crates/palpate-python/python", "py").into_iter().map(|path| (path, &python[..]));
     for (path, forbidden) in sources.chain(scripts) {

@@ -14,10 +14,12 @@
 //! | `test/` | a test: its record, its body, how to evaluate it ([`TestDescription`]); known machines ([`machines`]) |
 //! | `material/` | a calibrated body with its intervals ([`MaterialFile`]), read and written |
 //! | `protocol/` | a protocol: body, law and steps of the jaw ([`Protocol`]) |
+//! | `edit.rs` | changes to the text of a description ([`edit_test`]) |
 //! | `sweep/` | numbers of a protocol replaced by many ([`Sweep`]) |
 //! | `schema.rs` | JSON Schemas for editors |
 
 mod body;
+mod edit;
 mod material;
 mod protocol;
 mod schema;
@@ -26,6 +28,8 @@ mod test;
 mod text;
 mod uncertainty;
 
+pub use body::{ShapeAbout, shapes};
+pub use edit::{Edit, edit_test};
 pub use material::{MATERIAL_VERSION, MaterialFile, MaterialOrigin, parse_material, read_material};
 pub use protocol::{
     Protocol, parse_protocol, parse_protocol_of, parse_scene, read_protocol, read_protocol_of, read_protocol_text,

@@ -29,7 +29,7 @@ pub enum Quantity {
 
 impl Quantity {
     /// All of them.
-    pub(crate) const ALL: [Self; 9] = [
+    pub const ALL: [Self; 9] = [
         Self::Time,
         Self::Displacement,
         Self::Force,

@@ -42,6 +42,11 @@ impl CurveMap {
         self.positions.is_empty()
     }
 
+    /// Names of the quantities that some curve has a value of.
+    pub fn quantities(&self) -> impl Iterator<Item = &str> {
+        self.quantities.keys().map(String::as_str)
+    }
+
     /// Takes the curves of a file.
     pub(super) fn add(&mut self, entry: &Entry) {
         let fields = rows::fields();

@@ -124,6 +124,19 @@ pub struct Refused {
     pub hint: Option<String>,
 }
 
+/// A test of a file, analysed, with its rows of the table by the names of the columns; none where it was refused.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct BatchedTest {
+    /// Its number among the tests of the file, from 0.
+    pub index: usize,
+    /// What the file calls it.
+    pub name: Option<String>,
+    /// A row per hold and law, as the table has them.
+    pub rows: Vec<serde_json::Map<String, Value>>,
+    /// Why it has none.
+    pub refused: Option<Refused>,
+}
+
 /// What came of one file.
 #[derive(Debug, Default, Serialize, Deserialize)]
 struct Entry {
@@ -186,6 +199,36 @@ impl Batch {
         Ok(Outcome::of(batched).answered(all).noted(notes))
     }
 
+    /// Analyses every test of one file without writing a table: `take` gets each as soon as it is done, in the order of the file. Returns the
+    /// curves that have a position.
+    ///
+    /// # Errors
+    /// [`JobError`] where the watch ends it. A test that fails stops no other.
+    pub fn each_test(
+        &self,
+        opened: &OpenedFile<'_>,
+        watch: &mut dyn Watch,
+        mut take: impl FnMut(BatchedTest),
+    ) -> Result<CurveMap, JobError> {
+        let (options, fields) = (self.options(opened.described), rows::fields());
+        let (mut map, total) = (CurveMap::default(), opened.tests.parts.len());
+        for (index, part) in opened.tests.parts.iter().enumerate() {
+            watch.report(Progress::counted("analysing", index, total))?;
+            let mut entry = Entry::default();
+            entry.take(document(opened, *part, &options, watch))?;
+            map.add(&entry);
+            let named = |row: Vec<Value>| fields.iter().map(|field| field.name.clone()).zip(row).collect();
+            take(BatchedTest {
+                index,
+                name: opened.name(*part).map(str::to_owned),
+                rows: entry.rows.into_iter().map(named).collect(),
+                refused: entry.failures.pop(),
+            });
+        }
+        watch.report(Progress::counted("analysing", total, total))?;
+        Ok(map)
+    }
+
     fn options(&self, described: &Described) -> AnalysisOptions {
         let mut options = described.options();
         options.fit_until = self.fit_until_s.or(options.fit_until);
@@ -223,17 +266,7 @@ fn file(
         Ok(opened) => {
             entry.tests = opened.tests.parts.len();
             for part in &opened.tests.parts {
-                match document(&opened, *part, options, share) {
-                    Ok(document) => {
-                        entry.rows.extend(rows::rows(&document));
-                        entry.parameters.extend(parameters::rows(&document));
-                    }
-                    Err(error) if error.kind == ErrorKind::Cancelled => return Err(error),
-                    Err(error) => {
-                        is_lasting &= !matches!(error.kind, ErrorKind::File(_));
-                        entry.failures.push(Refused::from(error));
-                    }
-                }
+                is_lasting &= entry.take(document(&opened, *part, options, &mut share))?;
             }
         }
         Err(error) => {
@@ -242,7 +275,6 @@ fn file(
             entry.failures.push(Refused::from(error));
         }
     }
-    // What the operating system refused once it may give the next time.
     let key = if is_lasting { key } else { format!("- {}", path.display()) };
     Ok((store.add(&key, &serde_json::to_vec(&entry)?)?, false))
 }
@@ -251,12 +283,31 @@ fn document(
     opened: &OpenedFile<'_>,
     part: usize,
     options: &AnalysisOptions,
-    mut share: Share<'_>,
+    watch: &mut dyn Watch,
 ) -> Result<AnalysisDocument, JobError> {
-    let measured = opened.measurement(part, &mut share)?;
-    let analysis = examine(&measured.record, options, &mut share)
+    let measured = opened.measurement(part, watch)?;
+    let analysis = examine(&measured.record, options, watch)
         .map_err(|error| JobError::analysis(&error, &measured.input.called()))?;
     Ok(AnalysisDocument::new(&analysis, measured.input))
+}
+
+impl Entry {
+    /// Takes what came of a test, and says whether that stays so: what the operating system refused once it may give the next time.
+    fn take(&mut self, made: Result<AnalysisDocument, JobError>) -> Result<bool, JobError> {
+        match made {
+            Ok(document) => {
+                self.rows.extend(rows::rows(&document));
+                self.parameters.extend(parameters::rows(&document));
+                Ok(true)
+            }
+            Err(error) if error.kind == ErrorKind::Cancelled => Err(error),
+            Err(error) => {
+                let is_lasting = !matches!(error.kind, ErrorKind::File(_));
+                self.failures.push(Refused::from(error));
+                Ok(is_lasting)
+            }
+        }
+    }
 }
 
 impl From<JobError> for Refused {

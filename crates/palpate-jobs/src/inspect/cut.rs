@@ -20,7 +20,7 @@ const WIDTH: usize = 64;
 /// A corrected record and its phases, or why there are none.
 #[derive(Debug)]
 pub(super) struct Cut {
-    record: Record,
+    pub(super) record: Record,
     /// How many corrections were made before.
     before: usize,
     found: Result<Segmentation, SegmentError>,
@@ -69,6 +69,13 @@ impl Cut {
         cut_figure(&self.record, segments, "cut")
     }
 
+    /// What is wrong with the columns, as far as the phases show it.
+    pub(super) fn findings(&self) -> Vec<Finding> {
+        let hunts = self.found().and_then(|found| found.ripple).map(Finding::JawHunts);
+        let signs = self.found().map(|_| suspicious_signs(&self.record));
+        hunts.into_iter().chain(signs.into_iter().flatten()).chain(self.skewed.clone()).collect()
+    }
+
     /// Sparklines, phases and first touch as text.
     pub(super) fn reported(&self, test: Option<&TestDescription>) -> String {
         let mut out = self.sparklines();
@@ -76,18 +83,14 @@ impl Cut {
             Ok(found) => {
                 out.push_str(&self.phases(found));
                 out.push_str(&self.contact(found, test));
-                let hunts = found.ripple.map(Finding::JawHunts);
-                for observed in hunts.into_iter().chain(suspicious_signs(&self.record)) {
-                    let _ = writeln!(out, "{}; {}", observed.observation(), observed.remedy());
-                }
             }
             Err(_) if self.refused().is_some() => {}
             Err(error) => {
                 let _ = writeln!(out, "Phases: {error}");
             }
         }
-        if let Some(skewed) = &self.skewed {
-            let _ = writeln!(out, "{}; {}", skewed.observation(), skewed.remedy());
+        for found in self.findings() {
+            let _ = writeln!(out, "{}; {}", found.observation(), found.remedy());
         }
         out
     }

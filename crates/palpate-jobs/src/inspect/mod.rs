@@ -3,9 +3,11 @@
 //! | file | what |
 //! |---|---|
 //! | `facts.rs` | how a test is written, its columns, its sampling |
+//! | `document.rs` | all of it for programs |
 //! | `cut.rs` | the cut into phases: as a table, a sparkline and a figure |
 
 mod cut;
+mod document;
 mod facts;
 
 use std::fmt::Write as _;
@@ -22,8 +24,12 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::input::{OpenedFile, averaged};
-use crate::{ErrorKind, JobError, Outcome};
+use crate::{ErrorKind, JobError, Outcome, Results};
 use cut::Cut;
+pub use document::{
+    ColumnRole, InspectedColumn, InspectedRecord, InspectedTest, InspectionDocument, PhaseDocument, RefusalDocument,
+    SkippedDocument,
+};
 use facts::{columns_table, part_facts, short, signal_facts};
 
 /// Say what is in a file, and which phases a test in it has.
@@ -37,8 +43,8 @@ pub struct Inspect {
 /// What is in a file: as much as is known, even where that gives no record.
 #[derive(Debug)]
 pub struct Inspected {
-    /// All that is known, for people.
-    pub text: String,
+    text: String,
+    document: InspectionDocument,
     /// Why the one test of the file gives no record, or no phases.
     pub refused: Option<JobError>,
     /// A first description of the one test, or of all tests alike, with every guess commented.
@@ -54,6 +60,7 @@ impl Inspect {
     pub fn run(self, opened: &OpenedFile<'_>, watch: &mut dyn Watch) -> Result<Outcome<Inspected>, JobError> {
         let mut found = Inspected {
             text: file_facts(&opened.contents),
+            document: InspectionDocument::new(&opened.contents, &opened.tests.skipped),
             refused: None,
             description: None,
             cut: None,
@@ -63,6 +70,8 @@ impl Inspect {
             [only] => found.one_test(opened, *only, &mut notes, watch),
             _ if self.only => opened.only().map(drop),
             several => {
+                let about = several.iter().map(|part| InspectedTest::of_part(&opened.contents.parts[*part]));
+                found.document.tests = about.collect();
                 // What is stated for all, by the first that can be read.
                 let file = several.iter().find_map(|part| Some((*part, opened.read(*part, watch).ok()?)));
                 let mut parts = several.to_vec();
@@ -77,6 +86,9 @@ impl Inspect {
             let _ = writeln!(found.text, "skipped {}: {}", part.name, part.reason);
         }
         found.refused = reported.err();
+        if let (Some(error), [test]) = (&found.refused, &mut found.document.tests[..]) {
+            test.refused = Some(error.into());
+        }
         match found.refused {
             Some(error) if error.kind == ErrorKind::Cancelled => Err(error),
             _ => Ok(Outcome::of(found).noted(notes)),
@@ -101,6 +113,8 @@ impl Inspected {
     ) -> Result<(), JobError> {
         let (test, out) = (opened.described.test.as_ref(), &mut self.text);
         let about = &opened.contents.parts[part];
+        self.document.tests.push(InspectedTest::of_part(about));
+        let document = &mut self.document.tests[0];
         out.push_str(&part_facts(about, opened.contents.format));
         let file = opened.read(part, watch).inspect_err(|_| {
             // The columns help to repair what is wrong.
@@ -108,12 +122,14 @@ impl Inspected {
             self.description = Some(describe(&opened.contents, part, None, None));
         })?;
         notes.extend(averaged(&file));
+        document.read(&file, test);
         out.push_str(&columns_table(about, Some(&file)).to_plain_text());
         out.push('\n');
         let cut = Cut::of(&file.record, test, watch);
         out.push_str(&signal_facts(&file, cut.as_ref().ok().and_then(|cut| cut.signals.as_ref())));
         let place = file.path.display().to_string();
         let cut = cut.map_err(|error| JobError::analysis(&error, &place))?;
+        document.cut(&file, &cut);
         out.push_str(&cut.reported(test));
         if let Some(error) = cut.refused() {
             return Err(JobError::new(ErrorKind::Record, error, error.hint().to_owned()).of(place));
@@ -122,6 +138,18 @@ impl Inspected {
         self.description = Some(describe(&opened.contents, part, Some(&file), found));
         self.cut = Some(cut);
         Ok(())
+    }
+}
+
+impl Results for Inspected {
+    type Document = InspectionDocument;
+
+    fn document(&self) -> InspectionDocument {
+        self.document.clone()
+    }
+
+    fn text(&self) -> String {
+        self.text.clone()
     }
 }
 

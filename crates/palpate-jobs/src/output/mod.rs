@@ -20,13 +20,14 @@ use palpate_report::figure::{Figure, PictureFormat};
 use sha2::{Digest, Sha256};
 
 pub use bundle::write_bundle;
-pub(crate) use names::{Names, file_name};
+pub(crate) use names::Names;
+pub use names::file_name;
 pub use stage::{Stage, StagedFile};
 pub use target::check_folder;
 pub(crate) use target::{check_no_folder, unwritten, unwritten_table};
 use target::{check_regular, folder_of, standing};
-pub use temporary::abandon;
 use temporary::remove_stale;
+pub use temporary::{TemporaryFolder, abandon};
 
 use crate::{ErrorKind, JobError};
 

@@ -12,7 +12,8 @@ const LONGEST: usize = 200;
 const DEVICES: [&str; 6] = ["con", "prn", "aux", "nul", "com", "lpt"];
 
 /// A name of a test as the name of a file: what no system allows there becomes a hyphen.
-pub(crate) fn file_name(name: &str) -> String {
+#[must_use]
+pub fn file_name(name: &str) -> String {
     let allowed = |letter: char| !palpate_files::is_unprintable(letter) && !"/\\:*?\"<>|".contains(letter);
     let clean: String = name.chars().map(|letter| if allowed(letter) { letter } else { '-' }).collect();
     // Windows drops blanks and dots at the end.

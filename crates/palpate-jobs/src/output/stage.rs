@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use palpate_files::faults::{Operation, before};
 
 use super::target::{check_regular, folder_of, unwritten};
-use super::temporary::{Folders, Temporary, undisturbed};
+use super::temporary::{Folders, TemporaryFolder, undisturbed};
 use crate::JobError;
 
 /// Files that are to appear together.
@@ -17,7 +17,7 @@ use crate::JobError;
 #[derive(Default)]
 pub struct Stage {
     // Dropped in this order: the temporary folders before the folders that were made for them.
-    temporaries: Vec<(PathBuf, Temporary)>,
+    temporaries: Vec<(PathBuf, TemporaryFolder)>,
     folders: Folders,
     opened: usize,
     files: Vec<Staged>,
@@ -134,7 +134,7 @@ impl Stage {
             return Ok(temporary.path().to_owned());
         }
         self.folders.make(folder)?;
-        let temporary = Temporary::make(folder)?;
+        let temporary = TemporaryFolder::make(folder)?;
         let path = temporary.path().to_owned();
         self.temporaries.push((folder.to_owned(), temporary));
         Ok(path)
@@ -192,7 +192,7 @@ impl Undo {
 
 /// Renames all files, with what is needed to undo it in `done`; or the path that failed.
 fn moved(
-    temporaries: &[(PathBuf, Temporary)],
+    temporaries: &[(PathBuf, TemporaryFolder)],
     files: &[Staged],
     removed: &[PathBuf],
     done: &mut Vec<Undo>,

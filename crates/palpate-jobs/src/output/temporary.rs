@@ -121,20 +121,23 @@ fn forget(paths: &[PathBuf]) {
     guard.folders.retain(|path| !paths.contains(path));
 }
 
-/// A temporary folder with a lock in it.
-pub(super) struct Temporary {
+/// A temporary folder with a lock in it, which goes with this value, with a signal, or with the next run after a kill.
+pub struct TemporaryFolder {
     path: PathBuf,
     _lock: File,
 }
 
-impl Temporary {
+impl TemporaryFolder {
     /// Makes one in `folder`, and removes what kills have left there.
-    pub(super) fn make(folder: &Path) -> io::Result<Self> {
+    ///
+    /// # Errors
+    /// Where the operating system makes none.
+    pub fn make(folder: &Path) -> io::Result<Self> {
         remove_stale(folder);
         loop {
             let mut guard = undisturbed()?;
             before(Operation::MakeFolder)?;
-            let path = tempfile::Builder::new().prefix(PREFIX).tempdir_in(folder)?.keep();
+            let path = private().prefix(PREFIX).tempdir_in(folder)?.keep();
             guard.0.folders.push(path.clone());
             drop(guard);
             match locked(&path) {
@@ -150,16 +153,32 @@ impl Temporary {
         }
     }
 
-    pub(super) fn path(&self) -> &Path {
+    /// Where it is.
+    #[must_use]
+    pub fn path(&self) -> &Path {
         &self.path
     }
 }
 
-impl Drop for Temporary {
+impl Drop for TemporaryFolder {
     fn drop(&mut self) {
         remove(&self.path);
         forget(std::slice::from_ref(&self.path));
     }
+}
+
+/// Temporary folders that no other user can look into.
+#[cfg(unix)]
+fn private() -> tempfile::Builder<'static, 'static> {
+    use std::os::unix::fs::PermissionsExt;
+    let mut builder = tempfile::Builder::new();
+    builder.permissions(fs::Permissions::from_mode(0o700));
+    builder
+}
+
+#[cfg(not(unix))]
+fn private() -> tempfile::Builder<'static, 'static> {
+    tempfile::Builder::new()
 }
 
 /// The lock of a new temporary folder; `None` where the folder is gone again.
@@ -230,20 +249,20 @@ mod tests {
         }
         empty(&left);
         assert_eq!(fs::read_dir(&left).unwrap().map(|entry| entry.unwrap().file_name()).collect::<Vec<_>>(), [LOCK]);
-        drop(Temporary::make(folder.path()).unwrap());
+        drop(TemporaryFolder::make(folder.path()).unwrap());
         assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 0);
     }
 
     #[test]
     fn what_a_kill_left_is_removed_and_what_is_held_stays() {
         let folder = tempfile::tempdir().unwrap();
-        let held = Temporary::make(folder.path()).unwrap();
+        let held = TemporaryFolder::make(folder.path()).unwrap();
         let left = folder.path().join(".palpate-left");
         fs::create_dir(&left).unwrap();
         for name in [LOCK, "table.csv"] {
             fs::write(left.join(name), "").unwrap();
         }
-        let second = Temporary::make(folder.path()).unwrap();
+        let second = TemporaryFolder::make(folder.path()).unwrap();
         assert!(!left.exists() && held.path().exists() && second.path().exists());
         drop((held, second));
         assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 0);

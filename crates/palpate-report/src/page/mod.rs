@@ -22,6 +22,14 @@ mod policy;
 pub use block::{Block, Card, Finding};
 pub use claims::{ClaimLine, ClaimRow};
 pub use palpate::analysis::Severity;
+pub use policy::{SCRIPT, STYLE};
+
+/// Blocks as HTML for a page of another kind, which has [`STYLE`] and [`SCRIPT`]; all text in it is escaped.
+#[must_use]
+pub fn fragment(blocks: &[Block]) -> String {
+    let mut counts = content::Counts::default();
+    blocks.iter().map(|block| content::written(block, &mut counts)).collect()
+}
 
 /// A page with its sections and where its content comes from.
 #[derive(Debug, Clone, PartialEq, Default)]

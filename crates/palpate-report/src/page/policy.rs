@@ -5,8 +5,10 @@ use std::sync::LazyLock;
 use base64::Engine as _;
 use sha2::{Digest, Sha256};
 
-pub(super) const STYLE: &str = include_str!("style.css");
-pub(super) const SCRIPT: &str = include_str!("script.js");
+/// The style of a page.
+pub const STYLE: &str = include_str!("style.css");
+/// Its script: readings, zooms and switches of figures, sorting of tables.
+pub const SCRIPT: &str = include_str!("script.js");
 
 /// The content security policy: this style, this script and pictures inside the page; no network, no frame, no form, no other script.
 pub(super) static POLICY: LazyLock<String> = LazyLock::new(|| {

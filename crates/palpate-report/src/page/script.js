@@ -1,5 +1,6 @@
 "use strict";
-// Readings, zooms, switches and sorting for the figures and tables of a page. The page is complete without it.
+// Readings, zooms, switches and sorting for the figures and tables of a page. The page is complete without it. A page whose content
+// changes calls `palpate.enliven` with what is new, and gets the drawings of a figure by `palpate.drawings`.
 (() => {
   const SVG = "http://www.w3.org/2000/svg";
   document.documentElement.classList.add("live");
@@ -228,8 +229,6 @@
     constructor(svg, figure) {
       Object.assign(this, { svg, figure });
       this.panels = all(".panel", svg).map((group) => new Panel(group));
-      svg.setAttribute("tabindex", "0");
-      svg.setAttribute("role", "group");
       svg.addEventListener("pointermove", (event) => this.moved(event));
       svg.addEventListener("pointerleave", () => this.drag || this.silent());
       svg.addEventListener("pointerdown", (event) => this.pressed(event));
@@ -277,7 +276,7 @@
     pressed(event) {
       const [x, y] = this.place(event);
       const panel = this.panels.find((one) => one.contains(x, y));
-      if (!panel || event.button !== 0 || event.target.closest(".entry")) return;
+      if (!panel || event.button !== 0 || event.target.closest(".entry, .handle")) return;
       this.drag = { panel, x, y, box: make("rect", { class: "selection", "pointer-events": "none" }, panel.group), area: null };
       this.svg.setPointerCapture(event.pointerId);
     }
@@ -310,15 +309,19 @@
       this.silent();
       for (const [axis, view] of views) axis.view = view;
       for (const other of this.panels) if (other.x.key === panel.x.key) other.x.view = panel.x.view;
-      this.panels.forEach((one) => one.draw());
+      this.draw();
     }
     reset() {
       this.silent();
       for (const { x, y } of this.panels) for (const axis of [x, y]) axis.view = [axis.start, axis.end];
+      this.draw();
+    }
+    draw() {
       this.panels.forEach((panel) => panel.draw());
+      this.svg.dispatchEvent(new CustomEvent("view"));
     }
     typed(event) {
-      if (event.target.closest(".entry")) return;
+      if (event.target.closest(".entry, .handle")) return;
       const [panel, x, y] = this.here ?? [this.panels[0], (this.panels[0].left + this.panels[0].right) / 2, this.panels[0].top];
       const step = ((panel.right - panel.left) / 100) * (event.shiftKey ? 10 : 1);
       const turn = (by) => this.panels[(this.panels.indexOf(panel) + by + this.panels.length) % this.panels.length];
@@ -338,12 +341,19 @@
     }
   }
 
-  for (const figure of all("figure")) {
+  const drawn = new WeakMap();
+  const drawings = (figure) => {
+    if (!drawn.has(figure)) drawn.set(figure, all(".panels > svg", figure).map((svg) => new Drawing(svg, figure)));
+    return drawn.get(figure);
+  };
+  const enlivenFigure = (figure) => {
     // A figure takes its first pointer before it is read: pages of many figures open at once.
-    let drawings = null;
-    const wake = () => (drawings ??= all(".panels > svg", figure).map((svg) => new Drawing(svg, figure)));
+    const wake = () => drawings(figure);
     for (const event of ["pointerenter", "pointerdown", "focusin"]) figure.addEventListener(event, wake, { capture: true });
-    all(".panels > svg", figure).forEach((svg) => svg.setAttribute("tabindex", "0"));
+    for (const svg of all(".panels > svg", figure)) {
+      svg.setAttribute("tabindex", "0");
+      svg.setAttribute("role", "group");
+    }
     // A legend switches every curve of its name in the figure.
     const entries = all(".entry", figure);
     for (const entry of entries) {
@@ -365,7 +375,7 @@
       entry.addEventListener("click", toggle);
       entry.addEventListener("keydown", (event) => { if (event.key === "Enter" || event.key === " ") toggle(event); });
     }
-  }
+  };
 
   // Tables: the number with which a text begins, or the text.
   const valued = (cell) => {
@@ -374,9 +384,9 @@
     const power = /×10(-?\d+)/.exec(text);
     return { text, number: found ? found[1] * 10 ** (power ? power[1] : 0) : NaN };
   };
-  for (const table of all("table")) {
+  const enlivenTable = (table) => {
     const body = table.tBodies[0];
-    if (!body || body.rows.length < 2) continue;
+    if (!body || body.rows.length < 2) return;
     for (const head of all("thead th", table)) {
       const button = html("button");
       button.type = "button";
@@ -394,7 +404,13 @@
         body.append(...rows.map(({ row }) => row));
       });
     }
-  }
+  };
+  const enliven = (within) => {
+    all("figure", within).forEach(enlivenFigure);
+    all("table", within).forEach(enlivenTable);
+  };
+  enliven(document);
+  globalThis.palpate = { enliven, drawings };
 
   // Everything is open on paper, whatever was folded on the screen.
   let opened = [];
@@ -405,7 +421,7 @@
   addEventListener("afterprint", () => opened.forEach((one) => (one.open = false)));
 
   const first = document.querySelector(".first, .head");
-  if (all("figure").length || all("table").length) {
+  if (first && (all("figure").length || all("table").length)) {
     const bar = html("p", "", "bar");
     if (all("figure").length) bar.append(html("span", "In figures: hover or arrow keys read values, a drag zooms, a double click or Escape resets, a legend entry switches its curve."));
     const sections = all("main details");

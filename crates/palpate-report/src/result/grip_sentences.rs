@@ -238,7 +238,7 @@ fn rounded_up(metres: f64) -> f64 {
 }
 
 /// A probability, rounded down: no verdict looks surer than it is.
-fn chance(probability: f64) -> String {
+pub(crate) fn chance(probability: f64) -> String {
     /// What a search for a probability leaves.
     const ROUNDING: f64 = 1e-5;
     match 100.0 * probability + ROUNDING {

@@ -13,6 +13,7 @@
 //! | `budget.rs` | uncertainty budgets of results |
 //! | `calibrated_batch.rs` | several records calibrated together, with remarks |
 //! | `gripped.rs`, `grip_sentences.rs` | a body in a gripper with an answer; the answer in sentences |
+//! | `tried.rs` | a squeeze that is tried, with its verdict |
 //! | `specimens.rs` | records of several specimens: one law, its parameters between specimens |
 //! | `words.rs` | the words for what the library says |
 
@@ -26,6 +27,7 @@ mod gripped;
 mod input;
 mod parameters;
 mod specimens;
+mod tried;
 mod words;
 
 pub use crate::word::word;
@@ -35,7 +37,7 @@ pub use budget::{BudgetedResult, budgets_of_analysis, budgets_of_material};
 pub use calibrated::{CalibratedRecord, formula_of_material};
 pub use calibrated_batch::CalibratedBatch;
 pub use compared::{ComparedHold, ComparedRecord, LeftOut, Quantity};
-pub(crate) use grip_sentences::lasted;
+pub(crate) use grip_sentences::{chance, lasted};
 pub use gripped::GrippedBody;
 pub use input::Input;
 pub use parameters::{
@@ -44,5 +46,6 @@ pub use parameters::{
 };
 pub use specimens::{BetweenSpecimens, SpecimenHold, SpecimenResult, SpecimenResults};
 pub(crate) use specimens::{is_of_interest, is_scale};
+pub use tried::TriedSqueeze;
 pub(crate) use words::{hold_start_word, percent};
 pub use words::{mode_word, slips_word};

@@ -9,7 +9,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::figure::{Column, Drawn, Figure, FigureError, PictureFormat, View};
-use crate::page::Block;
+use crate::page::{Block, Page};
 use crate::table::{CsvLocale, Table};
 #[cfg(feature = "xlsx")]
 use crate::table::{Workbook, WorkbookError};
@@ -111,6 +111,8 @@ impl Drawing {
 pub struct Bundle {
     /// Path with forward slashes, and content.
     pub files: Vec<(String, Vec<u8>)>,
+    /// What `report.html` is made of; `None` where there is none.
+    pub page: Option<Page>,
     /// The tables in it, for the workbook.
     #[cfg(feature = "xlsx")]
     tables: Vec<Table>,
@@ -140,6 +142,12 @@ impl Bundle {
 
     pub(crate) fn text(&mut self, path: impl Into<String>, content: String) {
         self.files.push((path.into(), content.into_bytes()));
+    }
+
+    /// The page.
+    pub(crate) fn report(&mut self, page: Page) {
+        self.text("report.html", page.to_html());
+        self.page = Some(page);
     }
 
     /// The files of figures. Pages show the same drawings, unless the files are to have the width of a column.

@@ -39,7 +39,9 @@ pub use calibration::{
     prediction_figure, prediction_table, write_prediction,
 };
 pub use comparison::{comparison_bundle, comparison_markdown, comparison_text};
-pub use grip::{grip_bundle, grip_figure, grip_table, grip_text, neighbour_table, schedule_table, sensitivity_table};
+pub use grip::{
+    grip_bundle, grip_figure, grip_table, grip_text, neighbour_table, schedule_table, sensitivity_table, tried_figure,
+};
 pub use index::SpecimenIndex;
 pub use map::{MapPoint, map_figure};
 pub use record::{analysis_bundle, analysis_text, cut_figure};

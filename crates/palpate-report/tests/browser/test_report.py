@@ -10,9 +10,10 @@ from io import BytesIO
 from pathlib import Path
 
 import pytest
-from conftest import HOSTILE, Opened, Reports, opened, opened_whole
+from conftest import Opened, Reports, opened, opened_whole
 from playwright.sync_api import Browser, Locator
 from pypdf import PdfReader
+from records import HOSTILE
 
 WIDTHS = [420, 768, 1280, 1920]
 PAGES = ["many", "long", "hostile", "index", "paper"]

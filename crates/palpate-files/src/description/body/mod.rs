@@ -4,6 +4,7 @@
 //! |---|---|
 //! | `tables.rs` | the tables `[specimen]`, `[law]` and `[contact]` as they stand |
 //! | `specimen.rs` | shape, size and stiffness, to `Specimen` |
+//! | `shapes.rs` | the shapes by their names ([`shapes`]) |
 //! | `law.rs` | the law with its numbers |
 //! | `contact.rs` | layers and separation |
 //! | `model.rs` | all of it, to a [`Contact`](palpate::simulate::Contact) |
@@ -11,5 +12,8 @@
 pub(super) mod contact;
 mod law;
 pub(super) mod model;
+mod shapes;
 pub(super) mod specimen;
 pub(super) mod tables;
+
+pub use shapes::{ShapeAbout, shapes};

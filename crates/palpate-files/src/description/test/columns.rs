@@ -90,7 +90,7 @@ pub struct ColumnChoices {
 
 impl ColumnChoices {
     /// What is stated of one of several quantities.
-    pub(crate) fn stated(&self, is_one: impl Fn(Quantity) -> bool) -> Option<(Quantity, &ColumnChoice)> {
+    pub fn stated(&self, is_one: impl Fn(Quantity) -> bool) -> Option<(Quantity, &ColumnChoice)> {
         // The deflection of a cantilever comes behind the displacement, which it is taken off.
         self.all().into_iter().find(|(quantity, _)| is_one(*quantity))
     }

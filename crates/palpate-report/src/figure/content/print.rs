@@ -9,7 +9,7 @@ use super::figure::{Arrangement, Figure};
 use super::panel::Panel;
 
 /// Format of the file of a figure.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "lowercase")]
 pub enum PictureFormat {
     /// Vectors with text as text, in the typeface of the reader.
@@ -51,7 +51,7 @@ impl PictureFormat {
 }
 
 /// Width of a figure in a journal whose pages have two columns.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "lowercase")]
 pub enum Column {
     /// One column, 85 mm.

@@ -60,7 +60,7 @@ pub fn comparison_bundle(
     bundle.table(&tables::laws(records, &settings.cuts));
     let laws: Vec<_> = settings.laws.iter().filter_map(|law| law.parse().ok()).collect();
     bundle.text("comparison.md", tables::comparison_markdown(records, left_out, &laws));
-    bundle.text("report.html", page.to_html());
+    bundle.report(page);
     let document = ComparisonDocument::new(records, left_out, settings);
     bundle.table(&parameters_table(&document.parameter_rows()));
     bundle.json("comparison.json", &document)?;

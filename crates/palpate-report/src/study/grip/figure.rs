@@ -3,7 +3,7 @@
 use palpate::calibrate::Prediction;
 
 use crate::figure::{Axis, Figure, Layer, Panel, Role};
-use crate::result::{GrippedBody, percent};
+use crate::result::{GrippedBody, TriedSqueeze, percent};
 
 /// The grips over time: force with the limit at which it slips, margin over that limit, displacement of the jaws; the one that is in question
 /// with its band.
@@ -63,4 +63,28 @@ pub fn grip_figure(body: &GrippedBody<'_>, name: &str) -> Figure {
     .panel(margin)
     .panel(jaw)
     .height_mm(150.0)
+}
+
+/// A squeeze that is tried: its force with the band, and the force below which it slips.
+#[must_use]
+pub fn tried_figure(tried: &TriedSqueeze) -> Figure {
+    let end = tried.closing_s + tried.hold_s;
+    let axis = if tried.hold_s > 30.0 * tried.closing_s {
+        Axis::log("Time", "s").range(0.1 * tried.closing_s, end)
+    } else {
+        Axis::linear("Time", "s")
+    };
+    let time = || tried.time_s.clone();
+    let mut force = Panel::new(axis, Axis::linear("Force", "N"));
+    if !tried.force_low_n.is_empty() {
+        let band = Layer::band(time(), tried.force_low_n.clone(), tried.force_high_n.clone(), Role::Fitted);
+        force = force.layer(band.label(percent(tried.confidence)));
+    }
+    let slips = vec![tried.needed_force_n; tried.time_s.len()];
+    force = force
+        .layer(Layer::line(time(), slips, Role::Reference).label("slips below"))
+        .layer(Layer::line(time(), tried.force_n.clone(), Role::Fitted).label("force"));
+    Figure::new("tried", "Force of the squeeze over time, and the force below which the body slips.")
+        .panel(force)
+        .height_mm(62.0)
 }

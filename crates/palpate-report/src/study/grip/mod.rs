@@ -10,6 +10,6 @@ mod figure;
 mod page;
 mod tables;
 
-pub use figure::grip_figure;
+pub use figure::{grip_figure, tried_figure};
 pub use page::grip_bundle;
 pub use tables::{grip_table, grip_text, neighbour_table, schedule_table, sensitivity_table};

@@ -46,7 +46,7 @@ pub fn grip_bundle(body: &GrippedBody<'_>, options: &FileOptions) -> Result<Bund
         .provenance("Material", &body.path)
         .provenance("SHA-256", &body.sha256)
         .provenance("Software", Software::this().to_string());
-    bundle.text("report.html", page.to_html());
+    bundle.report(page);
     bundle.json("grip.json", &GripDocument::new(body))?;
     bundle.with_workbook()
 }

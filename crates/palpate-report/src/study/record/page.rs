@@ -69,7 +69,7 @@ pub fn analysis_bundle(
     look(watch, 2)?;
     let document = AnalysisDocument::new(analysis, input);
     bundle.table(&parameters_table(&document.parameter_rows()));
-    bundle.text("report.html", page.to_html());
+    bundle.report(page);
     bundle.json("analysis.json", &document)?;
     bundle.with_workbook()
 }

@@ -147,7 +147,7 @@ pub fn reproduction_bundle(
     }
     let (page, claims) = page(study, &mut Placed::new(&drawings, &tables));
     bundle.table(&claims);
-    bundle.text("report.html", page.to_html());
+    bundle.report(page);
     bundle.json("summary.json", &ReproductionDocument::new(study))?;
     bundle.with_workbook()
 }

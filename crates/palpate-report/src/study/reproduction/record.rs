@@ -110,7 +110,7 @@ pub fn record_reproduction_bundle(
     tables.iter().for_each(|table| bundle.table(table));
     let (page, table) = page(judged, input, &mut Placed::new(&drawings, &tables));
     bundle.table(&table);
-    bundle.text("report.html", page.to_html());
+    bundle.report(page);
     bundle.json("summary.json", &ReproducedRecordDocument::new(analysis, judged, input))?;
     bundle.with_workbook()
 }

@@ -1,0 +1,137 @@
+// Will it hold: a calibration, and sliders over the grip of its material.
+
+import { Cancelled, Lost, Refused, call, task } from "./api.js";
+import { button, copied, drawn, el, progress, refusal, say, shown } from "./dom.js";
+
+// A material of one record, or of several together.
+export const calibration = (subjects, made) => {
+  const box = el("div");
+  const result = el("div", { "aria-live": "polite" });
+  const begin = async () => {
+    const running = task({ kind: "calibrate", subjects, options: {} }, { first: true, heard: (brief) => bar.show(brief) });
+    const bar = progress(running.cancel);
+    result.replaceChildren(bar);
+    try {
+      const { id, answer } = await running.done;
+      result.replaceChildren(
+        answer.material ? el("p", {}, "Material written: ", el("b", {}, answer.material)) : refusal({ message: "the law that was calibrated is no material: a parameter is open" }),
+        answer.figure ? drawn(answer.figure) : "",
+        el("details", {}, el("summary", {}, "Parameters and remarks"), el("pre", { tabindex: "0" }, answer.text)),
+        el("p", { className: "takeaway" }, el("a", { href: `api/tasks/${id}/files/calibration.json`, download: "calibration.json" }, "calibration.json")),
+        lines(answer.lines));
+      if (answer.material) {
+        say(`Material written: ${answer.material}`);
+        made(answer.material);
+      }
+    } catch (error) {
+      if (error instanceof Lost) return;
+      result.replaceChildren(error instanceof Cancelled ? el("p", {}, "Cancelled.") : refusal(error));
+    }
+  };
+  box.append(el("p", { className: "actions" }, button(subjects.length > 1 ? `Calibrate ${subjects.length} records together` : "Calibrate on the whole record", begin)), result);
+  return { box, begin };
+};
+
+export const lines = (of) => of && el("details", { className: "lines" }, el("summary", {}, "The same on the command line and in Python"),
+  el("p", { className: "small" }, "To be run in the folder of the records."), of.shell ? copied("Command line", of.shell) : el("p", { className: "small" }, "One command cannot do it: the records have descriptions of their own."), copied("Python", of.python));
+
+// A slider with a field for its value; of several decades by its logarithm.
+const slider = ({ id, label, unit, low, high, value, log = false, scale = 1, digits = 3 }, moved) => {
+  const STEPS = 1000;
+  const to = (x) => (log ? (Math.log(x / low) / Math.log(high / low)) * STEPS : ((x - low) / (high - low)) * STEPS);
+  const from = (step) => (log ? low * (high / low) ** (step / STEPS) : low + (step / STEPS) * (high - low));
+  const state = { value };
+  const text = () => String(+(state.value * scale).toPrecision(digits));
+  const range = el("input", { type: "range", id, min: "0", max: String(STEPS), step: "1", value: String(to(value)), oninput: () => { set(+from(+range.value).toPrecision(digits), range); moved(); } });
+  const field = el("input", { type: "text", inputmode: "decimal", "aria-label": `${label}, ${unit || "number"}`, value: text(), onchange: () => {
+    const found = Number(field.value.replace(",", ".")) / scale;
+    if (Number.isFinite(found) && found > 0) { set(found, field); moved(); } else field.value = text();
+  } });
+  const set = (found, by) => {
+    state.value = found;
+    if (by !== range) range.value = String(to(found));
+    if (by !== field) field.value = text();
+    range.setAttribute("aria-valuetext", `${text()} ${unit}`);
+  };
+  set(value, null);
+  return { state, set: (found) => set(found, null), box: el("div", { className: "slider" }, el("label", { for: id }, label), range, el("span", { className: "value" }, field, el("span", { className: "unit" }, unit))) };
+};
+
+// Sliders of mass, friction, time and squeeze; verdict, probability and band follow.
+export const gripPanel = async (material) => {
+  const range = await call("GET", `api/materials/${encodeURIComponent(material)}`);
+  const friction = 0.6;
+  // A load that half of the force of the test carries.
+  const mass = +Math.max(1e-6, (0.5 * range.largest_force_n * 2 * friction) / 9.80665 / 2).toPrecision(2);
+  const verdict = el("p", { className: "verdict", role: "status" });
+  const figure = el("div", { className: "try-figure" });
+  const facts = el("p", { className: "small" });
+  const line = el("div");
+  const plan = el("div", { "aria-live": "polite" });
+  const sliders = {
+    mass_kg: slider({ id: "grip-mass", label: "Mass", unit: mass < 1 ? "g" : "kg", scale: mass < 1 ? 1e3 : 1, low: mass / 30, high: mass * 10, value: mass, log: true }, () => moved()),
+    friction: slider({ id: "grip-friction", label: "Friction μ", unit: "", low: 0.05, high: 1.5, value: friction, digits: 3 }, () => moved()),
+    hold_s: slider({ id: "grip-hold", label: "Hold", unit: "s", low: 0.1, high: Math.max(1e4, 100 * range.longest_hold_s), value: 60, log: true }, () => moved()),
+    squeeze_m: slider({ id: "grip-squeeze", label: "Squeeze", unit: range.deepest_m < 1e-4 ? "µm" : "mm", scale: range.deepest_m < 1e-4 ? 1e6 : 1e3, low: range.deepest_m / 50, high: 1.3 * range.deepest_m, value: +(0.6 * range.deepest_m).toPrecision(2), digits: 4 }, () => moved()),
+    confidence: slider({ id: "grip-confidence", label: "Required probability", unit: "%", scale: 100, low: 0.5, high: 0.999, value: 0.95, digits: 3 }, () => moved()),
+  };
+  const options = () => Object.fromEntries(Object.entries(sliders).map(([key, { state }]) => [key, state.value]));
+  let [busy, again] = [false, false];
+  // One question at a time; the last of those that came meanwhile is asked next.
+  const moved = async () => {
+    if (busy) return (again = true);
+    busy = true;
+    try {
+      do {
+        again = false;
+        const found = await call("POST", `api/try/${encodeURIComponent(material)}`, options());
+        show(found);
+        await new Promise((resolve) => requestAnimationFrame(resolve));
+      } while (again);
+    } catch (error) {
+      if (error instanceof Refused) {
+        verdict.className = "verdict unknown";
+        verdict.textContent = error.message;
+        facts.textContent = error.hint ?? "";
+        figure.replaceChildren();
+      }
+    } finally { busy = false; }
+    if (again) moved();
+  };
+  const show = (found) => {
+    verdict.className = `verdict ${found.holds === null ? "unknown" : found.holds ? "yes" : "no"}`;
+    verdict.textContent = found.verdict;
+    const [low, high] = found.end_force_interval_n ?? [NaN, NaN];
+    facts.textContent = `Force at the end ${shown(found.end_force_n)} N (${shown(100 * found.confidence, 2)} % interval ${shown(low)} to ${shown(high)} N); needed ${shown(found.needed_force_n)} N; when the jaws stop ${shown(found.start_force_n)} N. ${found.extrapolations.map((one) => `Beyond the test: ${one}.`).join(" ")}`;
+    figure.replaceChildren(drawn(found.figure));
+    const open = line.firstChild?.open;
+    line.replaceChildren(lines(found.lines));
+    line.firstChild.open = open ?? false;
+    document.dispatchEvent(new CustomEvent("tried", { detail: found }));
+  };
+  const ask = async (least) => {
+    const asked = options();
+    if (least) delete asked.squeeze_m;
+    const running = task({ kind: "grip", material, options: asked }, { first: true, heard: (brief) => bar.show(brief) });
+    const bar = progress(running.cancel);
+    plan.replaceChildren(bar);
+    try {
+      const { id, answer } = await running.done;
+      if (least && answer.squeeze_m) {
+        sliders.squeeze_m.set(+answer.squeeze_m.toPrecision(6));
+        moved();
+      }
+      plan.replaceChildren(el("p", {}, el("b", {}, answer.verdict)), answer.figure ? drawn(answer.figure) : "", el("ul", {}, answer.remarks.map((remark) => el("li", {}, remark))),
+        el("p", { className: "takeaway" }, el("a", { href: `api/tasks/${id}/files/report.html`, target: "_blank", rel: "noopener" }, "Report of the grip"), el("a", { href: `api/tasks/${id}/files/tables.xlsx`, download: "grip.xlsx" }, "Workbook"), el("a", { href: `api/tasks/${id}/files/grip.json`, download: "grip.json" }, "JSON")));
+      say(answer.verdict);
+    } catch (error) {
+      if (error instanceof Lost) return;
+      plan.replaceChildren(error instanceof Cancelled ? el("p", {}, "Cancelled.") : refusal(error));
+    }
+  };
+  const box = el("div", { className: "grip-panel" },
+    el("div", { className: "sliders" }, Object.values(sliders).map(({ box: one }) => one), el("p", { className: "actions" }, button("Least squeeze that holds", () => ask(true)), button("Whole answer for this squeeze", () => ask(false), { className: "quiet" }))),
+    el("div", { className: "tried" }, verdict, facts, figure), el("div", { className: "wide-cell" }, line, plan));
+  await moved();
+  return box;
+};

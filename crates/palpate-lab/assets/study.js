@@ -1,0 +1,257 @@
+// A test on the page: its record, its body, its laws, its grip; a file of many tests as a table; several records beside each other.
+
+import { Cancelled, Lost, call, task } from "./api.js";
+import { button, drawn, el, progress, refusal, say, shown } from "./dom.js";
+import { calibration, gripPanel, lines } from "./grip.js";
+import { Description, PhaseFigure, bodyForm, columnTable, holdTable, textForm } from "./record.js";
+
+const card = (id, heading, ...children) => el("section", { className: "card", "aria-labelledby": `${id}-heading` }, el("h2", { id: `${id}-heading` }, heading), el("div", { id }, ...children));
+const failed = (error) => (error instanceof Cancelled ? el("p", {}, "Cancelled.") : refusal(error));
+
+// Runs a task into a box: its progress first, then what `show` makes of it. Of two runs into one box the later one counts.
+const into = async (box, request, show, { first = true, keep = true } = {}) => {
+  const run = (box.run = {});
+  const running = task(request, { first, heard: (brief) => box.run === run && bar.show(brief) });
+  const bar = progress(running.cancel);
+  // What stood there stays until it is replaced, marked as of before.
+  if (keep && box.firstChild) {
+    box.classList.add("before");
+    box.querySelector(":scope > .progress")?.remove();
+    box.prepend(bar);
+  } else box.replaceChildren(bar);
+  try {
+    const { id, answer } = await running.done;
+    if (box.run !== run) return null;
+    box.classList.remove("before");
+    box.replaceChildren(...show(answer, id));
+    return { id, answer };
+  } catch (error) {
+    if (box.run === run && !(error instanceof Lost)) {
+      box.classList.remove("before");
+      box.replaceChildren(failed(error));
+    }
+    return null;
+  }
+};
+
+export class Study {
+  constructor(subject, vocabulary, { opened, materialMade }) {
+    Object.assign(this, { subject, vocabulary, opened, materialMade });
+    this.description = new Description(subject, () => this.changed());
+    this.record = el("div", { "aria-live": "off" });
+    this.body = el("div");
+    this.laws = el("div");
+    this.tests = el("div");
+    this.grip = el("div");
+    this.answer = el("p", { className: "headline" });
+    this.box = el("div", { className: "study" }, this.head(), this.cards = el("div"));
+  }
+
+  head() {
+    const { file, part } = this.subject;
+    return el("div", { className: "study-head" }, part !== null && el("p", { className: "crumb" }, button(`‹ ${file}`, () => this.opened({ file, part: null }), { className: "link" })), el("h2", { className: "title", tabindex: "-1" }, part ?? file), this.answer);
+  }
+
+  async start() {
+    await this.description.load();
+    this.cards.replaceChildren(card("record", "Record", this.record));
+    await this.inspect();
+  }
+
+  // What is stated has changed: all that depends on it is made anew.
+  async changed() {
+    const open = [...this.cards.querySelectorAll("details[id]")].filter((one) => one.open).map((one) => one.id);
+    const focus = document.activeElement?.getAttribute("aria-label") ?? null;
+    const id = document.activeElement?.id ?? null;
+    await this.inspect(open);
+    const again = (id && document.getElementById(id)) || (focus && [...this.cards.querySelectorAll("[aria-label]")].find((one) => one.getAttribute("aria-label") === focus && one.getClientRects().length));
+    if (again && document.activeElement === document.body) again.focus({ preventScroll: true });
+  }
+
+  async refresh() {
+    const before = this.description.stated.text;
+    await this.description.load();
+    if (this.description.stated.text !== before) this.changed();
+  }
+
+  async inspect(open = []) {
+    const made = await into(this.record, { kind: "inspect", subject: this.subject }, (answer) => this.shownRecord(answer, open));
+    if (!made) return;
+    const { tests } = made.answer.document;
+    if (tests.length > 1) return this.many();
+    if (!tests[0]?.record || tests[0].refused) {
+      this.cards.replaceChildren(this.cards.firstChild);
+      return;
+    }
+    if (this.cards.children.length === 1) {
+      this.cards.append(card("body", "Body", this.body), card("laws", "Law, forecast and findings", this.laws), card("grip", "Will it hold?", this.grip));
+      this.grip.replaceChildren(el("p", {}, "A grip needs a material: one set of parameters for the whole record, ramps and holds."), this.calibrated = calibration([this.subject], (name) => this.materialMade(name, this)).box, this.gripBox = el("div"));
+    }
+    // Fields that a person is working in stay as they are.
+    if (!this.body.contains(document.activeElement)) this.body.replaceChildren(bodyForm(this.description, this.vocabulary));
+    await this.analyze();
+  }
+
+  shownRecord({ document: found, figure, draft, notes }, open) {
+    const inspected = found.tests[0];
+    const folded = (id, title, content, isOpen = false) => el("details", { id, open: isOpen || open.includes(id) }, el("summary", {}, title), content);
+    const skipped = found.skipped.length > 0 && el("p", { className: "small" }, `Besides: ${found.skipped.slice(0, 5).map(({ name, reason }) => `${name} (${reason})`).join("; ")}${found.skipped.length > 5 ? ` and ${found.skipped.length - 5} more` : ""}.`);
+    if (found.tests.length !== 1) return [el("p", {}, `${found.format}, ${found.tests.length} tests.`), skipped, folded("text", "Test description, for all tests", textForm(this.description, draft))].filter(Boolean);
+    const record = inspected.record;
+    const parts = [];
+    if (inspected.refused) parts.push(refusal(inspected.refused));
+    if (record && !inspected.refused) {
+      const [from, to] = record.time_s;
+      const format = found.format.charAt(0).toUpperCase() + found.format.slice(1);
+      parts.push(el("p", { className: "small" }, `${format}, ${inspected.rows} rows over ${shown(to - from, 5)} s. Drag the marks at the foot of the figure to move the boundaries of a hold, or type them below.`));
+      const phases = figure && new PhaseFigure(figure, record, (holds) => table.commit(holds));
+      const table = holdTable(this.description, inspected, phases);
+      if (phases) parts.push(phases.box);
+      for (const text of [...record.findings, ...notes]) parts.push(el("p", { className: "note-line" }, text));
+      if (record.corrections.length) parts.push(el("p", { className: "small" }, `Done: ${record.corrections.join("; ")}.`));
+      parts.push(folded("holds", `Holds (${record.phases.filter((one) => one.phase === "hold").length})`, table.box, true));
+    }
+    const guesses = inspected.columns.flatMap((column) => column.used_as).filter((use) => !use.column_is_stated).length;
+    parts.push(folded("columns", guesses ? `Columns and units (${guesses} guessed by name)` : "Columns and units", columnTable(this.description, inspected, this.vocabulary), !record));
+    parts.push(folded("text", "Test description as text", textForm(this.description, draft)));
+    if (skipped) parts.push(skipped);
+    return parts;
+  }
+
+  async analyze() {
+    const made = await into(this.laws, { kind: "analyze", subject: this.subject, options: {} }, (answer, id) => {
+      const file = (path) => `api/tasks/${id}/files/${path}`;
+      const stem = this.subject.file.replace(/\.[^.]*$/, "");
+      const report = el("details", { id: "report", ontoggle: () => { if (report.open && !report.querySelector("iframe")) report.append(el("iframe", { src: file("report.html"), title: `Report of ${answer.title}`, sandbox: "allow-scripts allow-popups allow-downloads" })); } }, el("summary", {}, "Whole report"));
+      const many = (format) => el("a", { href: `api/tasks/${id}/pictures.zip?format=${format}`, download: `${stem}-figures-${format}.zip` }, `All figures, ${format.toUpperCase()}`);
+      const summary = ["pdf", "svg", "png"].map((format) => el("a", { href: file(`figures/summary.${format}`), download: `${stem}-summary.${format}` }, `Figure, ${format.toUpperCase()}`));
+      return [
+        drawn(answer.first, "first answer"), report,
+        el("div", { className: "takeaway", role: "group", "aria-label": "Take away" }, el("a", { href: file("report.html"), download: `${stem}-report.html` }, "Report"), el("a", { href: file("tables.xlsx"), download: `${stem}.xlsx` }, "Workbook"), el("a", { href: file("analysis.json"), download: `${stem}.json` }, "JSON"), summary, many("pdf"), this.description.stated.text && button("Test description", () => this.saveText(`${this.subject.file}.test.toml`, this.description.stated.text), { className: "link" })),
+        lines(answer.lines),
+      ];
+    });
+    const lede = this.laws.querySelector(".lede")?.textContent ?? "";
+    this.answer.replaceChildren(lede);
+    if (made) say(lede);
+  }
+
+  saveText(name, text) {
+    const link = el("a", { href: URL.createObjectURL(new Blob([text], { type: "text/plain" })), download: name });
+    link.click();
+    setTimeout(() => URL.revokeObjectURL(link.href), 1000);
+  }
+
+  showGrip(panel) {
+    this.gripBox.replaceChildren(panel);
+  }
+
+  // A file of several tests: a row each as they are done, a map where they have positions.
+  async many() {
+    if (this.cards.children.length === 1) this.cards.append(card("body", "Body of all tests", this.body), card("tests", "Tests", this.tests));
+    if (!this.body.contains(document.activeElement)) this.body.replaceChildren(bodyForm(this.description, this.vocabulary));
+    await testTable(this);
+  }
+}
+
+const COLUMNS = [
+  ["exponent", "n", 1, ""], ["relative_rate_per_s", "Relative rate", 1, "1/s"], ["rate_coefficient_per_s", "v", 1, "1/s"], ["equilibrium_force_n", "Equilibrium force", 1, "N"],
+  ["force_start_n", "Force at start", 1, "N"], ["force_end_n", "at end", 1, "N"], ["loading_modulus_pa", "E of loading", 1, "Pa"], ["x_m", "x", 1e6, "µm"], ["y_m", "y", 1e6, "µm"],
+];
+// More rows than this make pages slow; the table that is taken away has them all.
+const MOST_ROWS = 3000;
+
+const testTable = async (study) => {
+  const run = (study.tests.run = {});
+  const rows = [];
+  const [body, head] = [el("tbody"), el("thead")];
+  let order = { column: -1, falls: false };
+  const columns = () => COLUMNS.filter(([key]) => rows.some(({ first }) => first?.[key] !== null && first?.[key] !== undefined));
+  const compared = (a, b) => {
+    if (order.column < 0) return a.index - b.index;
+    const value = ({ first, name }) => (order.column === 0 ? name : first?.[shownColumns[order.column - 1][0]]);
+    const [x, y] = [value(a), value(b)];
+    const missing = (one) => one === null || one === undefined;
+    if (missing(x) || missing(y)) return missing(x) - missing(y);
+    return (typeof x === "string" ? x.localeCompare(y, "en", { numeric: true }) : x - y) * (order.falls ? -1 : 1);
+  };
+  let shownColumns = [];
+  const lay = () => {
+    shownColumns = columns();
+    const sorter = (text, column, unit) => el("th", { scope: "col", className: column ? "n" : "", "aria-sort": order.column === column ? (order.falls ? "descending" : "ascending") : undefined }, button(text, () => { order = { column, falls: order.column === column && !order.falls }; lay(); }), unit && el("span", { className: "unit" }, ` (${unit})`));
+    head.replaceChildren(el("tr", {}, sorter("Test", 0), el("th", { scope: "col", className: "n" }, "Holds"), shownColumns.map(([, text, , unit], i) => sorter(text, i + 1, unit))));
+    body.replaceChildren(...[...rows].sort(compared).slice(0, MOST_ROWS).map(line));
+  };
+  const line = ({ name, first, holds, refused }) => el("tr", {},
+    el("th", { scope: "row" }, button(name, () => study.opened({ file: study.subject.file, part: name }), { className: "link" })),
+    el("td", { className: "n" }, String(holds)),
+    refused ? el("td", { colSpan: Math.max(1, shownColumns.length), className: "small" }, refused.message) : shownColumns.map(([key, , factor]) => el("td", { className: "n" }, shown(first?.[key] === null || first?.[key] === undefined ? NaN : first[key] * factor))));
+  const take = (test) => {
+    const holds = new Set(test.rows.map((row) => row.hold).filter((hold) => hold !== null)).size;
+    rows.push({ index: test.index, name: test.name ?? `test ${test.index + 1}`, first: test.rows.find((row) => row.recommended === 1) ?? test.rows.find((row) => row.law === "latency") ?? test.rows[0] ?? null, holds, refused: test.refused });
+  };
+  let asked = 0;
+  let reading = Promise.resolve();
+  const read = () => (reading = reading.then(async () => {
+    const id = await running.id;
+    const fresh = await call("GET", `api/tasks/${id}/rows?from=${asked}`);
+    if (study.tests.run !== run || !fresh.length) return;
+    asked += fresh.length;
+    fresh.forEach(take);
+    lay();
+  }));
+  const running = task({ kind: "batch", subject: study.subject, options: {} }, { first: true, heard: (brief) => { if (study.tests.run !== run) return; bar.show(brief); if (brief.rows > asked) read(); } });
+  const bar = progress(running.cancel);
+  const after = el("div");
+  study.tests.replaceChildren(bar, el("div", { className: "scroll tall", tabindex: "0", role: "region", "aria-label": "Tests of the file" }, el("table", {}, head, body)), after);
+  try {
+    const { id, answer } = await running.done;
+    await read();
+    if (study.tests.run !== run) return;
+    bar.remove();
+    say(`${rows.length} tests are analysed.`);
+    after.append(el("div", { className: "takeaway" }, el("a", { href: `api/tasks/${id}/rows.csv`, download: "holds.csv" }, "Table, CSV")), lines(answer.lines));
+    if (rows.length > MOST_ROWS) after.prepend(el("p", { className: "small" }, `The first ${MOST_ROWS} of ${rows.length} rows in this order; the table that is taken away has all.`));
+    if (answer.quantities.length) after.append(await mapView(id, answer.quantities));
+  } catch (error) {
+    if (study.tests.run === run && !(error instanceof Lost)) bar.replaceWith(failed(error));
+  }
+};
+
+const mapView = async (id, quantities) => {
+  const [box, wrong] = [el("div"), el("div")];
+  const usual = ["rate_coefficient_per_s", "loading_modulus_pa", "exponent", "relative_rate_per_s"].find((name) => quantities.includes(name)) ?? quantities[0];
+  const show = async (quantity) => {
+    wrong.replaceChildren();
+    try {
+      const { figure } = await call("GET", `api/tasks/${id}/map?quantity=${encodeURIComponent(quantity)}`);
+      box.replaceChildren(drawn(figure));
+    } catch (error) { wrong.replaceChildren(refusal(error)); }
+  };
+  const choice = el("select", { onchange: (event) => show(event.target.value) }, quantities.map((name) => el("option", { value: name, selected: name === usual }, name)));
+  await show(usual);
+  return el("div", { id: "map" }, el("p", {}, el("label", {}, "Map of ", choice)), box, wrong);
+};
+
+// Several records beside each other, or one material of them all.
+export const together = (subjects, { opened, materialMade }) => {
+  const [compared, grip] = [el("div"), el("div")];
+  const study = { showGrip: (panel) => grip.replaceChildren(panel) };
+  const box = el("div", { className: "study" },
+    el("div", { className: "study-head" }, el("h2", { className: "title", tabindex: "-1" }, `${subjects.length} records`), el("p", { className: "small" }, subjects.map(({ file }) => file).join(", "))),
+    card("compared", "Beside each other", compared),
+    card("material", "One material", el("p", {}, "Parameters that the records share are estimated together; the material is that of another specimen of the batch."), calibration(subjects, (name) => materialMade(name, study)).box, grip));
+  const start = () => into(compared, { kind: "compare", subjects }, (answer, id) => [
+    el("iframe", { src: `api/tasks/${id}/files/index.html`, title: "Comparison of the records", sandbox: "allow-scripts allow-popups allow-downloads" }),
+    el("div", { className: "takeaway" }, el("a", { href: `api/tasks/${id}/files/index.html`, target: "_blank", rel: "noopener" }, "In a tab of its own"), answer.files.includes("tables.xlsx") && el("a", { href: `api/tasks/${id}/files/tables.xlsx`, download: "comparison.xlsx" }, "Workbook"), answer.files.includes("specimens.json") && el("a", { href: `api/tasks/${id}/files/specimens.json`, download: "specimens.json" }, "JSON")),
+    lines(answer.lines),
+  ]);
+  return { box, start, refresh: () => {} };
+};
+
+// A material alone: its grip.
+export const materialView = (name) => {
+  const grip = el("div");
+  const box = el("div", { className: "study" }, el("div", { className: "study-head" }, el("h2", { className: "title", tabindex: "-1" }, name)), card("grip", "Will it hold?", grip));
+  return { box, refresh: () => {}, start: async () => { try { grip.replaceChildren(await gripPanel(name)); } catch (error) { if (!(error instanceof Lost)) grip.replaceChildren(refusal(error)); } } };
+};

@@ -1,0 +1,202 @@
+//! The command line and the lines of Python that do what the page did, to be run in its folder.
+
+use std::path::Path;
+
+use palpate_jobs::PlanGrip;
+use serde::Serialize;
+
+use crate::folder::Subject;
+
+/// What to type.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+pub(crate) struct Lines {
+    /// For a POSIX shell; `None` where one command cannot do it.
+    pub(crate) shell: Option<String>,
+    /// For Python.
+    pub(crate) python: String,
+}
+
+/// A word of a POSIX shell; a file whose name begins with a hyphen is no option.
+fn word(text: &str) -> String {
+    let plain = |letter: char| letter.is_ascii_alphanumeric() || "._-/=:,+@%".contains(letter);
+    let text = if text.starts_with('-') { format!("./{text}") } else { text.to_owned() };
+    if !text.is_empty() && text.chars().all(plain) {
+        text
+    } else {
+        format!("'{}'", text.replace('\'', "'\\''"))
+    }
+}
+
+/// A text of Python; JSON writes strings as Python reads them, but for letters beyond the first plane.
+fn literal(text: &str) -> String {
+    serde_json::to_string(text).unwrap_or_default()
+}
+
+fn stem(file: &str) -> String {
+    Path::new(file).file_stem().unwrap_or_default().to_string_lossy().into_owned()
+}
+
+/// How a test is named on a command line.
+fn record_words(subject: &Subject, stated: Option<&str>) -> String {
+    let test = stated.map_or_else(String::new, |name| format!(" --test {}", word(name)));
+    let part = subject.part.as_deref().map_or_else(String::new, |part| format!(" --part {}", word_of_option(part)));
+    format!("{}{test}{part}", word(&subject.file))
+}
+
+/// The value of an option, which may begin with a hyphen.
+fn word_of_option(text: &str) -> String {
+    if text.starts_with('-') { format!("='{}'", text.replace('\'', "'\\''")) } else { word(text) }
+}
+
+/// How a test is read in Python.
+fn record_call(subject: &Subject, stated: Option<&str>) -> String {
+    let test = stated.map_or_else(String::new, |name| format!(", test={}", literal(name)));
+    let part = subject.part.as_deref().map_or_else(String::new, |part| format!(", part={}", literal(part)));
+    format!("palpate.read({}{test}{part})", literal(&subject.file))
+}
+
+pub(crate) fn of_analysis(subject: &Subject, stated: Option<&str>) -> Lines {
+    let out = format!("{}-report", stem(&subject.file));
+    Lines {
+        shell: Some(format!("palpate analyze {} --out {}", record_words(subject, stated), word(&out))),
+        python: format!(
+            "import palpate\n\nanalysis = {}.analyze()\nanalysis.report({})",
+            record_call(subject, stated),
+            literal(&out)
+        ),
+    }
+}
+
+pub(crate) fn of_batch(subject: &Subject, stated: Option<&str>, has_map: bool) -> Lines {
+    let out = format!("{}-holds.csv", stem(&subject.file));
+    let (map, map_python) = if has_map { (" --map v", ", map=[\"v\"]") } else { ("", "") };
+    let test = stated.map_or_else(String::new, |name| format!(", test={}", literal(name)));
+    Lines {
+        shell: Some(format!("palpate batch {} --out {}{map}", record_words(subject, stated), word(&out))),
+        python: format!(
+            "import palpate\n\npalpate.batch([{}], {}{test}{map_python})",
+            literal(&subject.file),
+            literal(&out)
+        ),
+    }
+}
+
+/// The records as a list of Python, a line each.
+fn list(subjects: &[Subject], stated: &[Option<String>]) -> String {
+    let calls = subjects
+        .iter()
+        .zip(stated)
+        .map(|(subject, stated)| format!("    {},\n", record_call(subject, stated.as_deref())));
+    format!("records = [\n{}]\n", calls.collect::<String>())
+}
+
+pub(crate) fn of_comparison(subjects: &[Subject], stated: &[Option<String>]) -> Lines {
+    // One command has one description, and takes whole files.
+    let is_one = stated.windows(2).all(|pair| pair[0] == pair[1]) && subjects.iter().all(|one| one.part.is_none());
+    let files: Vec<String> = subjects.iter().map(|subject| word(&subject.file)).collect();
+    let test = stated
+        .first()
+        .and_then(Option::as_deref)
+        .map_or_else(String::new, |name| format!(" --test {}", word(name)));
+    Lines {
+        shell: is_one.then(|| format!("palpate analyze {}{test} --out comparison", files.join(" "))),
+        python: format!(
+            "import palpate\n\n{}palpate.report_all([record.analyze() for record in records], \"comparison\")",
+            list(subjects, stated)
+        ),
+    }
+}
+
+pub(crate) fn of_calibration(subjects: &[Subject], stated: &[Option<String>], material: Option<&str>) -> Lines {
+    let out = material.unwrap_or("material.toml");
+    let (calibrated, shell) = match (subjects, stated) {
+        ([subject], [stated]) => (
+            format!("calibration = {}.calibrate()\n", record_call(subject, stated.as_deref())),
+            Some(format!("palpate calibrate {} --out {}", record_words(subject, stated.as_deref()), word(out))),
+        ),
+        _ => {
+            let files: Vec<String> = subjects.iter().map(|subject| word(&subject.file)).collect();
+            let all_stated: Option<String> =
+                stated.iter().map(|name| Some(format!(" --test {}", word(name.as_deref()?)))).collect();
+            let whole = subjects.iter().all(|subject| subject.part.is_none());
+            (
+                format!("{}calibration = palpate.calibrate(records)\n", list(subjects, stated)),
+                all_stated
+                    .filter(|_| whole)
+                    .map(|tests| format!("palpate calibrate {}{tests} --out {}", files.join(" "), word(out))),
+            )
+        }
+    };
+    Lines {
+        shell,
+        python: format!("import palpate\n\n{calibrated}calibration.material.write({})", literal(out)),
+    }
+}
+
+pub(crate) fn of_grip(material: &str, options: &PlanGrip) -> Lines {
+    let mut shell =
+        format!("palpate grip {} --mass '{} kg' --friction {}", word(material), options.mass_kg, options.friction);
+    let mut python = format!(
+        "import palpate\n\nmaterial = palpate.Material.read({})\ngrip = material.grip(mass_kg={}, friction={}",
+        literal(material),
+        options.mass_kg,
+        options.friction
+    );
+    let stated = [
+        ("squeeze", "squeeze_m", "m", options.squeeze_m),
+        ("hold", "hold_s", "s", options.hold_s),
+        ("speed", "speed_m_per_s", "m/s", options.speed_m_per_s),
+    ];
+    for (flag, keyword, unit, value) in stated {
+        if let Some(value) = value {
+            shell.push_str(&format!(" --{flag} '{value} {unit}'"));
+            python.push_str(&format!(", {keyword}={value}"));
+        }
+    }
+    if options.confidence != PlanGrip::default().confidence {
+        shell.push_str(&format!(" --confidence {}", options.confidence));
+        python.push_str(&format!(", confidence={}", options.confidence));
+    }
+    Lines {
+        shell: Some(shell),
+        python: python + ")\nprint(grip)",
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_are_words_of_a_shell_whatever_they_are() {
+        for (name, expected) in [
+            ("ball.csv", "ball.csv"),
+            ("my ball.csv", "'my ball.csv'"),
+            ("-rf", "./-rf"),
+            ("it's; rm *", "'it'\\''s; rm *'"),
+            ("$(x)", "'$(x)'"),
+        ] {
+            assert_eq!(word(name), expected);
+        }
+    }
+
+    #[test]
+    fn one_command_does_what_the_page_did_where_it_can() {
+        let one = Subject {
+            file: "a b.xlsx".to_owned(),
+            part: Some("Sheet 1".to_owned()),
+        };
+        let lines = of_analysis(&one, Some("a b.xlsx.test.toml"));
+        assert_eq!(
+            lines.shell.unwrap(),
+            "palpate analyze 'a b.xlsx' --test 'a b.xlsx.test.toml' --part 'Sheet 1' --out 'a b-report'"
+        );
+        assert!(
+            lines
+                .python
+                .contains("palpate.read(\"a b.xlsx\", test=\"a b.xlsx.test.toml\", part=\"Sheet 1\").analyze()")
+        );
+        let two = [one.clone(), Subject { part: None, ..one }];
+        assert_eq!(of_comparison(&two, &[None, None]).shell, None);
+    }
+}

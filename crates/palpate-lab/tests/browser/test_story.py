@@ -1,0 +1,312 @@
+"""A tester with a file and no manual: drop, correct, fit, calibrate, grip, take away."""
+
+from __future__ import annotations
+
+import json
+import os
+import re
+import subprocess
+import zipfile
+from pathlib import Path
+
+import numpy as np
+import pytest
+from conftest import EXAMPLES, Lab, Opened, opened
+from playwright.sync_api import Browser
+from records import steps, write
+
+WIDTHS = [1280, 420]
+
+
+def tab_to(found: Opened, name: str, most: int = 120) -> None:
+    """Goes to what has this name by the Tab key alone."""
+    for _ in range(most):
+        found.page.keyboard.press("Tab")
+        label = found.page.evaluate(
+            "(document.activeElement.getAttribute('aria-label') ?? document.activeElement.textContent ?? '').trim()"
+        )
+        if label == name:
+            return
+    raise AssertionError(f"{name} is not reached by Tab")
+
+
+@pytest.mark.parametrize("width", WIDTHS)
+def test_a_tester_gets_from_a_file_to_a_grip(browser: Browser, lab: Lab, width: int) -> None:
+    assert lab.folder is not None
+    found = opened(browser, lab.address, width)
+    page = found.page
+    assert found.accessible()
+
+    # The answer: phases, then the law.
+    found.drop(EXAMPLES / "ball.csv")
+    found.wait("#record figure")
+    found.wait("#laws .lede")
+    found.settle()
+    assert page.locator("#holds tbody tr").count() == 5
+    assert "latency:5" in page.inner_text("#laws .lede")
+    assert found.accessible()
+    if width == 1280:
+        found.picture("record")
+
+    # A boundary by the keyboard.
+    boundary = page.get_by_role("slider", name="Start of hold 2").locator("visible=true")
+    before = float(boundary.get_attribute("aria-valuenow") or "nan")
+    boundary.focus()
+    page.keyboard.press("ArrowRight")
+    page.keyboard.press("Shift+ArrowRight")
+    page.keyboard.press("Enter")
+    found.wait("caption:has-text('Holds as stated')")
+    found.settle()
+    description = (lab.folder / "ball.csv.test.toml").read_text()
+    assert description.count("[[phases.hold]]") == 5
+    moved = float(page.get_by_label("Start of hold 2, in seconds").input_value())
+    assert moved == pytest.approx(before + 11 * 103.0 / 400, abs=0.06)
+    # The hold begins with the first sample after the stated time.
+    stated = [float(time) for time in re.findall(r'from = "([\d.]+) s"', description)]
+    assert 0.0 <= moved - stated[1] < 0.051
+
+    # And by the mouse.
+    boundary = page.get_by_role("slider", name="End of hold 1").locator("visible=true")
+    box = boundary.bounding_box()
+    assert box is not None
+    start = float(boundary.get_attribute("aria-valuenow") or "nan")
+    page.mouse.move(box["x"] + box["width"] / 2, box["y"] + box["height"] / 2)
+    page.mouse.down()
+    page.mouse.move(box["x"] + box["width"] / 2 - 20, box["y"] + box["height"] / 2, steps=4)
+    page.mouse.up()
+    found.settle()
+    end = float(page.get_by_label("End of hold 1, in seconds").input_value())
+    assert 0.5 < start - end < 30.0, (start, end)
+    page.get_by_role("button", name="Detect again").click()
+    found.wait("caption:has-text('Holds as detected')")
+    found.settle()
+
+    # The body: what is wrong stands where it is wrong.
+    page.select_option("#shape", "ball")
+    page.fill("#size-radius", "35")
+    page.press("#size-radius", "Tab")
+    found.wait("#body .finding")
+    assert "unit" in page.inner_text("#body .finding")
+    page.fill("#size-radius", "35 mm")
+    page.press("#size-radius", "Tab")
+    page.wait_for_timeout(300)
+    found.settle()
+    assert page.locator("#body .finding").count() == 0
+    # Strains now, and a rate coefficient in 1/s.
+    assert "ε(t)" in page.inner_text("#laws .formulas")
+    assert 'radius = "35 mm"' in (lab.folder / "ball.csv.test.toml").read_text()
+
+    # Columns, and which are guessed.
+    page.click("#columns > summary")
+    assert page.locator("#columns .guess").count() == 3
+    page.get_by_role("button", name="Confirm the use of column 1").click()
+    found.settle()
+    assert page.locator("#columns .guess").count() == 2
+    assert found.accessible()
+
+    # A material and a grip: the verdict follows the sliders.
+    page.get_by_role("button", name="Calibrate on the whole record").click()
+    found.wait(".grip-panel figure")
+    found.settle()
+    assert (lab.folder / "ball.material.toml").is_file()
+    page.get_by_label("Mass, g").fill("185")
+    page.get_by_label("Mass, g").press("Tab")
+    page.get_by_label("Hold, s").fill("10")
+    page.get_by_label("Hold, s").press("Tab")
+    page.get_by_label("Squeeze, mm").fill("5")
+    page.get_by_label("Squeeze, mm").press("Tab")
+    found.wait(".verdict.yes:has-text('5.000 mm')")
+    if width == 1280:
+        found.picture("grip", ".grip-panel")
+    page.get_by_role("slider", name="Mass").focus()
+    for _ in range(6):
+        page.keyboard.press("PageUp")
+    found.wait(".verdict.no")
+    assert re.search(r"No: a squeeze of 5\.000 mm .* with a probability of (less than )?[\d.]+ %", page.inner_text(".verdict"))
+    assert found.accessible()
+    # Nothing but the radius without a unit was refused.
+    [message] = found.messages
+    assert "422" in message and found.foreign == []
+    found.context.close()
+
+
+def test_what_is_taken_away_is_what_the_command_makes(browser: Browser, lab: Lab, tmp_path: Path) -> None:
+    assert lab.folder is not None
+    found = opened(browser, lab.address)
+    page = found.page
+    found.drop(EXAMPLES / "ball.csv")
+    found.wait("#laws .lede")
+    found.settle()
+
+    def saved(name: str) -> Path:
+        with page.expect_download() as download:
+            page.get_by_role("link", name=name, exact=True).click()
+        path = tmp_path / download.value.suggested_filename
+        download.value.save_as(path)
+        return path
+
+    assert saved("Figure, PDF").read_bytes().startswith(b"%PDF")
+    with zipfile.ZipFile(saved("Workbook")) as book:
+        assert "xl/workbook.xml" in book.namelist()
+    with zipfile.ZipFile(saved("All figures, PDF")) as figures:
+        assert len(figures.namelist()) >= 5 and all(name.endswith(".pdf") for name in figures.namelist())
+    report = saved("Report").read_text()
+    assert "<title>ball</title>" in report and "Content-Security-Policy" in report
+    answer = json.loads(saved("JSON").read_text())
+
+    page.click("#laws .lines > summary")
+    line = page.inner_text("#laws .copied code >> nth=0")
+    assert line == "palpate analyze ball.csv --out ball-report"
+    where = {"PATH": f"{Path(os.environ['PALPATE']).parent}:{os.environ['PATH']}"}
+    subprocess.run(line, shell=True, cwd=lab.folder, env={**os.environ, **where}, check=True, stdout=subprocess.DEVNULL)
+    same = json.loads((lab.folder / "ball-report/analysis.json").read_text())
+    assert answer["holds"] == same["holds"] and answer["findings"] == same["findings"]
+
+    # The report stands on the page too, and cannot reach it.
+    page.click("#report > summary")
+    frame = page.frame_locator("#report iframe")
+    assert frame.locator("h1").inner_text() == "ball"
+    assert page.get_attribute("#report iframe", "sandbox") == "allow-scripts allow-popups allow-downloads"
+    assert found.messages == [] and found.foreign == []
+    found.context.close()
+
+
+def test_the_sliders_follow_the_hand(browser: Browser, lab: Lab) -> None:
+    """Thirty answers a second on an idle machine (validation); here a share of that, beside other tests."""
+    assert lab.folder is not None
+    (lab.folder / "ball.material.toml").write_bytes((EXAMPLES / "ball-material.toml").read_bytes())
+    found = opened(browser, lab.address)
+    found.page.get_by_role("button", name="ball.material.toml").click()
+    found.wait(".grip-panel figure")
+    answers = found.page.evaluate("""async () => {
+        let count = 0;
+        document.addEventListener("tried", () => (count += 1));
+        const slider = document.getElementById("grip-mass");
+        const began = performance.now();
+        for (let step = 300; performance.now() - began < 1500; step += 2) {
+            slider.value = String(step % 1000);
+            slider.dispatchEvent(new Event("input", { bubbles: true }));
+            await new Promise((resolve) => requestAnimationFrame(resolve));
+        }
+        return (1000 * count) / (performance.now() - began);
+    }""")
+    print(f"{answers:.0f} answers a second")
+    assert answers > 10
+    found.context.close()
+
+
+def test_many_tests_of_one_file_grow_into_a_table(browser: Browser, lab: Lab, tmp_path: Path) -> None:
+    archive = tmp_path / "curves.zip"
+    with zipfile.ZipFile(archive, "w") as packed:
+        for number in range(60):
+            curve = write(tmp_path / f"curve {number:02d}.csv", steps([2.0 + 0.05 * ((7 * number) % 60)], 8.0, 25.0, number))
+            packed.write(curve, curve.name)
+        packed.writestr("broken.csv", "Time (s),Force (N)\n0,1\n1,x\n")
+    found = opened(browser, lab.address)
+    page = found.page
+    found.drop(archive)
+    found.wait("#tests tbody tr")
+    found.settle()
+    rows = page.locator("#tests tbody tr")
+    assert rows.count() >= 60
+    # Sorted by a parameter, falling.
+    head = page.get_by_role("button", name="Force at start")
+    head.click()
+    head.click()
+    column = page.evaluate("""() => {
+        const at = [...document.querySelectorAll("#tests thead th")].findIndex((one) => one.textContent.startsWith("Force at start"));
+        return [...document.querySelectorAll("#tests tbody tr")].map((row) => row.cells[at]?.textContent ?? "").filter((text) => text && text !== "–").map((text) => Number(text.replace("−", "-")));
+    }""")
+    assert len(column) == 60 and column == sorted(column, reverse=True)
+    assert found.accessible()
+    page.get_by_role("button", name="curve 05").click()
+    found.wait("#record figure")
+    found.settle()
+    assert page.locator("#holds tbody tr").count() == 1
+    page.get_by_role("button", name="‹ curves.zip").click()
+    found.wait("#tests tbody tr")
+    assert found.messages == [] and found.foreign == []
+    found.context.close()
+
+
+def test_records_stand_beside_each_other_and_make_one_material(browser: Browser, lab: Lab, tmp_path: Path) -> None:
+    assert lab.folder is not None
+    files = [write(tmp_path / f"pad {number}.csv", steps([3.0, 1.0], 12.0, 12.0, number)) for number in (1, 2)]
+    found = opened(browser, lab.address)
+    page = found.page
+    found.drop(*files)
+    found.wait("#laws .lede")
+    for file in files:
+        page.get_by_label(f"Choose {file.name}").check()
+    page.get_by_role("button", name="Compare 2 records").click()
+    found.wait("#compared iframe")
+    frame = page.frame_locator("#compared iframe")
+    assert "2 specimens" in frame.locator("body").inner_text() or frame.locator(".cards li").count() == 2
+    found.click("#compared .lines > summary")
+    assert page.inner_text("#compared .copied code >> nth=0") == "palpate analyze 'pad 1.csv' 'pad 2.csv' --out comparison"
+    # Without a body there is no material, and the page states what helps.
+    page.get_by_role("button", name="Calibrate 2 records together").click()
+    found.wait("#material .finding")
+    assert "specimen" in page.inner_text("#material .finding")
+    found.context.close()
+
+
+def test_a_record_that_nobody_could_read_is_described_until_it_can(browser: Browser, lab: Lab, tmp_path: Path) -> None:
+    table = steps([3.0, 1.0], 12.0, 12.0, 4)
+    np.savetxt(tmp_path / "odd.csv", table, delimiter=",", header="a,b,c", comments="", fmt="%.5f")
+    found = opened(browser, lab.address)
+    page = found.page
+    found.drop(tmp_path / "odd.csv")
+    found.wait("#record .finding")
+    assert page.locator("#laws").count() == 0
+    for number, use, unit in [(1, "time", "s"), (2, "displacement", "mm"), (3, "force", "N")]:
+        page.get_by_label(f"Use of column {number}").select_option(use)
+        found.settle()
+    # The file gives no units: those are stated as text, by its draft.
+    page.click("#text > summary")
+    text = "[columns]\n" + "".join(
+        f'{use} = {{ column = {number}, unit = "{unit}" }}\n'
+        for number, use, unit in [(1, "time", "s"), (2, "displacement", "mm"), (3, "force", "N")]
+    )
+    page.fill("#text textarea", text)
+    page.get_by_role("button", name="Apply").click()
+    found.wait("#laws .lede")
+    assert page.locator("#holds tbody tr").count() == 2
+    found.context.close()
+
+
+def test_twenty_four_holds_and_a_long_record_stay_usable(browser: Browser, lab: Lab, tmp_path: Path) -> None:
+    many = write(tmp_path / "many.csv", steps([3.0, 1.5, 5.0, 2.0] * 6, 12.0, 12.0, 1))
+    found = opened(browser, lab.address, 420)
+    page = found.page
+    found.drop(many)
+    found.wait("#laws .lede", 60.0)
+    assert page.locator("#holds tbody tr").count() == 24
+    found.settle()
+    assert found.accessible()
+    # A task that takes long is ended by a button.
+    long = write(tmp_path / "long.csv", steps([4.0, 2.0], 499.0, 200.0, 2))
+    found.drop(long)
+    found.wait("#record figure", 30.0)
+    cancel = page.locator("#laws").get_by_role("button", name="Cancel")
+    cancel.click(timeout=30_000)
+    found.wait("#laws p:has-text('Cancelled.')")
+    assert page.locator("#holds tbody tr").count() == 2
+    found.context.close()
+
+
+def test_all_of_it_is_reached_by_the_keyboard(browser: Browser, lab: Lab) -> None:
+    assert lab.folder is not None
+    (lab.folder / "ball.csv").write_bytes((EXAMPLES / "ball.csv").read_bytes())
+    found = opened(browser, lab.address)
+    found.wait("#laws .lede")
+    found.settle()
+    found.page.evaluate("document.activeElement.blur()")
+    for name in ["Skip to the record", "Choose ball.csv", "ball.csv", "Start of hold 1", "End of hold 5"]:
+        tab_to(found, name)
+    for name in ["Start of hold 1, in seconds", "Remove hold 5", "Add a hold", "Report", "Calibrate on the whole record"]:
+        tab_to(found, name)
+    found.page.keyboard.press("Enter")
+    found.wait("#grip .finding")
+    assert "specimen" in found.page.inner_text("#grip .finding")
+    found.context.close()
