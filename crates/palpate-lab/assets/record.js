@@ -206,11 +206,20 @@ export const columnTable = (description, inspected, vocabulary) => {
   const units = new Map(vocabulary.quantities.map(({ name, units: of }) => [name, of]));
   const names = inspected.columns.map((column) => column.name);
   const reference = (column) => (column.name && names.filter((name) => name === column.name).length === 1 ? column.name : column.number);
+  const choices = [...vocabulary.quantities.map(({ name }) => name), "deflection"];
+  // What is stated of a column counts too where the file cannot be read yet.
+  const stated = (column) => {
+    for (const quantity of choices) {
+      const of = description.get("columns", quantity);
+      if (!of || (of.column !== column.number && of.column !== column.name)) continue;
+      return { quantity, role: quantity === "deflection" ? quantity : "values", unit: of.unit ?? column.unit ?? "", sign: of.sign ?? 1, column_is_stated: true, unit_is_stated: of.unit !== undefined };
+    }
+    return undefined;
+  };
   const rows = inspected.columns.map((column) => {
-    const used = column.used_as[0];
+    const used = column.used_as[0] ?? stated(column);
     const quantity = used ? (used.role === "deflection" ? "deflection" : used.role === "values" ? used.quantity : used.role) : "";
     const fixed = used && !["values", "deflection"].includes(used.role);
-    const choices = ["", ...vocabulary.quantities.map(({ name }) => name), "deflection"];
     const use = el("select", {
       "aria-label": `Use of column ${column.number}`, disabled: fixed,
       onchange: (event) => {
@@ -220,7 +229,7 @@ export const columnTable = (description, inspected, vocabulary) => {
         if (chosen) edits.push({ key: ["columns", chosen], value: null }, { key: ["columns", chosen, "column"], value: reference(column) });
         description.edit(edits, { beside: wrong });
       },
-    }, choices.map((name) => el("option", { value: name, selected: name === quantity }, name || "not used")), fixed && el("option", { selected: true }, used.role));
+    }, ["", ...choices].map((name) => el("option", { value: name, selected: name === quantity }, name || "not used")), fixed && el("option", { selected: true }, used.role));
     const fieldUnits = units.get(quantity === "deflection" ? "displacement" : quantity) ?? [];
     const unit = used && !fixed && el("select", {
       "aria-label": `Unit of column ${column.number}`,
@@ -229,7 +238,7 @@ export const columnTable = (description, inspected, vocabulary) => {
         if (!used.column_is_stated) edits.unshift({ key: ["columns", quantity, "column"], value: reference(column) });
         description.edit(edits, { beside: wrong });
       },
-    }, el("option", { value: "", selected: !used.unit_is_stated }, `${used.unit}${used.unit_is_stated ? "" : " (file)"}`), fieldUnits.map((name) => el("option", { value: name, selected: used.unit_is_stated && name === used.unit }, name)));
+    }, el("option", { value: "", selected: !used.unit_is_stated }, used.unit ? `${used.unit}${used.unit_is_stated ? "" : " (file)"}` : "choose a unit"), fieldUnits.map((name) => el("option", { value: name, selected: used.unit_is_stated && name === used.unit }, name)));
     const sign = used && !fixed && quantity !== "time" && el("label", { className: "check" }, el("input", {
       type: "checkbox", checked: used.sign < 0,
       onchange: (event) => {
@@ -244,6 +253,14 @@ export const columnTable = (description, inspected, vocabulary) => {
       el("th", { scope: "row" }, String(column.number)), el("td", {}, column.name ?? "(no name)"), el("td", {}, column.unit ?? "–"),
       el("td", { className: "n" }, column.sample), el("td", {}, use), el("td", {}, unit), el("td", {}, sign), el("td", {}, guess));
   });
+  const timed = inspected.columns.some((column) => (column.used_as[0] ?? stated(column))?.quantity === "time");
+  const rate = !timed && el("label", {}, "Without a column of time: samples per second ", el("input", {
+    type: "text", placeholder: "10 kHz", value: description.get("columns", "time", "rate") ?? "",
+    onchange: (event) => {
+      const value = event.target.value.trim();
+      description.edit([{ key: ["columns", "time", "rate"], value: value === "" ? null : /^[\d.]+$/.test(value) ? `${value} Hz` : value }], { beside: wrong });
+    },
+  }));
   const machines = el("select", {
     "aria-label": "Machine with known conventions",
     onchange: (event) => description.edit([{ key: ["machine", "preset"], value: event.target.value || null }], { beside: wrong }),
@@ -251,7 +268,7 @@ export const columnTable = (description, inspected, vocabulary) => {
   return el("div", {},
     el("div", { className: "scroll", tabindex: "0", role: "region", "aria-label": "Columns" }, el("table", {},
       el("thead", {}, el("tr", {}, ["Column", "Name", "Unit", "First value", "Used as", "Read in", "Sign", "Known"].map((head) => el("th", { scope: "col" }, head)))), el("tbody", {}, rows))),
-    el("p", {}, el("label", {}, "Machine ", machines)), wrong);
+    rate && el("p", {}, rate), el("p", {}, el("label", {}, "Machine ", machines)), wrong);
 };
 
 const EXAMPLES = { radius: "35 mm", diameter: "20 mm", width: "10 mm", thickness: "2 mm", length: "50 mm", area: "100 mm^2", depth: "35 mm", half_angle: "35 deg", cone_angle: "2 deg", modulus: "28 kPa", poisson_ratio: "0.5" };

@@ -5,6 +5,9 @@ import { button, drawn, el, progress, refusal, say, shown } from "./dom.js";
 import { calibration, gripPanel, lines } from "./grip.js";
 import { Description, PhaseFigure, bodyForm, columnTable, holdTable, textForm } from "./record.js";
 
+// Rows of a record whose laws are compared in a second step.
+const LONG = 20000;
+
 const card = (id, heading, ...children) => el("section", { className: "card", "aria-labelledby": `${id}-heading` }, el("h2", { id: `${id}-heading` }, heading), el("div", { id }, ...children));
 const failed = (error) => (error instanceof Cancelled ? el("p", {}, "Cancelled.") : refusal(error));
 
@@ -78,6 +81,7 @@ export class Study {
     const made = await into(this.record, { kind: "inspect", subject: this.subject }, (answer) => this.shownRecord(answer, open));
     if (!made) return;
     const { tests } = made.answer.document;
+    this.rows = tests[0]?.rows ?? 0;
     if (tests.length > 1) return this.many();
     if (!tests[0]?.record || tests[0].refused) {
       this.cards.replaceChildren(this.cards.firstChild);
@@ -118,8 +122,14 @@ export class Study {
     return parts;
   }
 
+  // Of a long record the latency law comes first; the comparison of all laws takes several times as long.
   async analyze() {
-    const made = await into(this.laws, { kind: "analyze", subject: this.subject, options: {} }, (answer, id) => {
+    const options = this.rows > LONG ? [{ compare: false }, {}] : [{}];
+    for (const one of options) if (!(await this.analyzed(one))) return;
+  }
+
+  async analyzed(options) {
+    const made = await into(this.laws, { kind: "analyze", subject: this.subject, options }, (answer, id) => {
       const file = (path) => `api/tasks/${id}/files/${path}`;
       const stem = this.subject.file.replace(/\.[^.]*$/, "");
       const report = el("details", { id: "report", ontoggle: () => { if (report.open && !report.querySelector("iframe")) report.append(el("iframe", { src: file("report.html"), title: `Report of ${answer.title}`, sandbox: "allow-scripts allow-popups allow-downloads" })); } }, el("summary", {}, "Whole report"));
@@ -134,6 +144,7 @@ export class Study {
     const lede = this.laws.querySelector(".lede")?.textContent ?? "";
     this.answer.replaceChildren(lede);
     if (made) say(lede);
+    return made;
   }
 
   saveText(name, text) {

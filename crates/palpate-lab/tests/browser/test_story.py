@@ -262,14 +262,8 @@ def test_a_record_that_nobody_could_read_is_described_until_it_can(browser: Brow
     for number, use, unit in [(1, "time", "s"), (2, "displacement", "mm"), (3, "force", "N")]:
         page.get_by_label(f"Use of column {number}").select_option(use)
         found.settle()
-    # The file gives no units: those are stated as text, by its draft.
-    page.click("#text > summary")
-    text = "[columns]\n" + "".join(
-        f'{use} = {{ column = {number}, unit = "{unit}" }}\n'
-        for number, use, unit in [(1, "time", "s"), (2, "displacement", "mm"), (3, "force", "N")]
-    )
-    page.fill("#text textarea", text)
-    page.get_by_role("button", name="Apply").click()
+        page.get_by_label(f"Unit of column {number}").select_option(unit)
+        found.settle()
     found.wait("#laws .lede")
     assert page.locator("#holds tbody tr").count() == 2
     found.context.close()
