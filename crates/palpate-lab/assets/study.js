@@ -100,7 +100,10 @@ export class Study {
     const inspected = found.tests[0];
     const folded = (id, title, content, isOpen = false) => el("details", { id, open: isOpen || open.includes(id) }, el("summary", {}, title), content);
     const skipped = found.skipped.length > 0 && el("p", { className: "small" }, `Besides: ${found.skipped.slice(0, 5).map(({ name, reason }) => `${name} (${reason})`).join("; ")}${found.skipped.length > 5 ? ` and ${found.skipped.length - 5} more` : ""}.`);
-    if (found.tests.length !== 1) return [el("p", {}, `${found.format}, ${found.tests.length} tests.`), skipped, folded("text", "Test description, for all tests", textForm(this.description, draft))].filter(Boolean);
+    if (found.tests.length !== 1) {
+      const read = found.tests.find((test) => test.columns.some((column) => column.used_as.length)) ?? found.tests[0];
+      return [el("p", {}, `${found.format}, ${found.tests.length} tests.`), skipped, folded("columns", "Columns and units, for all tests", columnTable(this.description, read, this.vocabulary)), folded("text", "Test description, for all tests", textForm(this.description, draft))].filter(Boolean);
+    }
     const record = inspected.record;
     const parts = [];
     if (inspected.refused) parts.push(refusal(inspected.refused));

@@ -31,7 +31,8 @@ pub struct InspectionDocument {
     pub skipped: Vec<SkippedDocument>,
 }
 
-/// A test of a file. Only one that is alone, or was chosen, is read to its phases.
+/// A test of a file. Only one that is alone, or was chosen, is read to its phases; of several the use of columns is that of the first which
+/// can be read.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct InspectedTest {
     /// What the file calls it; `null` where it is the only one and has no name.

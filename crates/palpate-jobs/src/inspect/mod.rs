@@ -75,8 +75,11 @@ impl Inspect {
                 // What is stated for all, by the first that can be read.
                 let file = several.iter().find_map(|part| Some((*part, opened.read(*part, watch).ok()?)));
                 let mut parts = several.to_vec();
-                if let Some((first, _)) = &file {
+                if let Some((first, file)) = &file {
                     parts.sort_by_key(|part| part != first);
+                    let place = several.iter().position(|part| part == first);
+                    let document = place.and_then(|place| found.document.tests.get_mut(place));
+                    document.into_iter().for_each(|test| test.read(file, opened.described.test.as_ref()));
                 }
                 found.description = Some(describe_all(&opened.contents, &parts, file.as_ref().map(|(_, file)| file)));
                 many_tests(opened, several, &mut notes, watch).map(|tests| found.text.push_str(&tests))
