@@ -58,9 +58,10 @@ impl Made {
         self
     }
 
-    /// Whether it keeps a whole record.
-    pub(crate) fn keeps_record(&self) -> bool {
-        self.analyzed.is_some()
+    /// Whether it keeps a whole record, or files of as many bytes as one.
+    pub(crate) fn is_large(&self) -> bool {
+        const LARGE: usize = 1 << 20;
+        self.analyzed.is_some() || self.files.iter().map(|(_, content)| content.len()).sum::<usize>() > LARGE
     }
 
     /// The curves with positions.

@@ -17,8 +17,8 @@ use crate::folder::Folder;
 
 /// Tasks that are kept once they are done.
 const KEPT: usize = 200;
-/// Those of them that keep a whole record with its fits, which files are made of.
-const KEPT_WHOLE: usize = 12;
+/// Those of them that keep a whole record with its fits, which files are made of, or large files.
+const KEPT_LARGE: usize = 12;
 /// How often a page hears of progress.
 const HEARD: Duration = Duration::from_millis(80);
 
@@ -274,9 +274,9 @@ impl Tasks {
         for id in &old[..old.len().saturating_sub(KEPT)] {
             inner.tasks.remove(id);
         }
-        let whole = |task: &&Task| task.made.as_ref().is_some_and(|made| made.keeps_record());
-        let whole: Vec<u64> = inner.tasks.iter().filter(|(_, task)| whole(task)).map(|(id, _)| *id).collect();
-        for id in &whole[..whole.len().saturating_sub(KEPT_WHOLE)] {
+        let large = |task: &&Task| task.made.as_ref().is_some_and(|made| made.is_large());
+        let large: Vec<u64> = inner.tasks.iter().filter(|(_, task)| large(task)).map(|(id, _)| *id).collect();
+        for id in &large[..large.len().saturating_sub(KEPT_LARGE)] {
             inner.tasks.remove(id);
         }
     }
