@@ -140,7 +140,7 @@ export class Study {
       const summary = ["pdf", "svg", "png"].map((format) => el("a", { href: file(`figures/summary.${format}`), download: `${stem}-summary.${format}` }, `Figure, ${format.toUpperCase()}`));
       return [
         drawn(answer.first, "first answer"), report,
-        el("div", { className: "takeaway", role: "group", "aria-label": "Take away" }, el("a", { href: file("report.html"), download: `${stem}-report.html` }, "Report"), el("a", { href: file("tables.xlsx"), download: `${stem}.xlsx` }, "Workbook"), el("a", { href: file("analysis.json"), download: `${stem}.json` }, "JSON"), summary, many("pdf"), this.description.stated.text && button("Test description", () => this.saveText(`${this.subject.file}.test.toml`, this.description.stated.text), { className: "link" })),
+        el("div", { className: "takeaway", role: "group", "aria-label": "Take away" }, el("a", { href: file("report.html"), download: `${stem}-report.html` }, "Report"), answer.files.includes("tables.xlsx") && el("a", { href: file("tables.xlsx"), download: `${stem}.xlsx` }, "Workbook"), el("a", { href: file("analysis.json"), download: `${stem}.json` }, "JSON"), summary, many("pdf"), this.description.stated.text && button("Test description", () => this.saveText(`${this.subject.file}.test.toml`, this.description.stated.text), { className: "link" })),
         lines(answer.lines),
       ];
     });

@@ -7,6 +7,7 @@ import os
 import re
 import socket
 import stat
+import subprocess
 import threading
 import time
 from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
@@ -47,6 +48,29 @@ def test_another_user_gets_nothing_without_the_address(lab: Lab) -> None:
     if not own.startswith("127."):
         with pytest.raises(OSError):
             socket.create_connection((own, port), timeout=1).close()
+
+
+def test_the_browser_gets_the_address_by_a_file_that_is_private(tmp_path: Path) -> None:
+    opened_with = tmp_path / "arguments"
+    opener = tmp_path / "bin/xdg-open"
+    opener.parent.mkdir()
+    opener.write_text(f"#!/bin/sh\nprintf '%s\\n' \"$@\" > '{opened_with}.part' && mv '{opened_with}.part' '{opened_with}'\n")
+    opener.chmod(0o755)
+    where = {**os.environ, "PATH": f"{opener.parent}:{os.environ['PATH']}", "TMPDIR": str(tmp_path)}
+    words = [os.environ["PALPATE"], "lab", str(tmp_path)]
+    with subprocess.Popen(words, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, env=where) as lab:
+        assert lab.stdout is not None
+        address = lab.stdout.readline().strip()
+        end = time.monotonic() + 10
+        while not opened_with.exists() and time.monotonic() < end:
+            time.sleep(0.05)
+        [argument] = opened_with.read_text().splitlines()
+        page = Path(argument)
+        assert urlsplit(address).path.strip("/") not in argument
+        assert address in page.read_text()
+        assert stat.S_IMODE(page.parent.stat().st_mode) == 0o700
+        lab.terminate()
+    assert not page.exists()
 
 
 def test_a_temporary_folder_is_private_and_goes(tmp_path: Path) -> None:
