@@ -1,5 +1,6 @@
 //! Long work beside the interpreter: without the GIL, ended by Ctrl-C, and no panic crosses.
 
+use std::any::Any;
 use std::io::{self, Write};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::process;
@@ -72,7 +73,7 @@ impl Watch for Heard {
     }
 }
 
-fn broken(panic: &(dyn std::any::Any + Send)) -> PyErr {
+fn broken(panic: &(dyn Any + Send)) -> PyErr {
     let text = panic.downcast_ref::<&str>().map(|text| (*text).to_owned());
     let text = text.or_else(|| panic.downcast_ref::<String>().cloned()).unwrap_or_default();
     refused::<PalpateError>(
@@ -117,6 +118,22 @@ fn on_a_thread<T: Send + 'static>(
     tell: Option<&Py<PyAny>>,
     work: impl FnOnce(Heard) -> T + Send + 'static,
 ) -> PyResult<T> {
+    let work = Box::new(move |heard| Box::new(work(heard)) as Anything);
+    let made = awaited(py, effects, tell, work)?;
+    made.downcast()
+        .map(|made| *made)
+        .map_err(|_| broken(&"the work ended with a result of another type"))
+}
+
+/// The result of any work. The thread and the channel for it are compiled once, in place of once for each type of result.
+type Anything = Box<dyn Any + Send>;
+
+fn awaited(
+    py: Python<'_>,
+    effects: Effects,
+    tell: Option<&Py<PyAny>>,
+    work: Box<dyn FnOnce(Heard) -> Anything + Send>,
+) -> PyResult<Anything> {
     let (heard, (sender, mut receiver)) = (Heard::default(), channel());
     let (stop, done) = (Arc::clone(&heard.stop), Arc::clone(&heard.done));
     let worker = thread::spawn(move || {
@@ -124,7 +141,7 @@ fn on_a_thread<T: Send + 'static>(
         let _ = sender.send(catch_unwind(AssertUnwindSafe(|| work(heard))));
     });
     // An exception ends the work before it ends the call, or soon after.
-    let ended = |worker: thread::JoinHandle<()>, receiver: Receiver<thread::Result<T>>| {
+    let ended = |worker: thread::JoinHandle<()>, receiver: Receiver<thread::Result<Anything>>| {
         stop.store(true, Ordering::Relaxed);
         py.detach(move || match effects {
             Effects::None => receiver.recv_timeout(PATIENCE).map_or(Ok(()), |done| done.map(drop)),

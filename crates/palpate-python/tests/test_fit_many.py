@@ -69,14 +69,19 @@ def test_tables_go_to_every_library() -> None:
     arrow = pyarrow.table(table)
     assert arrow.column_names == table.column_names
     assert polars.DataFrame(table).columns == table.column_names
-    assert list(pandas.DataFrame.from_arrow(table).columns) == table.column_names
     with pytest.raises(KeyError, match="no column is called"):
         table["nothing"]
 
 
+@pytest.mark.skipif(not hasattr(pandas.DataFrame, "from_arrow"), reason="pandas 3")
+def test_pandas_takes_a_table_through_arrow() -> None:
+    table = palpate.fit_many(TIMES, SIGNALS)
+    assert list(pandas.DataFrame.from_arrow(table).columns) == table.column_names
+
+
 def test_pandas_takes_a_table_as_it_is() -> None:
     table = palpate.fit_many(TIMES, [*SIGNALS[:3], SIGNALS[3] * 0])
-    frame, whole = pandas.DataFrame(table), pandas.DataFrame.from_arrow(table)
+    frame, whole = pandas.DataFrame(table), pyarrow.table(table).to_pandas()
     assert list(frame.columns) == table.column_names and len(frame) == 4
     for name in table.column_names:
         if isinstance(table[name], np.ndarray):

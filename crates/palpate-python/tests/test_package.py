@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import tomllib
 from importlib.metadata import distribution
 from pathlib import Path
 from typing import Any, get_args
@@ -30,6 +31,15 @@ def test_the_package_says_what_it_offers() -> None:
     offered = {name for name in dir(palpate) if not name.startswith("_")}
     assert offered == set(palpate.__all__)
     assert all(hasattr(palpate, name) for name in dir(palpate))
+
+
+def test_the_oldest_versions_that_are_declared_are_tested(root: Path) -> None:
+    package = root / "crates/palpate-python"
+    project = tomllib.loads((package / "pyproject.toml").read_text(encoding="utf-8"))["project"]
+    declared = [*project["dependencies"], *(one for extra in project["optional-dependencies"].values() for one in extra)]
+    tested = (package / "tests/requirements-oldest.in").read_text(encoding="utf-8").split()
+    whole = [one.replace(">=", "==") + ".0" * (2 - one.count(".")) for one in declared]
+    assert [one for one in whole if one not in tested] == []
 
 
 def words_of(option: str) -> dict[str, Any]:

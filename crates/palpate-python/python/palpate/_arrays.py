@@ -68,6 +68,16 @@ def _seconds(array: NDArray[Any], name: str) -> NDArray[Any]:
     return array
 
 
+def is_of_numpy(curves: Any) -> bool:
+    """Whether this is read as an array of NumPy even where it offers itself to Arrow.
+
+    An array with named dimensions, of xarray, is a table of one column to Arrow, and polars before 1.34 exports dates and
+    durations as whole numbers of an unknown unit.
+    """
+    is_time = str(getattr(curves, "dtype", "")).lower().startswith(("date", "timedelta", "duration"))
+    return is_time or hasattr(curves, "dims")
+
+
 def as_ragged(curves: Any, name: str, omit_nan: bool = False) -> tuple[NDArray[np.float64], NDArray[np.int64], dict[int, str]]:
     """Curves of any lengths one behind the other, where each begins and the last ends, and what is wrong with which.
 
@@ -78,9 +88,8 @@ def as_ragged(curves: Any, name: str, omit_nan: bool = False) -> tuple[NDArray[n
         # To go through a table of pandas is to go through the names of its columns.
         hint = 'hint: pass one column, such as table["force_n"], or the rows of table.to_numpy()'
         raise OptionError(f"{name}: expected a list of curves, found a table of {len(curves.columns)} columns\n{hint}")
-    # Columns of Arrow come here where they are dates or durations; older pandas and polars have no Arrow for them.
-    is_time = str(getattr(curves, "dtype", "")).lower().startswith(("date", "timedelta", "duration"))
-    if is_time or hasattr(curves, "dims") or hasattr(curves, "__arrow_c_stream__") or hasattr(curves, "__arrow_c_array__"):
+    # Columns of Arrow come here where they are dates or durations.
+    if is_of_numpy(curves) or hasattr(curves, "__arrow_c_stream__") or hasattr(curves, "__arrow_c_array__"):
         curves = np.asarray(curves)
     if isinstance(curves, np.ndarray) and curves.ndim == 2:
         flat = as_doubles(curves.reshape(-1), name, omit_nan)

@@ -36,17 +36,17 @@ fn numbers(curve: &Curve) -> Result<&[f64], String> {
 
 /// Lists of numbers from Arrow, or from anything that `palpate._arrays.as_ragged` understands.
 ///
-/// An array with named dimensions, of xarray, offers itself to Arrow as a table of one column; it is an array here, and so is one
-/// column of dates or durations.
+/// One column of dates or durations goes the way of NumPy, which knows their units.
 fn ragged(curves: &Bound<'_, PyAny>, name: &str, omit_nan: bool) -> PyResult<Ragged> {
+    let arrays = curves.py().import("palpate._arrays")?;
     let is_of_arrow = curves.hasattr("__arrow_c_stream__")? || curves.hasattr("__arrow_c_array__")?;
-    if is_of_arrow && !curves.hasattr("dims")? {
+    if is_of_arrow && !arrays.call_method1("is_of_numpy", (curves,))?.is_truthy()? {
         let column = curves.extract::<AnyArray>()?.into_chunked_array()?;
         if !column.data_type().is_temporal() {
             return of_arrow(&column, name, omit_nan);
         }
     }
-    let found = curves.py().import("palpate._arrays")?.call_method1("as_ragged", (curves, name, omit_nan))?;
+    let found = arrays.call_method1("as_ragged", (curves, name, omit_nan))?;
     type Found<'py> = (Bound<'py, PyArray1<f64>>, Bound<'py, PyArray1<i64>>, HashMap<usize, String>);
     let (values, offsets, mut wrong): Found<'_> = found.extract()?;
     let offsets: Vec<usize> = offsets.try_readonly()?.as_array().iter().map(|offset| *offset as usize).collect();
