@@ -85,24 +85,46 @@ impl Simulate {
         driver: Option<(&Record, &str)>,
         watch: &mut dyn Watch,
     ) -> Result<Outcome<Simulated>, JobError> {
-        self.run_text(&read_protocol_text(path)?, path, driver, watch)
+        let text = read_protocol_text(path)?;
+        match driver {
+            None => self.run_protocol(parse_protocol(&text, path)?, path, watch),
+            Some(driver) => self.run_driven(parse_scene(&text, path)?, driver, watch),
+        }
     }
 
-    /// Likewise, of the text of a protocol; `path` is used in messages, and for the files that it names.
+    /// Simulates a protocol that was read already; `place` names it in messages.
     ///
     /// # Errors
     /// As for [`run`](Self::run).
-    pub fn run_text(
+    pub fn run_protocol(
         self,
-        text: &str,
-        path: &Path,
-        driver: Option<(&Record, &str)>,
+        protocol: Protocol,
+        place: &Path,
         watch: &mut dyn Watch,
     ) -> Result<Outcome<Simulated>, JobError> {
-        let (scene, mut notes) = match driver {
-            None => stepped(text, path)?,
-            Some((record, place)) => (self.driven(text, path, record, place)?, Vec::new()),
-        };
+        let (scene, notes) = stepped(protocol, place);
+        self.run_scene(scene, notes, watch)
+    }
+
+    /// Simulates a body, with the title of its protocol, under a record and its name.
+    ///
+    /// # Errors
+    /// As for [`run`](Self::run).
+    pub fn run_driven(
+        self,
+        body: (Option<String>, Contact),
+        driver: (&Record, &str),
+        watch: &mut dyn Watch,
+    ) -> Result<Outcome<Simulated>, JobError> {
+        self.run_scene(self.driven(body, driver)?, Vec::new(), watch)
+    }
+
+    fn run_scene(
+        self,
+        scene: Scene,
+        mut notes: Vec<String>,
+        watch: &mut dyn Watch,
+    ) -> Result<Outcome<Simulated>, JobError> {
         let trajectory = simulate_watched(scene.drive(), &scene.contact, &scene.sampling, watch);
         let trajectory = trajectory.map_err(|error| scene.refused(error))?;
         notes.extend(forces(&trajectory));
@@ -115,9 +137,12 @@ impl Simulate {
         Ok(Outcome::of(Simulated { trajectory, scene, job }).noted(notes))
     }
 
-    /// The body of the protocol, driven by a record from its first row on.
-    fn driven(self, text: &str, protocol: &Path, record: &Record, place: &str) -> Result<Scene, JobError> {
-        let (title, contact) = parse_scene(text, protocol)?;
+    /// The body, driven by a record from its first row on.
+    fn driven(
+        self,
+        (title, contact): (Option<String>, Contact),
+        (record, place): (&Record, &str),
+    ) -> Result<Scene, JobError> {
         let times = record.time().to_vec();
         let sampling = Sampling::Times(times.clone());
         let driver = match self.drive_by {
@@ -330,18 +355,17 @@ impl Scene {
 }
 
 /// The body and the steps of a protocol, and what to know of them.
-fn stepped(text: &str, path: &Path) -> Result<(Scene, Vec<String>), JobError> {
-    let protocol = parse_protocol(text, path)?;
+fn stepped(protocol: Protocol, place: &Path) -> (Scene, Vec<String>) {
     let one = "one run with the parameters of the protocol: only palpate sweep uses the table [sweep]";
     let notes = if protocol.has_sweep { vec![one.to_owned()] } else { Vec::new() };
     let scene = Scene {
-        place: path.display().to_string(),
+        place: place.display().to_string(),
         title: protocol.title.clone(),
         contact: protocol.contact.clone(),
         sampling: protocol.sampling.clone(),
         driver: Driver::Steps(Box::new(protocol)),
     };
-    Ok((scene, notes))
+    (scene, notes)
 }
 
 /// Share of the largest force up to which a measured pull is noise of the zero.

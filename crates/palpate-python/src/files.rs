@@ -7,7 +7,7 @@ use palpate_files::description::{NamedColumns, parse_test, read_material};
 use palpate_jobs::input::{Described, NamedFile, NamedRecords, OpenedFile};
 use palpate_jobs::output::write_bundle;
 use palpate_jobs::{
-    Batch, BatchAnswer, Convert, CurveMap, HoldObserved, Inspect, Observed, Reproduce, Results, Sweep, WatchLog,
+    Batch, BatchAnswer, Convert, CurveMap, HoldObserved, Inspect, Observed, Reproduce, Results, WatchLog,
 };
 use palpate_report::document::{WatchDocument, WatchSummaryDocument};
 use palpate_report::study::reproduction_bundle;
@@ -327,52 +327,6 @@ shown! {
         let law = self.law().unwrap_or("none");
         format!("<palpate.BatchResult of {} holds: law {law}, {} failures>", self.holds(), self.failures.len())
     }
-}
-
-/// Simulate the runs of a protocol with a table ``[sweep]`` into one table: ``palpate sweep``.
-///
-/// Finished parts are kept beside the table: a sweep that was ended goes on where it stood.
-///
-/// Parameters
-/// ----------
-/// protocol
-///     Path of the protocol (TOML).
-/// out
-///     A table ending in .parquet.
-/// figure
-///     A figure ending in .svg, .png or .pdf.
-/// show
-///     Which result the figure shows, by the name of its column; the peak force if left out.
-/// restart
-///     Whether all runs are computed again, whatever was computed before.
-///
-/// Returns
-/// -------
-/// runs, refused : int
-///     How many runs the table has, and how many of them were refused.
-///
-/// Raises
-/// ------
-/// OptionError, OSError
-///     A protocol without a sweep, a table that cannot be written.
-#[pyfunction]
-#[pyo3(signature = (protocol, out, *, figure=None, show=None, restart=false))]
-pub(crate) fn sweep(
-    py: Python<'_>,
-    protocol: PathBuf,
-    out: PathBuf,
-    figure: Option<PathBuf>,
-    show: Option<String>,
-    restart: bool,
-) -> PyResult<(u64, u64)> {
-    let usual = Sweep::default();
-    let question = Sweep {
-        show: show.unwrap_or(usual.show),
-        restart,
-        threads: None,
-    };
-    let done = writing_job(py, move |watch| question.run(&protocol, Some(&out), figure.as_deref(), watch))?.result;
-    Ok((done.runs, done.refused))
 }
 
 /// Judge every claim of the paper, or its conclusions on a record, into a folder: ``palpate reproduce``.

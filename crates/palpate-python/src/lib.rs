@@ -4,7 +4,7 @@
 //! |---|---|
 //! | `records/` | `read`, `Record`, `Analysis`, `Finding`; laws compared by what they predict; a record in a pickle |
 //! | `fits/` | `fit_hold`, `Fit`, `Estimate`; thousands of holds in one call; laws as functions of arrays |
-//! | `contacts/` | `simulate`, `Trajectory`; one protocol with many numbers; `ContactState`, `ContactStates` |
+//! | `contacts/` | `simulate`, `Trajectory`; one protocol with many numbers; `sweep`; `ContactState`, `ContactStates` |
 //! | `materials/` | one set of numbers for a whole record, what it predicts, and how to squeeze and how long that holds |
 //! | `observers/` | a contact watched tick by tick |
 //! | `table.rs`, `html.rs` | results as Arrow, and as notebooks show them |
@@ -53,8 +53,9 @@ mod _palpate {
         contacts::contact_state::{ContactState, ContactStates},
         contacts::simulate::{Trajectory, energy, simulate},
         contacts::simulate_many::simulate_many,
+        contacts::sweep::sweep,
         errors::{FitError, ModelError, OptionError, PalpateError, PalpateWarning, RecordError},
-        files::{BatchResult, batch, convert, inspect, reproduce, sweep, watch},
+        files::{BatchResult, batch, convert, inspect, reproduce, watch},
         fits::fit::{PyEstimate, PyFit, fit_hold},
         fits::fit_many::fit_many,
         fits::laws::{latency, law_names},

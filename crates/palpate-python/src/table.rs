@@ -30,7 +30,7 @@ use crate::work::{Heard, at_length};
 ///
 /// ``table["force_n"]`` is an array where the column holds numbers (NaN where one is missing) and a list with None where it holds
 /// texts or truths. ``polars.DataFrame(table)``, ``pandas.DataFrame.from_arrow(table)`` and ``pyarrow.table(table)`` take it without
-/// a copy; ``pandas.DataFrame(table)`` copies it, row by row, and of a table without rows it has no columns. ``for row in table`` goes
+/// a copy; ``pandas.DataFrame(table)`` copies it, row by row; without rows it has no columns, which ``to_pandas()`` keeps. ``for row in table`` goes
 /// through the rows, a dict each; ``table[0]`` and ``table[-1]`` are one.
 ///
 /// Examples

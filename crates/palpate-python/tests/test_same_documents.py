@@ -6,10 +6,14 @@ import json
 import pickle
 import subprocess
 import sys
+import tomllib
 from pathlib import Path
-from typing import Literal
+from typing import Any, Literal
 
+import numpy as np
 import palpate
+import pint
+import polars
 import pytest
 from conftest import ROOT
 
@@ -115,6 +119,34 @@ def test_sweep(tmp_path: Path) -> None:
     command("sweep", protocol, "--out", tmp_path / "its.parquet")
     assert palpate.sweep(protocol, tmp_path / "own.parquet") == (3, 0)
     assert (tmp_path / "own.parquet").read_bytes() == (tmp_path / "its.parquet").read_bytes()
+
+
+def test_a_mapping_sweeps_as_its_file_does(tmp_path: Path) -> None:
+    path, out = tmp_path / "sweep.toml", [tmp_path / "file.parquet", tmp_path / "mapping.parquet"]
+    path.write_text(SWEEP)
+    protocol = tomllib.loads(SWEEP)
+    assert palpate.sweep(path, out[0]) == palpate.sweep(protocol, out[1]) == (3, 0)
+    rows = [polars.read_parquet(each) for each in out]
+    assert rows[0].equals(rows[1])
+    # Numbers in SI under a key that states the unit, quantities of pint, a Protocol.
+    sweep = {"specimen.radius_m": np.array([0.03, 0.035]), "step.1.hold": [5 * pint.UnitRegistry().second, "10 s"], "law.exponent": "linear 3..5, 3"}
+    typed = palpate.Protocol(specimen=protocol["specimen"], law=protocol["law"], step=[palpate.Step(to=5e-3, rate=8e-3, hold=1)], sweep=sweep)
+    assert palpate.sweep(typed, tmp_path / "typed.parquet") == (12, 0)
+    assert polars.read_parquet(tmp_path / "typed.parquet")["specimen_radius_m"].unique().sort().to_list() == [0.03, 0.035]
+
+
+def test_what_is_wrong_in_a_swept_mapping_is_named_by_its_path(tmp_path: Path) -> None:
+    protocol = tomllib.loads(SWEEP)
+    wrong: list[tuple[str, Any, str]] = [
+        ("sweep", {"law.exponents": [1]}, r"^protocol: sweep.law.exponents: unknown parameter"),
+        ("sweep", {"specimen.radius": [0.03]}, r"^protocol: sweep.specimen.radius = .*unit"),
+        ("sweep", {}, r"^protocol: sweep: missing"),
+        ("step", [{"to": "5 mm", "rate": "500 mm/min", "holds": "1 s"}], r"^protocol: step\[1\].holds: unknown key"),
+    ]
+    for table, value, message in wrong:
+        with pytest.raises(palpate.OptionError, match=message):
+            palpate.sweep({**protocol, table: value}, tmp_path / "none.parquet")
+    assert list(tmp_path.iterdir()) == []
 
 
 @pytest.mark.parametrize("ending", ["csv", "parquet"])

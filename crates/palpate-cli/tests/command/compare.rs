@@ -128,6 +128,16 @@ fn a_folder_is_searched_and_what_cannot_be_compared_is_listed() {
         text.contains("- records/notes.txt: ") && !text.contains("toml") && !text.contains("hidden"),
         "{text}"
     );
+    // The page of several begins with all of them, that of one does not.
+    file(folder.path(), "records/other.csv", ramp_and_hold(5.0, 20.0));
+    for (records, several) in [("records", true), ("records/other.csv", false)] {
+        let out = if several { "both" } else { "alone" };
+        done(folder.path(), &["compare", records, "--laws", "latency,sls", "--out", out]);
+        let page = std::fs::read_to_string(folder.path().join(out).join("report.html")).unwrap();
+        let (table, first) = (page.find("All records"), page.find("Hold 1"));
+        assert_eq!(table.is_some_and(|table| first.is_some_and(|first| table < first)), several);
+    }
+    std::fs::remove_file(folder.path().join("records/other.csv")).unwrap();
     std::fs::remove_file(folder.path().join("records/below/hold.csv")).unwrap();
     let output = palpate(folder.path(), &["compare", "records"]);
     assert_eq!(output.status.code(), Some(1));

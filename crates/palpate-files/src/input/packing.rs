@@ -68,6 +68,9 @@ pub(crate) fn is_hdf5(beginning: &[u8]) -> bool {
     places.any(|place| beginning.get(place..).is_some_and(|rest| rest.starts_with(b"\x89HDF\r\n\x1A\n")))
 }
 
+/// The first bytes of what gzip packed.
+const GZIP: &[u8] = b"\x1F\x8B";
+
 /// The first bytes of an archive without members.
 const EMPTY: &[u8] = b"PK\x05\x06";
 
@@ -80,7 +83,7 @@ pub(super) fn recognise<R: Read + Seek>(
     beginning: &[u8],
     stored: impl FnOnce() -> Result<R, FileError>,
 ) -> Result<Packing, FileError> {
-    if beginning.starts_with(b"\x1F\x8B") {
+    if beginning.starts_with(GZIP) {
         return Ok(Packing::Gzip);
     }
     if is_zip(beginning) {
@@ -167,7 +170,17 @@ pub(super) fn unpacked<R: Read + Seek + Send + 'static>(
     Ok(match packing {
         Packing::None | Packing::Archive(_) => Box::new(stored),
         Packing::Gzip => Box::new(Limited(MultiGzDecoder::new(stored), MOST_UNPACKED)),
-        Packing::Zip(member) => Box::new(Limited(Unpacked::of(stored, member)?, MOST_UNPACKED)),
+        Packing::Zip(member) => {
+            let mut member = Unpacked::of(stored, member)?;
+            let mut first = Vec::new();
+            member.by_ref().take(GZIP.len() as u64).read_to_end(&mut first)?;
+            let is_gzip = first == GZIP;
+            let whole = io::Cursor::new(first).chain(member);
+            match is_gzip {
+                true => Box::new(Limited(MultiGzDecoder::new(whole), MOST_UNPACKED)),
+                false => Box::new(Limited(whole, MOST_UNPACKED)),
+            }
+        }
     })
 }
 

@@ -81,6 +81,9 @@ pub(crate) const AXIAL: &str = "normal normale axial axiale normalkraft axialkra
 pub(crate) const SHEAR: &str = "shear cisaillement scherung schub schubspannung scherdeformation torque couple drehmoment cizalla \
     cizallamiento";
 
+/// Words of the modulus that an oscillation gives: strain and stress beside it are its amplitudes.
+pub(crate) const STORAGE: &str = "storage speichermodul stockage conservation almacenamiento";
+
 /// Words of columns that count or label rows.
 pub(crate) const COUNTS: &str =
     "sample samples index point points row rows nr no number nummer numéro id cycle cycles status state segment";

@@ -7,7 +7,11 @@ use super::{
     error::ColumnError,
     signals::Time,
 };
-use crate::{description::TestDescription, naming::Quantity, table::Part};
+use crate::{
+    description::TestDescription,
+    naming::Quantity,
+    table::{Part, recognise},
+};
 
 /// The columns to read and how to make a record of them.
 #[derive(Debug)]
@@ -27,6 +31,10 @@ pub(super) fn choose(part: &Part, test: &TestDescription) -> Result<Plan, Column
         torsion: conversion::torsion(test, &part.metadata),
     };
     let stated = &test.columns;
+    let is_stated = stated.stated(Quantity::is_load).is_some() || stated.stated(Quantity::is_travel).is_some();
+    if let Some(column) = recognise::storage_modulus(&part.columns).filter(|_| !is_stated) {
+        return Err(ColumnError::Oscillation(column.into()));
+    }
     let load = chooser.load(test)?;
     let displacement = chooser.travel(test, load.as_ref())?;
     let load_choice = load.as_ref().and_then(|load| load.choice);

@@ -10,7 +10,7 @@ use super::{
 use crate::{
     cell::number,
     description::{ClockChoice, ColumnChoice, TestDescription, Torsion},
-    naming::Quantity,
+    naming::{Quantity, UNCALIBRATED, unit_factor},
     table::{ColumnInfo, ColumnRef, Metadata, Part, epoch, recognise},
 };
 
@@ -210,13 +210,30 @@ impl<'a> Chooser<'a> {
     /// No column holds a quantity; perhaps one is named after it, but its unit is one of another.
     pub(super) fn missing(&self, quantity: Quantity) -> ColumnError {
         if let Some((column, unit)) = recognise::misfits(&self.part.columns, quantity).next() {
-            let problem = UnitProblem::Unknown(quantity, unit.to_owned());
+            let unit = unit.to_owned();
+            let is_deflection =
+                column.name.as_deref() == Some(UNCALIBRATED) && unit_factor(&unit, Dimension::Length).is_some();
+            let problem = match is_deflection {
+                true => UnitProblem::NoSpringConstant {
+                    unit,
+                    height: self.height(),
+                },
+                false => UnitProblem::Unknown(quantity, unit),
+            };
             return ColumnError::unit(column, format!("columns.{quantity}.unit"), problem);
         }
         if let Some(column) = recognise::text_named(&self.part.columns, quantity) {
             return Self::as_text(column, quantity);
         }
         ColumnError::Missing(quantity, self.part.columns.clone())
+    }
+
+    /// The number of a column of heights of a cantilever's base, a measured one before others.
+    fn height(&self) -> Option<usize> {
+        let name = |column: &ColumnInfo| column.name.as_ref().map_or_else(String::new, |name| name.to_lowercase());
+        let heights = || self.part.columns.iter().filter(|column| name(column).contains("height"));
+        let measured = heights().find(|column| name(column).contains("measured"));
+        measured.or_else(|| heights().next()).map(|column| column.number)
     }
 
     /// A column that is named after a quantity, but holds texts.

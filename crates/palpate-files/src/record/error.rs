@@ -88,6 +88,9 @@ pub enum ColumnError {
         "{0}: expected force and displacement for a body whose contact area changes, found stress, strain, a modulus or a compliance"
     )]
     NoSection(NamedColumn),
+    /// A test of a rheometer in oscillation, by its storage modulus.
+    #[error("{0}: expected a test with a hold, found amplitudes of an oscillation")]
+    Oscillation(NamedColumn),
     /// Torque or angle, and no sizes of the sample that would turn them into force and displacement.
     #[error(
         "{0}: expected the sizes of the sample, which turn torque and angle into force and displacement, found none"
@@ -101,6 +104,14 @@ pub enum UnitProblem {
     /// A header gives a unit that is none of the quantity in the column.
     #[error("\"{}\" is not a unit of {} (accepted: {})", shown(.1), .0, .0.dimension().accepted())]
     Unknown(Quantity, String),
+    /// A curve of a force microscope has the deflection of its cantilever in this unit, and no spring constant.
+    #[error("expected a force, found a deflection in {unit} without the spring constant of the cantilever")]
+    NoSpringConstant {
+        /// The unit.
+        unit: String,
+        /// Number of the column of the height of the cantilever's base, if there is one.
+        height: Option<usize>,
+    },
     /// The conventions of a machine say one unit, the header another.
     #[error("expected {stated}, the unit of machine.preset = \"{machine}\", found {written} in the header")]
     OfMachine {
@@ -168,6 +179,10 @@ impl ColumnError {
             Self::NoSection(..) => {
                 "choose a column of force, or describe the body as a strip, cylinder or block".to_owned()
             }
+            Self::Oscillation(..) => {
+                "choose a test of relaxation or creep; if this is one, name its columns, such as columns.stress and columns.strain"
+                    .to_owned()
+            }
             Self::NoTorsion(..) => lever::SAMPLE.to_owned(),
         }
     }
@@ -205,6 +220,7 @@ impl UnitProblem {
                     column.number
                 )
             }
+            Self::NoSpringConstant { height, .. } => snippet::of_deflection(column, *height),
             Self::OfMachine { written, .. } => format!(
                 "choose another of `palpate inspect --machines`, or write in the test description:\n{}",
                 snippet::of_unit(key, written, column)

@@ -40,7 +40,9 @@ pub fn tests(contents: &Contents, description: &TestDescription) -> Result<Tests
     let mut first = None;
     for (index, part) in contents.parts.iter().enumerate() {
         match choose::choose(part, description) {
-            Err(error @ (ColumnError::Missing(..) | ColumnError::NoSuchColumn { .. })) if several => {
+            Err(
+                error @ (ColumnError::Missing(..) | ColumnError::NoSuchColumn { .. } | ColumnError::Oscillation(_)),
+            ) if several => {
                 tests.skipped.push(SkippedPart::new(part.title(), reason(&error)));
                 first.get_or_insert(error);
             }

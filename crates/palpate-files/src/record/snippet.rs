@@ -239,6 +239,17 @@ pub(super) fn of_unit(key: &str, unit: &str, column: &NamedColumn) -> String {
     format!("[{table}]\n{column}{key} = \"{unit}\"")
 }
 
+/// The lines that make a force and an indentation of the deflection of a cantilever whose spring constant the file does not state.
+pub(super) fn of_deflection(column: &NamedColumn, height: Option<usize>) -> String {
+    let height = height.map_or_else(|| "\"measuredHeight\"".to_owned(), |number| number.to_string());
+    format!(
+        "the force is the deflection times the spring constant: state it in a test description, for 0.04 N/m\n\
+         [columns.deflection]\ncolumn = {}\nspring_constant = \"0.04 N/m\"\n\
+         [columns.displacement]\ncolumn = {height}\nsign = -1",
+        column.number
+    )
+}
+
 /// The lines that make a force and an indentation of the bending of a cantilever in volts, which the file does not calibrate.
 pub(super) fn of_bending(column: &NamedColumn, unit: &str) -> String {
     let number = column.number;

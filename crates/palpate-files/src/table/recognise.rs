@@ -4,7 +4,7 @@ use palpate::units::Dimension;
 
 use super::part::{ColumnInfo, ColumnKind};
 use crate::naming::{
-    AXIAL, BENDING, OTHER, OTHER_CHARACTERS, Quantity, SHEAR, SIGNS_OF_LENGTH, STRAINS, VOCABULARY, is_listed,
+    AXIAL, BENDING, OTHER, OTHER_CHARACTERS, Quantity, SHEAR, SIGNS_OF_LENGTH, STORAGE, STRAINS, VOCABULARY, is_listed,
     measured, measures_another, names_another, rank_in_rheometry, rank_of_name, unit_factor, words,
 };
 
@@ -151,6 +151,13 @@ pub(crate) fn strain(columns: &[ColumnInfo]) -> Option<&ColumnInfo> {
     let named = |name: &str| words(measured(name)).iter().any(|word| is_listed(word, STRAINS));
     let is_strain = |column: &&ColumnInfo| column.name.as_deref().is_some_and(named);
     columns.iter().filter(|column| column.kind == ColumnKind::Number).find(is_strain)
+}
+
+/// A storage modulus in numbers: the rows are those of an oscillation.
+pub(crate) fn storage_modulus(columns: &[ColumnInfo]) -> Option<&ColumnInfo> {
+    let is_modulus = |unit: &str| unit_factor(unit, Dimension::Pressure).is_some();
+    let is_storage = |column: &&ColumnInfo| has_word(column, STORAGE) && column.unit.as_deref().is_some_and(is_modulus);
+    columns.iter().filter(|column| column.kind == ColumnKind::Number).find(is_storage)
 }
 
 /// Whether a column is the gap between the plates of a rheometer.

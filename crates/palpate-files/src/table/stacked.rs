@@ -59,6 +59,12 @@ struct Pending {
 }
 
 impl Starts {
+    /// Index of the row behind the last row of numbers above any names whose table has not begun: what is before it belongs to the table
+    /// that began last.
+    pub(crate) fn behind(&self) -> usize {
+        self.behind
+    }
+
     /// Takes the next row; if it shows that a table begins, the index of the row at which.
     pub(crate) fn next(&mut self, kind: RowKind) -> Option<usize> {
         let index = self.row;

@@ -90,14 +90,28 @@ impl Sweep {
         figure: Option<&Path>,
         watch: &mut dyn Watch,
     ) -> Result<Outcome<Swept>, JobError> {
-        let started = Instant::now();
         keep_apart([path], out.into_iter().chain(figure))?;
-        let sweep = read_sweep(path)?;
-        let out = table_of(path, out)?;
-        let chart = figure.map(|figure| Chart::new(&sweep, figure, &self.show)).transpose()?;
-        let computed_before = self.table(&sweep, path, &out, watch)?;
+        self.run_protocol(&read_sweep(path)?, path, out, figure, watch)
+    }
+
+    /// Likewise, the runs of a protocol that was read already; `place` names it in messages, and the table if no other name is given.
+    ///
+    /// # Errors
+    /// As for [`run`](Self::run).
+    pub fn run_protocol(
+        &self,
+        sweep: &SweptProtocol,
+        place: &Path,
+        out: Option<&Path>,
+        figure: Option<&Path>,
+        watch: &mut dyn Watch,
+    ) -> Result<Outcome<Swept>, JobError> {
+        let started = Instant::now();
+        let out = table_of(place, out)?;
+        let chart = figure.map(|figure| Chart::new(sweep, figure, &self.show)).transpose()?;
+        let computed_before = self.table(sweep, place, &out, watch)?;
         if let Some(chart) = chart {
-            write_file(&chart.path, &chart.draw(&sweep, &out)?)?;
+            write_file(&chart.path, &chart.draw(sweep, &out)?)?;
         }
         let (refused, first) = refused(&out).map_err(|error| unwritten_table(&out, &error))?;
         let runs = sweep.runs;

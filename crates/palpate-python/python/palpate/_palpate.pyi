@@ -164,7 +164,7 @@ class Table(_Tabular):
 
     ``table["force_n"]`` is an array where the column holds numbers (NaN where one is missing) and a list with None where it holds
     texts or truths. ``polars.DataFrame(table)``, ``pandas.DataFrame.from_arrow(table)`` and ``pyarrow.table(table)`` take it without
-    a copy; ``pandas.DataFrame(table)`` copies it, row by row, and of a table without rows it has no columns. ``for row in table`` goes
+    a copy; ``pandas.DataFrame(table)`` copies it, row by row; without rows it has no columns, which ``to_pandas()`` keeps. ``for row in table`` goes
     through the rows, a dict each; ``table[0]`` and ``table[-1]`` are one.
 
     Examples
@@ -2241,7 +2241,7 @@ def batch(
     """
     ...
 def sweep(
-    protocol: _Path, out: _Path, *, figure: _Path | None = None, show: str | None = None, restart: bool = False
+    protocol: _Path | Mapping[str, Any], out: _Path, *, figure: _Path | None = None, show: str | None = None, restart: bool = False
 ) -> tuple[int, int]:
     """Simulate the runs of a protocol with a table ``[sweep]`` into one table: ``palpate sweep``.
 
@@ -2250,7 +2250,8 @@ def sweep(
     Parameters
     ----------
     protocol
-        Path of the protocol (TOML).
+        Path of the protocol (TOML), or a mapping with its tables, as for `simulate`. ``"sweep"`` has values by the path of the parameter
+        they replace: ``{"law.exponent": [3, 5], "specimen.radius_m": [0.03, 0.035], "law.rate_coefficient": "log 1e3..1e5 /s, 9"}``.
     out
         A table ending in .parquet.
     figure
@@ -2269,6 +2270,20 @@ def sweep(
     ------
     OptionError, OSError
         A protocol without a sweep, a table that cannot be written.
+
+    Examples
+    --------
+    >>> import palpate, tempfile
+    >>> from pathlib import Path
+    >>> protocol = {
+    ...     "specimen": {"shape": "ball", "radius": "35 mm", "modulus": "28 kPa"},
+    ...     "law": {"name": "latency", "exponent": 5, "rate_coefficient": "2e4 /s"},
+    ...     "step": [{"to": "5 mm", "rate": "500 mm/min", "hold": "10 s"}],
+    ...     "sweep": {"law.exponent": [3, 5], "specimen.radius_m": [0.03, 0.035, 0.04]},
+    ... }
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     palpate.sweep(protocol, Path(folder) / "runs.parquet")
+    (6, 0)
     """
     ...
 def report_all(

@@ -175,6 +175,8 @@ class Protocol(_Table):
     contact: Mapping[str, Any] | None = None
     output: Mapping[str, Any] | None = None
     material: Material | str | None = None
+    #: Values by the path of the parameter that they replace, for `palpate.sweep`.
+    sweep: Mapping[str, Any] | None = None
     title: str | None = None
 
     def __post_init__(self) -> None:

@@ -7,14 +7,15 @@ use numpy::PyArray1;
 use palpate::record::Record;
 use palpate::simulate::{ContactEvent, Cycle, StepWork, Trajectory as Series};
 use palpate::watch::Watch;
-use palpate_files::description::{parse_protocol, parse_scene, read_protocol_text};
+use palpate_files::description::{parse_protocol, parse_scene};
 use palpate_jobs::{DriveBy, JobError, Simulate, Simulated};
 use palpate_report::result::word;
 use palpate_report::study::write_trajectory;
 use pyo3::prelude::*;
 use serde::{Deserialize, Serialize};
 
-use crate::errors::{RecordError, failed, of_mapping, one_of, refused, undescribed};
+use super::protocol::StatedProtocol;
+use crate::errors::{RecordError, failed, one_of, refused};
 use crate::report_files::csv_locale as readers;
 use crate::shown::shown;
 use crate::table::{Column, Table, columns};
@@ -39,25 +40,21 @@ fn simulated(
     drive_by: DriveBy,
     watch: &mut dyn Watch,
 ) -> PyResult<Simulated> {
-    let is_mapping = path.is_none();
-    let (text, path) = match path {
-        Some(path) => (read_protocol_text(&path).map_err(undescribed)?, path),
-        None => (text.unwrap_or_default(), PathBuf::from("protocol")),
-    };
-    // Errors of a mapping name keys and no lines.
-    let checked = match driver {
-        None => parse_protocol(&text, &path).map(drop),
-        Some(_) => parse_scene(&text, &path).map(drop),
-    };
-    checked.map_err(|error| undescribed(if is_mapping { of_mapping(error) } else { error }))?;
-    let record = driver.map(|(time, displacement, force)| Record::new(time, displacement, force)).transpose();
-    let record = record.map_err(|error| refused::<RecordError>(&error, Some(error.hint())))?;
+    let protocol = StatedProtocol::new(path, text)?;
     let job = Simulate {
         drive_by,
         ..Simulate::default()
     };
-    let driver = record.as_ref().map(|record| (record, "drive"));
-    Ok(job.run_text(&text, &path, driver, watch).map_err(failed)?.result)
+    let done = match driver {
+        None => job.run_protocol(protocol.parsed(parse_protocol)?, &protocol.path, watch),
+        Some((time, displacement, force)) => {
+            let body = protocol.parsed(parse_scene)?;
+            let record = Record::new(time, displacement, force);
+            let record = record.map_err(|error| refused::<RecordError>(&error, Some(error.hint())))?;
+            job.run_driven(body, (&record, "drive"), watch)
+        }
+    };
+    Ok(done.map_err(failed)?.result)
 }
 
 /// Which column drives, as a keyword says it.

@@ -7,15 +7,16 @@ use arrow_array::{ArrayRef, FixedSizeListArray, Float64Array, Int64Array, String
 use arrow_schema::{DataType, Field};
 use palpate::simulate::{Sampling, simulate};
 use palpate::watch::{Cancelled, Progress};
-use palpate_files::description::{Sweep, parse_runs, read_protocol_text};
+use palpate_files::description::{Sweep, parse_runs};
 use palpate_files::parquet_table::{Rows, Values};
 use palpate_jobs::{sweep_fields, sweep_rows};
 use pyo3::exceptions::PyRuntimeError;
 use pyo3::prelude::*;
 use rayon::prelude::*;
 
+use super::protocol::StatedProtocol;
 use crate::arrays::doubles;
-use crate::errors::{ModelError, PalpateError, of_mapping, refused_plainly, undescribed};
+use crate::errors::{ModelError, PalpateError, refused_plainly};
 use crate::table::Table;
 use crate::work::{Heard, at_length_reported, in_parallel};
 
@@ -33,20 +34,13 @@ pub(crate) fn simulate_many(
     times_s: Option<&Bound<'_, PyAny>>,
     progress: Option<Py<PyAny>>,
 ) -> PyResult<Table> {
-    let of_text = path.is_none();
-    let (path, text) = match path {
-        Some(path) => {
-            let text = read_protocol_text(&path).map_err(undescribed)?;
-            (path, text)
-        }
-        None => (PathBuf::from("protocol"), text.unwrap_or_default()),
-    };
+    let protocol = StatedProtocol::new(path, text)?;
     let numbers = numbers.iter().map(|(name, values)| Ok((name.clone(), doubles(values, name)?)));
     let numbers: Vec<(String, Vec<f64>)> = numbers.collect::<PyResult<_>>()?;
     let times = times_s.map(|times| doubles(times, "times_s")).transpose()?;
     let run = move |heard: Heard| {
-        let sweep = parse_runs(&text, &path, &numbers).map_err(|error| if of_text { of_mapping(error) } else { error });
-        simulated(&sweep.map_err(undescribed)?, &path, times.as_deref(), &heard)
+        let sweep = protocol.parsed(|text, path| parse_runs(text, path, &numbers))?;
+        simulated(&sweep, &protocol.path, times.as_deref(), &heard)
     };
     at_length_reported(py, progress.as_ref(), run)?
 }

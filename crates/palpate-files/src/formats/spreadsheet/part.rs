@@ -68,26 +68,30 @@ pub(crate) fn look_into(input: &Input, options: &ReadOptions) -> Result<Found, F
             pass(other);
             continue;
         }
-        let sample = Sample::take(book.as_ref(), index, skip)?;
-        if sample.rows.is_empty() {
+        let pieces = Sample::take(book.as_ref(), index, skip)?;
+        if pieces.iter().all(|piece| piece.rows.is_empty()) {
             pass("empty");
             continue;
         }
         let numbers = |table: &Table| table.columns.iter().filter(|column| column.kind == ColumnKind::Number).count();
         let holds = |found: &FoundTables| found.tables.iter().any(|table| numbers(table) >= 2);
-        let mut stacked = stacked::find(&sample, options);
-        stacked.retain(holds);
-        let is_stack = !stacked.is_empty();
-        let all = if is_stack { stacked } else { vec![table::find(&sample, options)] };
-        if !all.iter().any(holds) {
+        let whole: Vec<bool> = pieces.iter().map(|piece| !piece.cut).collect();
+        let stacked = stacked::find(&pieces, options);
+        let mut all: Vec<(FoundTables, bool)> = stacked.into_iter().zip(whole).collect();
+        all.retain(|(found, _)| holds(found));
+        let is_stack = !all.is_empty();
+        if !is_stack {
+            let joined = Sample::joined(pieces);
+            all = vec![(table::find(&joined, options), !joined.cut)];
+        }
+        if !all.iter().any(|(found, _)| holds(found)) {
             pass("no table of numbers");
             continue;
         }
-        for (found, number) in all.into_iter().zip(1..) {
+        for ((found, whole), number) in all.into_iter().zip(1..) {
             let several = found.tables.len() > 1;
             let name = if is_stack { format!("{}, table {number}", sheet.name) } else { sheet.name.clone() };
             for table in found.tables {
-                let whole = sample.whole || table.end.is_some();
                 let part = part((&sheet.name, &name), &table, several, found.beside, whole);
                 looked.push((Place { sheet: index, table }, part));
             }

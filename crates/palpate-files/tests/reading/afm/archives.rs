@@ -274,8 +274,10 @@ fn a_sensitivity_alone_gives_the_indentation() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("curve.jpk-force");
     std::fs::write(&path, packed(&members)).unwrap();
-    let error = read_record(&path, None, &mut |_, _| Ok(())).expect_err("an error").to_string();
-    assert!(error.contains("column 2 (uncalibrated force): \"m\" is not a unit of force"), "{error}");
+    let error = read_record(&path, None, &mut |_, _| Ok(())).expect_err("an error");
+    let reported =
+        "column 2 (uncalibrated force): expected a force, found a deflection in m without the spring constant";
+    assert!(error.to_string().contains(reported), "{error}");
 }
 
 #[test]

@@ -1,6 +1,8 @@
 //! Igor binary waves.
 
-use palpate_files::{open::Format, record::read_record};
+use std::path::Path;
+
+use palpate_files::{description::parse_test, open::Format, record::read_record};
 
 use super::{column, labels, metadata, names, near, open, opened, read_all};
 
@@ -107,6 +109,28 @@ fn without_a_spring_constant_there_is_no_force() {
         Some("not calibrated: the file lacks a sensitivity or a spring constant")
     );
     assert_eq!(labels(&contents.parts[0]), [("curve", 0, 6)]);
+    // The lines of the hint make a record of it.
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("curve.ibw");
+    std::fs::write(&path, wave(false, "ImagingMode: Contact\r", |_| {})).unwrap();
+    let error = read_record(&path, None, &mut |_, _| Ok(())).expect_err("no force");
+    let reported =
+        "column 2 (uncalibrated force): expected a force, found a deflection in m without the spring constant";
+    assert!(error.to_string().contains(reported), "{error}");
+    let hint = error.hint().expect("a hint");
+    let lines = hint.split_once('\n').expect("lines").1.replace("0.04 N/m", "0.05 N/m");
+    let test = parse_test(&lines, Path::new("test.toml")).unwrap_or_else(|error| panic!("{error}"));
+    let record =
+        |path: &Path, test| read_record(path, test, &mut |_, _| Ok(())).unwrap_or_else(|error| panic!("{error}"));
+    let stated = record(&path, Some(&test));
+    std::fs::write(&path, wave(false, NOTE, |_| {})).unwrap();
+    let calibrated = record(&path, None);
+    for (one, other) in [
+        (stated.record.force(), calibrated.record.force()),
+        (stated.record.displacement().expect("heights"), calibrated.record.displacement().expect("heights")),
+    ] {
+        assert!(one.iter().zip(other).all(|(one, other)| near(*one, *other)), "{one:?} {other:?}");
+    }
 }
 
 #[test]

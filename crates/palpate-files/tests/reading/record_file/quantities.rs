@@ -20,7 +20,8 @@ fn a_modulus_is_the_stress_at_a_strain_of_one() {
     }
     // Parts of an oscillation are no relaxation.
     let error = read("Time (s),Storage modulus (Pa),Loss modulus (Pa)\n0,1,2\n1,2,3\n", "").unwrap_err();
-    assert!(error.to_string().contains("expected a column of force"), "{error}");
+    let reported = "column 2 (Storage modulus): expected a test with a hold, found amplitudes of an oscillation";
+    assert!(error.to_string().contains(reported), "{error}");
     let error = read("Time,Relaxation Modulus\n0,2\n1,1\n", "").unwrap_err();
     assert!(
         error.hint().unwrap().contains("--columns \"time=Time:s,modulus=Relaxation Modulus:Pa\""),

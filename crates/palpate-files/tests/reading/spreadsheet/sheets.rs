@@ -201,6 +201,25 @@ fn tables_one_below_the_other_are_tests_of_their_own() {
 }
 
 #[test]
+fn tables_below_a_long_one_are_found() {
+    let mut sheet: Vec<Vec<C>> = vec![vec![T("t"), T("F")], vec![T("s"), T("N")]];
+    sheet.extend((0..5000).map(|row| vec![N(f64::from(row)), N(1.0)]));
+    sheet.extend([vec![], vec![T("t"), T("F")], vec![T("s"), T("N")]]);
+    sheet.extend((0..4500).map(|row| vec![N(f64::from(row)), N(2.0)]));
+    sheet.extend([vec![T("t"), T("F")], vec![T("s"), T("N")], vec![N(0.0), N(3.0)], vec![N(0.5), N(4.0)]]);
+    let contents = open(&Book::of(&[("Press", &sheet)]).bytes()).expect("a workbook");
+    let titles: Vec<&str> = contents.parts.iter().map(Part::title).collect();
+    assert_eq!(titles, ["Press, table 1", "Press, table 2", "Press, table 3"]);
+    let written: Vec<&str> = contents.parts.iter().filter_map(|part| part.written.rsplit(", ").next()).collect();
+    assert_eq!(written, ["data from row 3", "data from row 5006", "rows 9508 to 9509"]);
+    let forces = |part| read(&contents, part, &[2]).expect("a table").values.remove(0);
+    let (first, second) = (forces(0), forces(1));
+    assert!(first.len() == 5000 && first.iter().all(|force| *force == 1.0));
+    assert!(second.len() == 4500 && second.iter().all(|force| *force == 2.0));
+    assert_eq!(forces(2), [3.0, 4.0]);
+}
+
+#[test]
 fn results_above_a_test_are_no_table_of_their_own() {
     let mut sheet = vec![vec![T("Specimen"), T("Fmax")], vec![T("one"), N(3.0)], vec![T("two"), N(4.0)], vec![]];
     sheet.extend(zwick("P1"));

@@ -96,6 +96,33 @@ fn rheocompass() -> String {
     )
 }
 
+/// Strain and stress of an oscillation are amplitudes over time: where they stand still, nothing is held.
+#[test]
+fn an_oscillation_of_rheocompass_is_no_test() {
+    let names = "Interval données:\tPoint No.\tTemps\tContrainte de Cisaillement\tDéformation de Cisaillement\tModule de Stockage\t\
+        Module de Perte\n\t\t[s]\t[Pa]\t[%]\t[Pa]\t[Pa]\n";
+    let interval = |number: usize, moduli: &str| {
+        let rows: String = (1..5).map(|row| format!("\t{row}\t{row}\t{}\t2\t{moduli}\n", 80 / row)).collect();
+        format!("Intervalle et points de données:\t{number}\t4\n{names}{rows}\n")
+    };
+    let text =
+        format!("Projet:\tgel\n\nTest:\tgel 1\n\nRésultat:\tSweep\n\n{}{}", interval(1, "\t"), interval(2, "53\t9"));
+    let contents = open(text);
+    let found = tests(&contents, &palpate_files::description::TestDescription::default()).expect("tests");
+    assert_eq!(found.parts, [0]);
+    let reason = found.skipped[0].reason.to_string();
+    assert!(
+        reason.contains("(Module de Stockage): expected a test with a hold, found amplitudes of an oscillation"),
+        "{reason}"
+    );
+    // Who names the columns decides.
+    let stated = "columns = { stress = { column = 4 }, strain = { column = 5 } }";
+    let test =
+        palpate_files::description::parse_test(stated, std::path::Path::new("test.toml")).expect("a description");
+    let read = read_part(&contents, 1, Some(&test), &mut |_, _| Ok(())).unwrap_or_else(|error| panic!("{error}"));
+    assert_eq!(read.record.force(), [80.0, 40.0, 26.0, 20.0]);
+}
+
 #[test]
 fn every_interval_of_rheocompass_is_a_test_and_empty_cells_keep_their_column() {
     for bytes in [rheocompass().into_bytes(), utf16(&rheocompass())] {

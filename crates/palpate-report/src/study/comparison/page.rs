@@ -21,7 +21,11 @@ pub fn comparison_bundle(
     watch: &mut dyn Watch,
 ) -> Result<Bundle, StudyError> {
     let mut bundle = Bundle::new(options.csv_locale);
+    let laws: Vec<_> = settings.laws.iter().filter_map(|law| law.parse().ok()).collect();
     let mut page = Page::new("Laws compared", "Law of relaxation or creep to use, and its certainty");
+    if records.len() > 1 {
+        page = page.section(Section::new("All records").block(Block::Table(tables::of_all_records(records, &laws))));
+    }
     for (index, record) in records.iter().enumerate() {
         let suffix = if records.len() == 1 { String::new() } else { format!("_{}", index + 1) };
         let summary = bundle.figures(
@@ -58,7 +62,6 @@ pub fn comparison_bundle(
     }
     page = page.provenance("Software", Software::this().to_string());
     bundle.table(&tables::laws(records, &settings.cuts));
-    let laws: Vec<_> = settings.laws.iter().filter_map(|law| law.parse().ok()).collect();
     bundle.text("comparison.md", tables::comparison_markdown(records, left_out, &laws));
     bundle.report(page);
     let document = ComparisonDocument::new(records, left_out, settings);

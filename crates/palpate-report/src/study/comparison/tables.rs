@@ -162,26 +162,52 @@ pub fn comparison_text(records: &[ComparedRecord], left_out: &[LeftOut]) -> Stri
     text
 }
 
-/// One Markdown table of every record and hold, with a column a law.
-#[must_use]
-pub fn comparison_markdown(records: &[ComparedRecord], left_out: &[LeftOut], laws: &[Law]) -> String {
-    let rows: Vec<_> = records.iter().flat_map(|record| record.holds.iter().map(move |hold| (record, hold))).collect();
+/// A record and one of its holds.
+type HoldRow<'a> = (&'a ComparedRecord, &'a ComparedHold);
+
+fn hold_rows(records: &[ComparedRecord]) -> Vec<HoldRow<'_>> {
+    records.iter().flat_map(|record| record.holds.iter().map(move |hold| (record, hold))).collect()
+}
+
+/// Columns of holds: the figure of each law, that of the best written by `best`, and the law to use.
+fn hold_columns<'a>(
+    rows: &'a [HoldRow<'a>],
+    caption: &str,
+    laws: &[Law],
+    best: fn(String) -> String,
+) -> Columns<'a, HoldRow<'a>> {
     let verdict = |hold: &ComparedHold, reported: fn(&Verdict) -> String| {
         let verdict = hold.comparison.as_ref().and_then(|found| found.verdict.as_ref());
         Cell::text(verdict.map_or("–".to_owned(), reported))
     };
-    let mut columns = Table::of("comparison", "", &rows)
+    let mut columns = Table::of("comparison", caption, rows)
         .column("Record", "record", "", |(record, _)| Cell::text(record.input.called()))
         .column("Hold", "hold", "", |(_, hold)| Cell::Integer(hold.number as i64));
     for law in laws {
         columns = columns.column(law.to_string(), law.to_string(), "", |(_, hold)| {
-            let reported = hold.comparison.as_ref().and_then(|found| overview(found, *law));
+            let reported = hold.comparison.as_ref().and_then(|found| overview(found, *law, best));
             Cell::text(reported.unwrap_or("–".to_owned()))
         });
     }
-    let mut table = columns
+    columns
         .column("Law to use", "law", "", |(_, hold)| verdict(hold, |verdict| verdict.law.to_string()))
         .column("Sure", "certainty", "", |(_, hold)| verdict(hold, sure))
+}
+
+/// All holds of several records with the figure of each law, as the page shows them first.
+pub(super) fn of_all_records(records: &[ComparedRecord], laws: &[Law]) -> Table {
+    let caption = "Held-out error of each law in % of the change (in brackets: not at an optimum; Δ: difference of BIC where the hold is too \
+                   short for a prediction), and the law to use.";
+    let mut table = hold_columns(&hold_rows(records), caption, laws, |figure| figure).table();
+    table.rows.extend(median_row(records, laws));
+    table
+}
+
+/// One Markdown table of every record and hold, with a column a law.
+#[must_use]
+pub fn comparison_markdown(records: &[ComparedRecord], left_out: &[LeftOut], laws: &[Law]) -> String {
+    let rows = hold_rows(records);
+    let mut table = hold_columns(&rows, "", laws, |figure| format!("**{figure}**"))
         .column("Findings", "findings", "", |(record, hold)| {
             let all = record.findings.iter().chain(&hold.findings);
             let mut codes: Vec<String> = all.map(|finding| format!("`{}`", finding.code())).collect();
@@ -223,8 +249,8 @@ pub(super) fn left_out_line(file: &LeftOut) -> String {
     format!("{}: {}", file.path, file.reason.lines().next().unwrap_or_default())
 }
 
-/// The figure of one law on one hold: forward error in %, or Δ and its excess of BIC; the best in bold.
-fn overview(comparison: &Comparison, law: Law) -> Option<String> {
+/// The figure of one law on one hold: forward error in %, or Δ and its excess of BIC; the best as `written`.
+fn overview(comparison: &Comparison, law: Law, written: fn(String) -> String) -> Option<String> {
     let row = row_of(comparison, law)?;
     let figure = comparison.figure(row)?;
     let reported = match comparison.ranking {
@@ -234,7 +260,7 @@ fn overview(comparison: &Comparison, law: Law) -> Option<String> {
     let best = comparison.rows.iter().filter(|row| row.is_good()).find_map(|row| comparison.figure(row));
     // What did not end at an optimum is set apart: its figure may be good, its parameters are not.
     let reported = if row.is_good() { reported } else { format!("({reported})") };
-    Some(if best == Some(figure) { format!("**{reported}**") } else { reported })
+    Some(if best == Some(figure) { written(reported) } else { reported })
 }
 
 fn sure(verdict: &Verdict) -> String {
