@@ -150,7 +150,7 @@ impl ContactState {
     /// Current contact force, N; zero while the jaw is off.
     #[must_use]
     pub fn force(&self, model: &ContactModel) -> f64 {
-        let strain = (self.jaw - self.behind) / model.layers.thickness(model.specimen.depth());
+        let strain = (self.jaw - self.behind) * (1.0 / model.layers.thickness(model.specimen.depth()));
         match model.separation {
             Separation::Unilateral if strain <= 0.0 => 0.0,
             _ => model.specimen.force(strain, self.jaw),
@@ -203,13 +203,14 @@ impl ContactState {
     fn pressed(self, model: &ContactModel, dt: f64, to: f64) -> Self {
         let depth = model.specimen.depth();
         let thickness = model.layers.thickness(depth);
-        let kick = 0.5 * model.layers.drive(to - self.jaw, depth);
-        // A tick waits for the one before it: a product here is ready sooner than a division.
-        let excess = (self.jaw - self.behind) * (1.0 / thickness) - self.jaw / depth;
+        // A tick waits for the one before it, and many contacts share one divider: products are ready sooner than quotients.
+        let per_depth = 1.0 / depth;
+        let kick = 0.5 * (model.layers.drive(to - self.jaw, 1.0) * per_depth);
+        let excess = (self.jaw - self.behind) * (1.0 / thickness) - self.jaw * per_depth;
         let excess = model.law.excess_after(excess + kick, dt) + kick;
         Self {
             jaw: to,
-            behind: to - thickness * (excess + to / depth),
+            behind: to - thickness * (excess + to * per_depth),
         }
     }
 

@@ -1,7 +1,8 @@
 //! The restricted likelihood of a noise, and where it is greatest for noise with slow parts.
 
+use super::filter::Filter;
 use super::model::{Likely, NoiseModel};
-use super::rows::{Filter, Rows};
+use super::rows::Rows;
 use crate::optimise::{Cholesky, Few, Level, Minimum, Square, minimise};
 use crate::statistics::dot;
 

@@ -1,8 +1,9 @@
 //! White noise beside one Markov process: a random walk, or noise whose correlation fades in time.
 
+use super::filter::MarkovStep;
 use super::likelihood::{Kind, Likelihood};
 use super::model::NoiseModel;
-use super::rows::{MarkovStep, Rows};
+use super::rows::Rows;
 use crate::optimise::minimise;
 use crate::vector::{LANES, block_sums, cross_products, normal_equations, shifted};
 

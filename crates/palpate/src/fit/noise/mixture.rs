@@ -92,8 +92,8 @@ struct Mixture<'a> {
     alone: f64,
     /// z² over ln(1 + h²/(ν v_m)).
     square: f64,
-    /// A factor that was found before: neighbours along a curve have nearly the same.
-    near: f64,
+    /// Factors that were found before, and how they go on: along a curve they change slowly.
+    near: [f64; 2],
 }
 
 impl<'a> Mixture<'a> {
@@ -107,7 +107,7 @@ impl<'a> Mixture<'a> {
             uncertainty,
             alone,
             square,
-            near: alone,
+            near: [alone, 1.0],
         }
     }
 
@@ -130,15 +130,16 @@ impl<'a> Mixture<'a> {
             #[inline(always)]
             || self.factors(&ratios),
         );
-        self.near = factors[LANES - 1];
+        let [.., before, last] = factors;
+        self.near = [last, last / before];
         [errors, std::array::from_fn(|lane| errors[lane] * factors[lane])]
     }
 
-    /// The factors k for weights of models and ratios v/v_m, by Newton's method for ln k: the logarithm of a tail is about straight in that of k.
+    /// The factors k for weights of models and ratios v/v_m, by Halley's method for ln k: the logarithm of a tail is about straight in that of k.
     #[inline(always)]
     fn factors(&self, ratios: &[(f64, Lanes)]) -> Lanes {
-        /// Step from which the next would change nothing.
-        const ENOUGH: f64 = 1e-6;
+        /// Step of ln k whose cube is nothing: the next would be as long as that.
+        const ENOUGH: f64 = 2e-4;
         let Uncertainty {
             confidence, freedom, ..
         } = *self.uncertainty;
@@ -153,9 +154,15 @@ impl<'a> Mixture<'a> {
             }
         }
         let possible: [bool; LANES] = std::array::from_fn(|lane| low[lane] > 0.0 && high[lane] < f64::INFINITY);
-        let mut k: Lanes = std::array::from_fn(|lane| self.near.min(high[lane]).max(low[lane]));
+        let [last, growth] = self.near;
+        let mut going_on = last;
+        let mut k: Lanes = std::array::from_fn(|lane| {
+            going_on *= growth;
+            going_on.min(high[lane]).max(low[lane])
+        });
         for _ in 0..40 {
-            let (mut tail, mut fall) = ([0.0; LANES], [0.0; LANES]);
+            // The tail, and its first and second derivative by ln k over −1/√(2π) and 1/√(2π).
+            let (mut tail, mut fall, mut bend) = ([0.0; LANES], [0.0; LANES], [0.0; LANES]);
             for (weight, ratio) in ratios {
                 for lane in 0..LANES {
                     let x = k[lane] * k[lane] * ratio[lane] / freedom;
@@ -163,7 +170,10 @@ impl<'a> Mixture<'a> {
                     let z = square.sqrt();
                     let density = weight * exp(-0.5 * square);
                     tail[lane] += density * scaled_tail(z);
-                    fall[lane] += density * x / ((1.0 + x) * z);
+                    let inverse = 1.0 / ((1.0 + x) * z);
+                    let by_log = self.square * x * inverse;
+                    fall[lane] += density * by_log;
+                    bend[lane] += density * by_log * (by_log * z + by_log * (1.0 + x) * inverse - 2.0 * z * inverse);
                 }
             }
             let mut moves = false;
@@ -172,11 +182,13 @@ impl<'a> Mixture<'a> {
                 let beyond = ln(found / target);
                 low[lane] = if beyond > 0.0 { k[lane] } else { low[lane] };
                 high[lane] = if beyond > 0.0 { high[lane] } else { k[lane] };
-                let step = beyond * found / (ROOT * self.square * fall[lane]);
+                let slope = ROOT * fall[lane] / found;
+                let straight = beyond / slope;
+                let step = straight / (1.0 + 0.5 * straight * (slope - bend[lane] / fall[lane]));
                 let next = k[lane] * exp(step);
                 let inside = next >= low[lane] && next <= high[lane];
                 k[lane] = if inside { next } else { (low[lane] * high[lane]).sqrt() };
-                moves |= step.abs() > ENOUGH;
+                moves |= step.abs() > ENOUGH || (step.is_nan() && possible[lane]);
             }
             if !moves {
                 break;

@@ -26,7 +26,8 @@
 //! |---|---|
 //! | `model.rs` | how noise correlates; a noise that was found, lags of residuals |
 //! | `autoregression.rs` | autoregressions: coefficients, predictions, products |
-//! | `rows.rs` | sums over residuals and columns; Kalman's filter |
+//! | `filter.rs` | Kalman's filter of noise with slow parts |
+//! | `rows.rs` | sums over residuals and columns, as they are or filtered |
 //! | `columns.rs` | products of the columns of a fit with the correlations between them |
 //! | `likelihood.rs` | the restricted likelihood, and noise with slow parts |
 //! | `lagged.rs` | that of autoregressions |
@@ -40,6 +41,7 @@
 mod autoregression;
 mod columns;
 mod estimation;
+mod filter;
 mod lagged;
 mod likelihood;
 mod markov;

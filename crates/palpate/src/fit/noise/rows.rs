@@ -3,8 +3,9 @@
 
 use fearless_simd::{Simd, SimdBase, dispatch, f64x8};
 
+use super::filter::{Filter, MarkovStep, Step};
 use super::model::MOST_PARTS;
-use crate::vector::{accelerated, level};
+use crate::vector::level;
 
 /// Columns in one vector.
 const LANES: usize = 8;
@@ -52,15 +53,23 @@ impl Rows {
 
     /// WᵀW with W the columns whitened by a filter, which begins anew every `length` samples.
     pub(crate) fn whitened(&self, filter: &Filter, length: usize) -> Vec<f64> {
+        match filter.kept.len() {
+            1 => self.whitened_by::<1>(filter, length),
+            _ => self.whitened_by::<MOST_PARTS>(filter, length),
+        }
+    }
+
+    /// The same by a filter of up to `P` parts.
+    fn whitened_by<const P: usize>(&self, filter: &Filter, length: usize) -> Vec<f64> {
         let last = filter.steps.len() - 1;
         self.tiled(|left, right| {
             dispatch!(level(), simd => {
                 let nothing = f64x8::splat(simd, 0.0);
-                let (mut states, mut expected, mut at) = ([[nothing; 2]; MOST_PARTS], [nothing; 2], 0);
-                let count = filter.kept.len();
+                let (mut states, mut expected, mut at) = ([[nothing; 2]; P], [nothing; 2], 0);
+                let count = filter.kept.len().min(P);
                 products(simd, left, right, #[inline(always)] |left, right| {
                     if at == length {
-                        (states, expected, at) = ([[nothing; 2]; MOST_PARTS], [nothing; 2], 0);
+                        (states, expected, at) = ([[nothing; 2]; P], [nothing; 2], 0);
                     }
                     let Step { root, gains } = &filter.steps[at.min(last)];
                     at += 1;
@@ -121,10 +130,30 @@ impl Rows {
 
     #[inline(always)]
     fn beside_walks_with<S: Simd>(&self, simd: S, squares: &[f64; LANES], since: &[f64]) -> [(Vec<f64>, f64); LANES] {
-        let (size, squares, one) = (self.columns, f64x8::from_slice(simd, squares), f64x8::splat(simd, 1.0));
-        let mut products = vec![f64x8::splat(simd, 0.0); size * size];
-        let mut expected = vec![f64x8::splat(simd, 0.0); size];
-        let (mut weighed, mut log_determinants, mut determinants) = (expected.clone(), [0.0; LANES], one);
+        let nothing = f64x8::splat(simd, 0.0);
+        // The columns of most fits: so many sums stay in registers.
+        match self.columns {
+            4 => self.walk_sums(simd, 4, &mut [nothing; 4 * 6], squares, since),
+            5 => self.walk_sums(simd, 5, &mut [nothing; 5 * 7], squares, since),
+            6 => self.walk_sums(simd, 6, &mut [nothing; 6 * 8], squares, since),
+            size => self.walk_sums(simd, size, &mut vec![nothing; size * (size + 2)], squares, since),
+        }
+    }
+
+    /// The same of `size` columns, with zeros in `room` for the products, what is expected and what weighs.
+    #[inline(always)]
+    fn walk_sums<S: Simd>(
+        &self,
+        simd: S,
+        size: usize,
+        room: &mut [f64x8<S>],
+        squares: &[f64; LANES],
+        since: &[f64],
+    ) -> [(Vec<f64>, f64); LANES] {
+        let (products, rest) = room.split_at_mut(size * size);
+        let (expected, weighed) = rest.split_at_mut(size);
+        let (squares, one) = (f64x8::from_slice(simd, squares), f64x8::splat(simd, 1.0));
+        let (mut log_determinants, mut determinants) = ([0.0; LANES], one);
         let mut ahead = squares * since[0];
         for (index, now) in since.iter().enumerate() {
             let innovation = ahead + one;
@@ -148,7 +177,7 @@ impl Rows {
             let added = since.get(index + 1).map_or(0.0, |next| (next - now).max(0.0));
             ahead = ahead * (one - gain) + squares * added;
         }
-        let products: Vec<[f64; LANES]> = products.into_iter().map(Into::into).collect();
+        let products: Vec<[f64; LANES]> = products.iter().map(|sum| (*sum).into()).collect();
         std::array::from_fn(|lane| {
             let entry = |at: usize| {
                 let (row, column) = (at / size, at % size);
@@ -195,102 +224,6 @@ fn products<S: Simd>(
     sums.map(Into::into)
 }
 
-/// Kalman's filter of white noise with AR(1) parts, as it takes a column: each part is expected to be what it was, and its gain of what
-/// came beyond expectation, times its correlation; what came beyond counts times `root`.
-pub(crate) struct Filter {
-    /// The correlation of each part with itself a sample later.
-    pub(crate) kept: Vec<f64>,
-    /// Of the first samples; the last of them for all that follow.
-    pub(crate) steps: Vec<Step>,
-    /// ln |R|.
-    pub(crate) log_determinant: f64,
-}
-
-/// What a filter does with one sample.
-pub(crate) struct Step {
-    pub(crate) root: f64,
-    pub(crate) gains: [f64; MOST_PARTS],
-}
-
-impl Filter {
-    /// The filter for parts, each with its share in the variance and its correlation a sample later; the rest is white.
-    pub(crate) fn new(parts: &[(f64, f64)], samples: usize) -> Self {
-        accelerated(
-            #[inline(always)]
-            || Self::settled(parts, samples),
-        )
-    }
-
-    #[inline(always)]
-    fn settled(parts: &[(f64, f64)], samples: usize) -> Self {
-        let white = (1.0 - parts.iter().map(|(share, _)| share).sum::<f64>()).max(0.0);
-        let of = |part: fn(&(f64, f64)) -> f64| -> [f64; MOST_PARTS] {
-            std::array::from_fn(|index| parts.get(index).map_or(0.0, part))
-        };
-        let (shares, kept) = (of(|part| part.0), of(|part| part.1));
-        // Covariance of the parts before each sample.
-        let mut ahead = [[0.0; MOST_PARTS]; MOST_PARTS];
-        (0..MOST_PARTS).for_each(|i| ahead[i][i] = shares[i]);
-        let (mut steps, mut log_determinant): (Vec<Step>, f64) = (Vec::with_capacity(samples), 0.0);
-        for index in 0..samples {
-            let mut with_sum = [0.0; MOST_PARTS];
-            for row in &ahead {
-                (0..MOST_PARTS).for_each(|j| with_sum[j] += row[j]);
-            }
-            let innovation = white + with_sum.iter().sum::<f64>();
-            let root = 1.0 / innovation.sqrt();
-            let gains = with_sum.map(|with_sum| with_sum / innovation);
-            // Gains and variances settle soon, where no part outlasts the series.
-            let is_settled = steps.last().is_some_and(|last| {
-                (root - last.root).abs() <= 1e-14 * root
-                    && (0..MOST_PARTS).all(|i| (gains[i] - last.gains[i]).abs() <= 1e-14 * gains[i])
-            });
-            if is_settled {
-                log_determinant += (samples - index) as f64 * innovation.ln();
-                break;
-            }
-            log_determinant += innovation.ln();
-            for i in 0..MOST_PARTS {
-                let (gain, kept_here) = (gains[i], kept[i]);
-                for j in 0..MOST_PARTS {
-                    ahead[i][j] = kept_here * kept[j] * (ahead[i][j] - gain * with_sum[j]);
-                }
-                ahead[i][i] += shares[i] * (1.0 - kept_here * kept_here);
-            }
-            steps.push(Step { root, gains });
-        }
-        Self {
-            kept: parts.iter().map(|(_, correlation)| *correlation).collect(),
-            steps,
-            log_determinant,
-        }
-    }
-
-    /// Σ of the squares of a column whitened.
-    pub(crate) fn square(&self, column: &[f64]) -> f64 {
-        let (mut states, mut expected, mut square) = ([0.0; MOST_PARTS], 0.0, 0.0);
-        let (count, last) = (self.kept.len(), self.steps.len() - 1);
-        for (index, entry) in column.iter().enumerate() {
-            let Step { root, gains } = &self.steps[index.min(last)];
-            let new = entry - expected;
-            square += (new * root).powi(2);
-            for i in 0..count {
-                states[i] = (states[i] + gains[i] * new) * self.kept[i];
-            }
-            expected = states[..count].iter().sum();
-        }
-        square
-    }
-}
-
-/// What a filter does with one sample: what came beyond expectation counts times `root`, and changes what is expected by `gain` of it; of all
-/// that `kept` is left for the next.
-pub(super) struct MarkovStep {
-    pub(super) root: f64,
-    pub(super) gain: f64,
-    pub(super) kept: f64,
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -318,12 +251,17 @@ mod tests {
 
     #[test]
     fn side_by_side_is_one_after_the_other() {
-        let filter = Filter::new(&[(0.6, 0.8), (0.2, 0.99)], COUNT);
+        for parts in [&[(0.6, 0.8)][..], &[(0.6, 0.8), (0.2, 0.99)]] {
+            agree(&Filter::new(parts, COUNT));
+        }
+    }
+
+    fn agree(filter: &Filter) {
         for count in [1, 3, 8, 9, 17, 30] {
             let all = columns(count);
             let slices: Vec<&[f64]> = all.iter().map(Vec::as_slice).collect();
             let rows = Rows::new(&slices);
-            let white: Vec<Vec<f64>> = all.iter().map(|column| whitened(column, &filter)).collect();
+            let white: Vec<Vec<f64>> = all.iter().map(|column| whitened(column, filter)).collect();
             let before = |column: &Vec<f64>| {
                 let mut sum = 0.0;
                 let mut step = |entry: &f64| {
@@ -334,7 +272,7 @@ mod tests {
                 column.iter().map(&mut step).collect::<Vec<f64>>()
             };
             let sums: Vec<Vec<f64>> = all.iter().map(before).collect();
-            let (products, across) = (rows.whitened(&filter, COUNT), rows.with_sums_before(0.8));
+            let (products, across) = (rows.whitened(filter, COUNT), rows.with_sums_before(0.8));
             for i in 0..count {
                 for j in 0..count {
                     assert!((products[i * count + j] - dot(&white[i], &white[j])).abs() < 1e-12);
@@ -343,6 +281,6 @@ mod tests {
                 assert!((filter.square(&all[i]) / dot(&white[i], &white[i]) - 1.0).abs() < 1e-13);
             }
         }
-        assert!(Rows::new(&[]).whitened(&filter, COUNT).is_empty());
+        assert!(Rows::new(&[]).whitened(filter, COUNT).is_empty());
     }
 }

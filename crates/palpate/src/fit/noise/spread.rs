@@ -1,7 +1,8 @@
 //! Noise whose size changes along a hold: with the signal, as that of many sensors does, or with time.
 
 use crate::statistics::{dot, mean};
-use crate::vector::{shifted, sum};
+use crate::vector::elementary::exp;
+use crate::vector::{accelerated, multiply, shifted, sum};
 
 /// Score of a change, in standard deviations, from which on it is one: 1 of 1,000 even noises.
 const OBSERVED: f64 = 3.3;
@@ -25,7 +26,8 @@ impl Spread {
         if residuals.len() < FEWEST || square <= f64::MIN_POSITIVE * 1e20 {
             return None;
         }
-        let squares: Vec<f64> = residuals.iter().map(|residual| residual * residual / square).collect();
+        let mut squares = shifted(residuals, 0.0, 1.0 / square);
+        multiply(&mut squares, residuals);
         // Squares of Gaussian noise correlate by the square of its correlation.
         let repeated = correlation * correlation;
         let counts = ((1.0 - repeated) / (1.0 + repeated)).sqrt();
@@ -81,9 +83,9 @@ fn standardised(values: &[f64]) -> Vec<f64> {
 
 /// How far squares of mean 1 follow a regressor, in standard deviations (Koenker 1981).
 fn score(squares: &[f64], of: &[f64]) -> f64 {
-    let (beyond, centred) = (shifted(squares, 1.0, 1.0), shifted(of, sum(of) / of.len() as f64, 1.0));
-    let deviation = (dot(&centred, &centred) / of.len() as f64).sqrt();
-    dot(&beyond, &centred) / (dot(&beyond, &beyond).sqrt() * deviation)
+    let (count, middle) = (of.len() as f64, sum(of) / of.len() as f64);
+    let (together, own, along) = (dot(squares, of), dot(squares, squares), dot(of, of));
+    (together - count * middle) / ((own - count) * (along / count - middle * middle)).sqrt()
 }
 
 /// Square roots of exp(a + b x + c x²) of the largest likelihood.
@@ -97,10 +99,22 @@ fn deviations(squares: &[f64], of: &[f64]) -> Vec<f64> {
     let bent: Vec<f64> = bent.iter().zip(of).map(|(square, x)| square - middle - slope * x).collect();
     let size = dot(&bent, &bent);
     let (mut a, mut b, mut c) = (0.0, 0.0, 0.0);
-    let log = |a: f64, b: f64, c: f64, i: usize| (a + b * of[i] + c * bent[i]).clamp(-FARTHEST, FARTHEST);
+    let powers = |[a, b, c]: [f64; 3], by: f64| -> Vec<f64> {
+        let mut out = vec![0.0; of.len()];
+        accelerated(
+            #[inline(always)]
+            || {
+                for ((out, x), bent) in out.iter_mut().zip(of).zip(&bent) {
+                    *out = exp(by * (a + b * x + c * bent).clamp(-FARTHEST, FARTHEST));
+                }
+            },
+        );
+        out
+    };
     for _ in 0..ROUNDS {
-        let beyond: Vec<f64> =
-            squares.iter().enumerate().map(|(i, square)| square * (-log(a, b, c, i)).exp() - 1.0).collect();
+        let mut beyond = powers([a, b, c], -1.0);
+        multiply(&mut beyond, squares);
+        let beyond = shifted(&beyond, 1.0, 1.0);
         let steps = [mean(&beyond), dot(&beyond, of) / count, dot(&beyond, &bent) / size.max(f64::MIN_POSITIVE)];
         // Fisher's steps are long where the size is far from even.
         let shortened = 1.0f64.min(1.0 / steps.iter().map(|step| step.abs()).fold(0.0, f64::max).max(1e-300));
@@ -109,7 +123,7 @@ fn deviations(squares: &[f64], of: &[f64]) -> Vec<f64> {
             break;
         }
     }
-    let mut found: Vec<f64> = (0..of.len()).map(|i| (0.5 * log(a, b, c, i)).exp()).collect();
+    let mut found = powers([a, b, c], 0.5);
     let unit = (dot(&found, &found) / count).sqrt();
     found.iter_mut().for_each(|deviation| *deviation /= unit);
     found

@@ -27,7 +27,7 @@ pub(super) struct Block {
     rate_coefficient: Lanes,
     /// Share of the displacement that is one contact's.
     share: Lanes,
-    depth: Lanes,
+    per_depth: Lanes,
     thickness: Lanes,
     per_thickness: Lanes,
     /// m − 1.
@@ -67,7 +67,7 @@ impl Block {
             exponent,
             rate_coefficient: each(&|model| model.law.rate_coefficient()),
             share: each(&|model| model.specimen.contact_displacement(1.0)),
-            depth: each(&|model| model.specimen.depth()),
+            per_depth: each(&|model| 1.0 / model.specimen.depth()),
             thickness: each(&|model| model.layers.thickness(model.specimen.depth())),
             per_thickness: each(&|model| 1.0 / model.layers.thickness(model.specimen.depth())),
             layers_behind: each(&|model| model.layers.count() - 1.0),
@@ -112,13 +112,13 @@ impl Block {
             stays: [false; LANES],
         };
         for lane in 0..LANES {
-            let (depth, thickness) = (self.depth[lane], self.thickness[lane]);
+            let (per_depth, per_thickness) = (self.per_depth[lane], self.per_thickness[lane]);
             let u = to[lane] * self.share[lane];
-            let kick = 0.5 * ((u - jaw[lane]) * self.layers_behind[lane] / depth);
-            let excess = (jaw[lane] - behind[lane]) * self.per_thickness[lane] - jaw[lane] / depth + kick;
+            let kick = 0.5 * ((u - jaw[lane]) * self.layers_behind[lane] * per_depth);
+            let excess = (jaw[lane] - behind[lane]) * per_thickness - jaw[lane] * per_depth + kick;
             let excess = self.relaxed(power, lane, excess, dt[lane]) + kick;
-            let left = u - thickness * (excess + u / depth);
-            let strain = (u - left) / thickness;
+            let left = u - self.thickness[lane] * (excess + u * per_depth);
+            let strain = (u - left) * per_thickness;
             let inside = if u > 0.0 { u } else { 0.0 };
             let round = std::f64::consts::PI * inside * (self.diameter[lane] - inside);
             let area = if self.diameter[lane] > 0.0 { round } else { self.section[lane] };
