@@ -11,7 +11,7 @@ const VALLEYS: usize = 6;
 /// Standard errors from the best value beyond which an end counts as open.
 const FARTHEST: f64 = 2000.0;
 
-/// Distance of an end on all samples, in standard errors, at which its search stops.
+/// Distance of an end, in standard errors, at which its search stops.
 const CLOSE: f64 = 1e-9;
 
 /// The same on condensed samples, which only show where to look.
@@ -78,8 +78,6 @@ struct Field<'a> {
     inside: f64,
     /// Residual square at the optimum.
     least: f64,
-    /// Distance of an end, in standard errors, at which its search stops.
-    close: f64,
 }
 
 impl Profile<'_> {
@@ -97,13 +95,12 @@ impl Profile<'_> {
     }
 
     /// All samples.
-    fn all(&self, close: f64) -> Field<'_> {
+    fn all(&self) -> Field<'_> {
         Field {
             times: &self.fitted.scaled.times,
             target: self.fitted.scaled.target(),
             inside: 0.0,
             least: self.fitted.solution.residual_square,
-            close,
         }
     }
 
@@ -118,7 +115,6 @@ impl Profile<'_> {
             target: nodes.target(),
             inside: nodes.inside,
             least: 1.0,
-            close: ROUGH,
         };
         let least = self.at(&field, 1.0, 0.0, &self.start(), effort)?.square;
         Ok(Some(Field { least, ..field }))
@@ -128,12 +124,12 @@ impl Profile<'_> {
     fn end(&self, few: Option<&Field<'_>>, side: f64, effort: &mut Effort<'_>) -> Result<Option<Reached>, Cancelled> {
         let start = self.start();
         let guess = match few {
-            Some(few) => self.meet(few, side, &start, self.target, effort)?,
+            Some(few) => self.meet(few, side, &start, self.target, ROUGH, effort)?,
             None => None,
         };
         let first = guess.as_ref().map_or(self.target, |guess| guess.distance);
         let nonlinear = guess.map_or_else(|| start.nonlinear.clone(), |guess| guess.nonlinear);
-        let met = self.meet(&self.all(CLOSE), side, &Reached { nonlinear, ..start }, first, effort)?;
+        let met = self.meet(&self.all(), side, &Reached { nonlinear, ..start }, first, CLOSE, effort)?;
         Ok(met.filter(|met| !met.at_edge))
     }
 
@@ -145,12 +141,12 @@ impl Profile<'_> {
         side: f64,
         effort: &mut Effort<'_>,
     ) -> Result<Option<Reached>, Cancelled> {
-        let all = self.all(ROUGH);
+        let all = self.all();
         let field = few.unwrap_or(&all);
         let (mut from, mut first) = (self.start(), self.target);
         let mut met = None;
         for _ in 0..VALLEYS {
-            met = self.meet(field, side, &from, first, effort)?.filter(|met| !met.at_edge);
+            met = self.meet(field, side, &from, first, ROUGH, effort)?.filter(|met| !met.at_edge);
             let Some(end) = &met else { break };
             let Some(lower) = self.elsewhere(field, side, end, effort)? else {
                 break;
@@ -223,6 +219,7 @@ impl Profile<'_> {
         side: f64,
         start: &Reached,
         first: f64,
+        close: f64,
         effort: &mut Effort<'_>,
     ) -> Result<Option<Reached>, Cancelled> {
         /// Halvings of what is left, if no secant leads anywhere.
@@ -246,7 +243,7 @@ impl Profile<'_> {
             let width = far.distance - near.distance;
             let trial = self.at(field, side, middle, &far, effort)?;
             let left = self.target - trial.z;
-            if width < field.close * (1.0 + middle) || left.abs() < field.close {
+            if width < close * (1.0 + middle) || left.abs() < close {
                 return Ok(Some(trial));
             }
             if left > 0.0 {
@@ -274,9 +271,7 @@ impl Profile<'_> {
         if let Searched::Nonlinear(_, free) = self.parameter {
             theta.remove(free);
         }
-        // z² moves by (N − p) times the relative fall of the residual square that counts as none.
-        let ending = Ending::new((field.close / self.freedom).max(1e-14), self.most_iterations);
-        let point = refine(&shapes, field.target, &theta, ending, effort)?.point;
+        let point = refine(&shapes, field.target, &theta, Ending::tight(self.most_iterations), effort)?.point;
         let square = point.square + field.inside;
         let at_edge = point.theta.iter().enumerate().any(|(i, value)| {
             let (low, high) = shapes.bounds(i);
