@@ -36,7 +36,7 @@ export const lines = (of) => of && el("details", { className: "lines" }, el("sum
   el("p", { className: "small" }, "To be run in the folder of the records."), of.shell ? copied("Command line", of.shell) : el("p", { className: "small" }, "One command cannot do it: the records have descriptions of their own."), copied("Python", of.python));
 
 // A slider with a field for its value; of several decades by its logarithm.
-const slider = ({ id, label, unit, low, high, value, log = false, scale = 1, digits = 3 }, moved) => {
+const slider = ({ id, label, unit, low, high, value, log = false, scale = 1, digits = 3, most = Infinity }, moved) => {
   const STEPS = 1000;
   const to = (x) => (log ? (Math.log(x / low) / Math.log(high / low)) * STEPS : ((x - low) / (high - low)) * STEPS);
   const from = (step) => (log ? low * (high / low) ** (step / STEPS) : low + (step / STEPS) * (high - low));
@@ -45,7 +45,11 @@ const slider = ({ id, label, unit, low, high, value, log = false, scale = 1, dig
   const range = el("input", { type: "range", id, min: "0", max: String(STEPS), step: "1", value: String(to(value)), oninput: () => { set(+from(+range.value).toPrecision(digits), range); moved(); } });
   const field = el("input", { type: "text", inputmode: "decimal", "aria-label": `${label}, ${unit || "number"}`, value: text(), onchange: () => {
     const found = Number(field.value.replace(",", ".")) / scale;
-    if (Number.isFinite(found) && found > 0) { set(found, field); moved(); } else field.value = text();
+    const fits = Number.isFinite(found) && found > 0 && found < most;
+    field.setCustomValidity(fits ? "" : `a number above 0${Number.isFinite(most) ? ` and below ${most * scale}` : ""}`);
+    if (!fits) return field.reportValidity();
+    set(found, field);
+    return moved();
   } });
   const set = (found, by) => {
     state.value = found;
@@ -73,12 +77,13 @@ export const gripPanel = async (material) => {
     friction: slider({ id: "grip-friction", label: "Friction μ", unit: "", low: 0.05, high: 1.5, value: friction, digits: 3 }, () => moved()),
     hold_s: slider({ id: "grip-hold", label: "Hold", unit: "s", low: 0.1, high: Math.max(1e4, 100 * range.longest_hold_s), value: 60, log: true }, () => moved()),
     squeeze_m: slider({ id: "grip-squeeze", label: "Squeeze", unit: range.deepest_m < 1e-4 ? "µm" : "mm", scale: range.deepest_m < 1e-4 ? 1e6 : 1e3, low: range.deepest_m / 50, high: 1.3 * range.deepest_m, value: +(0.6 * range.deepest_m).toPrecision(2), digits: 4 }, () => moved()),
-    confidence: slider({ id: "grip-confidence", label: "Required probability", unit: "%", scale: 100, low: 0.5, high: 0.999, value: 0.95, digits: 3 }, () => moved()),
+    confidence: slider({ id: "grip-confidence", label: "Required probability", unit: "%", scale: 100, low: 0.5, high: 0.999, value: 0.95, digits: 3, most: 1 }, () => moved()),
   };
   const options = () => Object.fromEntries(Object.entries(sliders).map(([key, { state }]) => [key, state.value]));
   let [busy, again] = [false, false];
   // One question at a time; the last of those that came meanwhile is asked next.
   const moved = async () => {
+    if (plan.firstChild) plan.classList.add("before");
     if (busy) return (again = true);
     busy = true;
     try {
@@ -118,10 +123,12 @@ export const gripPanel = async (material) => {
     try {
       const { id, answer } = await running.done;
       if (least && answer.squeeze_m) {
-        sliders.squeeze_m.set(+answer.squeeze_m.toPrecision(6));
-        moved();
+        sliders.squeeze_m.set(Math.ceil(answer.squeeze_m * 1e7) / 1e7);
+        await moved();
       }
-      plan.replaceChildren(el("p", {}, el("b", {}, answer.verdict)), answer.figure ? drawn(answer.figure) : "", el("ul", {}, answer.remarks.map((remark) => el("li", {}, remark))),
+      plan.classList.remove("before");
+      const other = least && !answer.squeeze_m && el("p", { className: "note-line" }, "For this load the least squeeze belongs to another motion, stated below; the slider stays where it is.");
+      plan.replaceChildren(other || "", el("p", {}, el("b", {}, answer.verdict)), answer.figure ? drawn(answer.figure) : "", el("ul", {}, answer.remarks.map((remark) => el("li", {}, remark))),
         el("p", { className: "takeaway" }, el("a", { href: `api/tasks/${id}/files/report.html`, target: "_blank", rel: "noopener" }, "Report of the grip"), el("a", { href: `api/tasks/${id}/files/tables.xlsx`, download: "grip.xlsx" }, "Workbook"), el("a", { href: `api/tasks/${id}/files/grip.json`, download: "grip.json" }, "JSON")));
       say(answer.verdict);
     } catch (error) {

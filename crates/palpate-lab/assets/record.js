@@ -85,9 +85,13 @@ export class PhaseFigure {
       event.preventDefault();
       event.stopPropagation();
       group.setPointerCapture(event.pointerId);
+      // Of marks that lie on each other the nearest is meant, wherever the finger lands.
+      const [start] = drawing.place(event);
+      const away = (one) => Math.abs(panel.x.shows(panel.x.position(this.holds[one.hold][one.end] / factor)) - start);
+      const meant = this.handles.filter((one) => one.panel === panel).sort((a, b) => away(a) - away(b))[0];
       const move = (moved) => {
         const [x] = drawing.place(moved);
-        this.move(hold, end, panel.x.value(panel.x.hidden(x)) * factor);
+        this.move(meant.hold, meant.end, panel.x.value(panel.x.hidden(x)) * factor);
       };
       const up = () => {
         group.removeEventListener("pointermove", move);
@@ -113,10 +117,13 @@ export class PhaseFigure {
   // A boundary stays within the record and between its neighbours.
   move(hold, end, time) {
     const [first, last] = this.record.time_s;
-    const gap = 2 * this.record.sample_interval_s;
-    const low = end ? this.holds[hold][0] + gap : hold ? this.holds[hold - 1][1] : first;
-    const high = end ? this.holds[hold + 1]?.[0] ?? last : this.holds[hold][1] - gap;
-    this.holds[hold][end] = Math.min(Math.max(+time.toFixed(this.decimals), low), high);
+    const interval = this.record.sample_interval_s;
+    const [before, after] = [this.holds[hold - 1]?.[1], this.holds[hold + 1]?.[0]];
+    const low = end ? this.holds[hold][0] + 2 * interval : before === undefined ? first : before + interval;
+    const high = end ? (after === undefined ? last : after - interval) : this.holds[hold][1] - 2 * interval;
+    const within = Math.min(Math.max(time, low), high);
+    // The ends of the record are times of samples, which rounding would miss.
+    this.holds[hold][end] = within === first || within === last ? within : +within.toFixed(this.decimals);
     this.moved = true;
     this.place();
     this.heard?.(hold);
@@ -164,11 +171,13 @@ export const holdTable = (description, inspected, figure) => {
       type: "text", inputmode: "decimal", value: String(figure ? figure.holds[i][end] : [phase.start_s, phase.end_s][end]),
       "aria-label": `${end ? "End" : "Start"} of hold ${i + 1}, in seconds`, "data-end": String(end),
       onchange: (event) => {
-        const time = Number(event.target.value.replace(",", ".").replace(/s$/, "").trim());
+        const text = event.target.value.replace(",", ".").replace(/s$/, "").trim();
+        const time = text === "" ? NaN : Number(text);
         if (!Number.isFinite(time)) return wrong.replaceChildren(refusal({ message: `expected a time in seconds, found “${event.target.value}”` }));
         const holds = phases.map((one) => [one.start_s, one.end_s]);
         holds[i][end] = time;
-        state(holds);
+        const [field, before] = [event.target, String([phase.start_s, phase.end_s][end])];
+        state(holds).then((taken) => { if (!taken) field.value = before; });
       },
     });
     const held = { displacement: "displacement", force: "force", neither: "neither" }[phase.mode] ?? "";
@@ -201,7 +210,7 @@ export const holdTable = (description, inspected, figure) => {
 };
 
 // Columns, what they are used as, and which of that is guessed.
-export const columnTable = (description, inspected, vocabulary) => {
+export const columnTable = (description, inspected, vocabulary, guess) => {
   const wrong = el("div");
   const units = new Map(vocabulary.quantities.map(({ name, units: of }) => [name, of]));
   const names = inspected.columns.map((column) => column.name);
@@ -216,8 +225,18 @@ export const columnTable = (description, inspected, vocabulary) => {
     }
     return undefined;
   };
+  // And what the file suggests, where something is missing to read it.
+  const guessed = (column) => {
+    if (inspected.columns.some((one) => one.used_as.length)) return undefined;
+    for (const quantity of choices) {
+      const of = guess?.columns?.[quantity];
+      if (!of || description.get("columns", quantity) || (of.column !== column.number && of.column !== column.name)) continue;
+      return { quantity, role: "values", unit: of.unit && of.unit !== "?" ? of.unit : column.unit ?? "", sign: 1, column_is_stated: false, unit_is_stated: false };
+    }
+    return undefined;
+  };
   const rows = inspected.columns.map((column) => {
-    const used = column.used_as[0] ?? stated(column);
+    const used = column.used_as[0] ?? stated(column) ?? guessed(column);
     const quantity = used ? (used.role === "deflection" ? "deflection" : used.role === "values" ? used.quantity : used.role) : "";
     const fixed = used && !["values", "deflection"].includes(used.role);
     const use = el("select", {
@@ -253,7 +272,7 @@ export const columnTable = (description, inspected, vocabulary) => {
       el("th", { scope: "row" }, String(column.number)), el("td", {}, column.name ?? "(no name)"), el("td", {}, column.unit ?? "–"),
       el("td", { className: "n" }, column.sample), el("td", {}, use), el("td", {}, unit), el("td", {}, sign), el("td", {}, guess));
   });
-  const timed = inspected.columns.some((column) => (column.used_as[0] ?? stated(column))?.quantity === "time");
+  const timed = inspected.columns.some((column) => (column.used_as[0] ?? stated(column) ?? guessed(column))?.quantity === "time");
   const rate = !timed && el("label", {}, "Without a column of time: samples per second ", el("input", {
     type: "text", placeholder: "10 kHz", value: description.get("columns", "time", "rate") ?? "",
     onchange: (event) => {
@@ -271,6 +290,9 @@ export const columnTable = (description, inspected, vocabulary) => {
     rate && el("p", {}, rate), el("p", {}, el("label", {}, "Machine ", machines)), wrong);
 };
 
+// A row of two quantities: between them a comma or semicolon; a comma between digits is a decimal one.
+const cells = (line) => line.split(/[;\t]|,(?!\d)/).map((cell) => cell.trim());
+
 const EXAMPLES = { radius: "35 mm", diameter: "20 mm", width: "10 mm", thickness: "2 mm", length: "50 mm", area: "100 mm^2", depth: "35 mm", half_angle: "35 deg", cone_angle: "2 deg", modulus: "28 kPa", poisson_ratio: "0.5" };
 const ROWS = { widths: "0 mm, 12.5 mm\n12 mm, 4 mm\n37 mm, 4 mm\n49 mm, 12.5 mm", areas: "0 mm, 0 mm^2\n1 mm, 40 mm^2\n4 mm, 90 mm^2" };
 const title = (key) => (key.charAt(0).toUpperCase() + key.slice(1)).replace(/_/g, " ").replace("Poisson ratio", "Poisson's ratio");
@@ -282,8 +304,9 @@ export const bodyForm = (description, vocabulary) => {
   const about = vocabulary.schema.$defs.Specimen.properties;
   const shapes = vocabulary.schema.$defs.ShapeName.oneOf;
   const fields = el("div", { className: "fields" });
-  const shape = el("select", { id: "shape", onchange: () => { lay(); commit(); } }, el("option", { value: "" }, "not stated: forces alone are analysed"), vocabulary.shapes.filter(({ name }) => name !== "none").map(({ name }) => el("option", { value: name, selected: specimen.shape === name }, name)));
-  const values = { ...specimen };
+  const shape = el("select", { id: "shape", onchange: () => { lay(); commit(); } }, el("option", { value: "" }, "not stated: forces alone are analysed"), vocabulary.shapes.filter(({ name }) => name !== "none").map(({ name }) => el("option", { value: name, selected: (description.pending?.shape ?? specimen.shape) === name }, name)));
+  // What was typed and could not be taken yet stays through other changes.
+  const values = { ...specimen, ...description.pending?.values };
   const of = () => vocabulary.shapes.find(({ name }) => name === shape.value);
   const keys = () => (of() ? [...of().sizes, ...of().optional, "modulus", ...(of().is_tip || specimen.equilibrium === "hertz" ? ["poisson_ratio"] : [])] : []);
   const needed = (key) => of().sizes.includes(key) || (key === "poisson_ratio" && of().is_tip);
@@ -294,7 +317,7 @@ export const bodyForm = (description, vocabulary) => {
     fields.replaceChildren(known ? el("p", { className: "small" }, known) : "");
     for (const key of keys()) {
       const id = `size-${key}`;
-      const change = (event) => { values[key] = event.target.value.trim(); commit(); };
+      const change = (event) => { values[key] = event.target.value.trim(); commit(key); };
       let field = null;
       if (key === "base") field = el("select", { id, onchange: change }, ["", "bonded", "sliding"].map((name) => el("option", { value: name, selected: values.base === name }, name || "bonded (default)")));
       else if (ROWS[key]) field = el("textarea", { id, rows: 4, placeholder: ROWS[key], onchange: change }, text(key, values[key]));
@@ -304,21 +327,27 @@ export const bodyForm = (description, vocabulary) => {
     }
   }
 
-  function commit() {
+  async function commit(changed) {
     const chosen = of();
     wrong.replaceChildren();
-    if (!chosen) return description.edit([{ key: ["specimen"], value: null }], { beside: wrong });
+    description.pending = { shape: shape.value, values: { ...values } };
+    const taken = (done) => { if (done) description.pending = null; };
+    if (!chosen) return taken(await description.edit([{ key: ["specimen"], value: null }], { beside: wrong }));
     const missing = keys().filter((key) => needed(key) && !values[key]);
-    if (missing.length) return wrong.replaceChildren(el("p", { className: "small" }, `Needed for a ${chosen.name}: ${missing.map((key) => title(key).toLowerCase()).join(", ")}, with a unit such as “${EXAMPLES[missing[0]] ?? "35 mm"}”.`));
+    const until = description.get("specimen") ? " Until then the body that is stated counts." : "";
+    if (missing.length) return wrong.replaceChildren(el("p", { className: "note-line" }, `Needed for a ${chosen.name}: ${missing.map((key) => title(key).toLowerCase()).join(", ")}, with a unit such as “${EXAMPLES[missing[0]] ?? "35 mm"}”.${until}`));
     const wanted = new Map([["shape", chosen.name]]);
     for (const key of keys()) {
       const value = values[key];
       if (value === undefined || value === "") continue;
-      if (ROWS[key]) wanted.set(key, Array.isArray(value) ? value : value.split("\n").filter((line) => line.trim()).map((line) => line.split(/[,;\t]/).map((cell) => cell.trim())));
-      else wanted.set(key, key === "poisson_ratio" ? Number(value) : value);
+      if (key === "poisson_ratio" && !Number.isFinite(Number(String(value).replace(",", ".")))) return wrong.replaceChildren(refusal({ message: `Poisson's ratio is a number from 0 to 0.5, found “${value}”` }));
+      if (ROWS[key]) wanted.set(key, Array.isArray(value) ? value : value.split("\n").filter((line) => line.trim()).map(cells));
+      else wanted.set(key, key === "poisson_ratio" ? Number(String(value).replace(",", ".")) : value);
     }
+    // Of a body that is stated only what was changed here: another page may have changed the rest.
+    if (changed && description.get("specimen", "shape") === chosen.name) return taken(await description.edit([{ key: ["specimen", changed], value: wanted.get(changed) ?? null }], { beside: wrong }));
     const old = Object.keys(description.get("specimen") ?? {}).filter((key) => !wanted.has(key) && key !== "equilibrium");
-    return description.edit([...old.map((key) => ({ key: ["specimen", key], value: null })), ...[...wanted].map(([key, value]) => ({ key: ["specimen", key], value }))], { beside: wrong });
+    return taken(await description.edit([...old.map((key) => ({ key: ["specimen", key], value: null })), ...[...wanted].map(([key, value]) => ({ key: ["specimen", key], value }))], { beside: wrong }));
   }
 
   const contact = (key, label, choices) => el("div", { className: "field" }, el("label", { for: `contact-${key}` }, label),
@@ -336,8 +365,9 @@ export const bodyForm = (description, vocabulary) => {
 // The description as text, for what has no field.
 export const textForm = (description, draft) => {
   const wrong = el("div");
-  const area = el("textarea", { className: "toml", rows: 14, spellcheck: "false", "aria-label": "Test description" }, description.stated.text);
+  const area = el("textarea", { className: "toml", rows: 14, spellcheck: "false", "aria-label": "Test description", oninput: () => { description.unsent = area.value; } }, description.unsent ?? description.stated.text);
+  const apply = async () => { if (await description.replace(area.value, wrong)) description.unsent = null; };
   return el("div", {}, area,
-    el("p", { className: "actions" }, button("Apply", () => description.replace(area.value, wrong)), draft && button("Insert the draft of the file", () => { area.value = draft; say("The draft stands in the text; Apply takes it."); }, { className: "quiet" }),
-      description.stated.name && el("span", { className: "small" }, `${description.stated.name}`)), wrong);
+    el("p", { className: "actions" }, button("Apply", apply), draft && button("Insert the draft of the file", () => { area.value = draft; description.unsent = draft; say("The draft stands in the text; Apply takes it."); }, { className: "quiet" }),
+      description.stated.name && el("span", { className: "small" }, `${description.stated.name}`), typeof description.unsent === "string" && el("span", { className: "small" }, "Not applied yet.")), wrong);
 };

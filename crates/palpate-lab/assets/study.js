@@ -64,11 +64,22 @@ export class Study {
   // What is stated has changed: all that depends on it is made anew.
   async changed() {
     const open = [...this.cards.querySelectorAll("details[id]")].filter((one) => one.open).map((one) => one.id);
-    const focus = document.activeElement?.getAttribute("aria-label") ?? null;
-    const id = document.activeElement?.id ?? null;
+    if (this.gripBox?.firstChild && !this.outdated) this.grip.prepend(this.outdated = el("p", { className: "note-line" }, "What is stated has changed since this material was made: calibrate again."));
     await this.inspect(open);
-    const again = (id && document.getElementById(id)) || (focus && [...this.cards.querySelectorAll("[aria-label]")].find((one) => one.getAttribute("aria-label") === focus && one.getClientRects().length));
-    if (again && document.activeElement === document.body) again.focus({ preventScroll: true });
+  }
+
+  // Where a person was working on what is made anew, and how to go on there.
+  held() {
+    const one = document.activeElement;
+    if (!this.record.contains(one)) return () => {};
+    const [id, label, text] = [one.id, one.getAttribute("aria-label"), one.matches("input[type=text]") ? one.value : null];
+    const typed = text !== null && text !== one.defaultValue;
+    return () => {
+      const again = (id && document.getElementById(id)) || (label && [...this.record.querySelectorAll("[aria-label]")].find((other) => other.getAttribute("aria-label") === label && other.getClientRects().length));
+      if (!again) return;
+      if (typed && again.matches("input[type=text]")) again.value = text;
+      again.focus({ preventScroll: true });
+    };
   }
 
   async refresh() {
@@ -78,12 +89,18 @@ export class Study {
   }
 
   async inspect(open = []) {
-    const made = await into(this.record, { kind: "inspect", subject: this.subject }, (answer) => this.shownRecord(answer, open));
+    let goOn = () => {};
+    const made = await into(this.record, { kind: "inspect", subject: this.subject }, (answer) => {
+      goOn = this.held();
+      return this.shownRecord(answer, open);
+    });
+    goOn();
     if (!made) return;
     const { tests } = made.answer.document;
     this.rows = tests[0]?.rows ?? 0;
     if (tests.length > 1) return this.many();
     if (!tests[0]?.record || tests[0].refused) {
+      this.answer.replaceChildren();
       this.cards.replaceChildren(this.cards.firstChild);
       return;
     }
@@ -96,17 +113,20 @@ export class Study {
     await this.analyze();
   }
 
-  shownRecord({ document: found, figure, draft, notes }, open) {
+  shownRecord({ document: found, figure, draft, guess, notes }, open) {
     const inspected = found.tests[0];
     const folded = (id, title, content, isOpen = false) => el("details", { id, open: isOpen || open.includes(id) }, el("summary", {}, title), content);
     const skipped = found.skipped.length > 0 && el("p", { className: "small" }, `Besides: ${found.skipped.slice(0, 5).map(({ name, reason }) => `${name} (${reason})`).join("; ")}${found.skipped.length > 5 ? ` and ${found.skipped.length - 5} more` : ""}.`);
     if (found.tests.length !== 1) {
       const read = found.tests.find((test) => test.columns.some((column) => column.used_as.length)) ?? found.tests[0];
-      return [el("p", {}, `${found.format}, ${found.tests.length} tests.`), skipped, folded("columns", "Columns and units, for all tests", columnTable(this.description, read, this.vocabulary)), folded("text", "Test description, for all tests", textForm(this.description, draft))].filter(Boolean);
+      return [el("p", {}, `${found.format}, ${found.tests.length} tests.`), skipped, folded("columns", "Columns and units, for all tests", columnTable(this.description, read, this.vocabulary, guess)), folded("text", "Test description, for all tests", textForm(this.description, draft))].filter(Boolean);
     }
     const record = inspected.record;
     const parts = [];
-    if (inspected.refused) parts.push(refusal(inspected.refused));
+    if (inspected.refused) {
+      parts.push(refusal(inspected.refused));
+      if (this.description.get("phases", "hold")) parts.push(el("p", { className: "actions" }, button("Detect again", () => this.description.edit([{ key: ["phases", "hold"], value: null }], { alone: true }))));
+    }
     if (record && !inspected.refused) {
       const [from, to] = record.time_s;
       const format = found.format.charAt(0).toUpperCase() + found.format.slice(1);
@@ -119,7 +139,7 @@ export class Study {
       parts.push(folded("holds", `Holds (${record.phases.filter((one) => one.phase === "hold").length})`, table.box, true));
     }
     const guesses = inspected.columns.flatMap((column) => column.used_as).filter((use) => !use.column_is_stated).length;
-    parts.push(folded("columns", guesses ? `Columns and units (${guesses} guessed by name)` : "Columns and units", columnTable(this.description, inspected, this.vocabulary), !record));
+    parts.push(folded("columns", guesses ? `Columns and units (${guesses} guessed by name)` : "Columns and units", columnTable(this.description, inspected, this.vocabulary, guess), !record));
     parts.push(folded("text", "Test description as text", textForm(this.description, draft)));
     if (skipped) parts.push(skipped);
     return parts;
@@ -157,6 +177,8 @@ export class Study {
   }
 
   showGrip(panel) {
+    this.outdated?.remove();
+    this.outdated = null;
     this.gripBox.replaceChildren(panel);
   }
 

@@ -11,12 +11,14 @@
 //! | `folder/` | the files of the folder, and nothing outside it |
 //! | `tasks/` | tasks: the jobs that they run, their queue, what they made |
 //! | `lines.rs` | the command line and the lines of Python that do the same |
+//! | `refusal.rs` | errors in the words of the page |
 //! | `server/` | addresses of the page, and who may use them |
 //! | `browser.rs` | opening the page without showing its address to other users |
 
 mod browser;
 mod folder;
 mod lines;
+mod refusal;
 mod server;
 mod tasks;
 

@@ -39,13 +39,17 @@ fn stem(file: &str) -> String {
 /// How a test is named on a command line.
 fn record_words(subject: &Subject, stated: Option<&str>) -> String {
     let test = stated.map_or_else(String::new, |name| format!(" --test {}", word(name)));
-    let part = subject.part.as_deref().map_or_else(String::new, |part| format!(" --part {}", word_of_option(part)));
+    let part = subject.part.as_deref().map_or_else(String::new, part_option);
     format!("{}{test}{part}", word(&subject.file))
 }
 
-/// The value of an option, which may begin with a hyphen.
-fn word_of_option(text: &str) -> String {
-    if text.starts_with('-') { format!("='{}'", text.replace('\'', "'\\''")) } else { word(text) }
+/// The option that names a part, which may begin with a hyphen.
+fn part_option(part: &str) -> String {
+    if part.starts_with('-') {
+        format!(" --part='{}'", part.replace('\'', "'\\''"))
+    } else {
+        format!(" --part {}", word(part))
+    }
 }
 
 /// How a test is read in Python.
@@ -196,6 +200,7 @@ mod tests {
                 .python
                 .contains("palpate.read(\"a b.xlsx\", test=\"a b.xlsx.test.toml\", part=\"Sheet 1\").analyze()")
         );
+        assert_eq!(part_option("-x y"), " --part='-x y'");
         let two = [one.clone(), Subject { part: None, ..one }];
         assert_eq!(of_comparison(&two, &[None, None]).shell, None);
     }

@@ -15,7 +15,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Mutex;
 use std::time::UNIX_EPOCH;
 
-use palpate_files::description::{Edit, edit_test, parse_material, parse_test, read_text};
+use palpate_files::description::{Edit, MaterialFile, edit_test, parse_material, parse_test, read_text};
 use palpate_jobs::input::{Described, Measurement, OpenedFile};
 use palpate_jobs::output::{TemporaryFolder, write_file};
 use palpate_jobs::{ErrorKind, JobError};
@@ -100,6 +100,8 @@ impl Folder {
             }
         };
         fs::read_dir(&path).map_err(|error| failed(&path, &error))?;
+        // Takes away what a kill has left; a folder that cannot be written to is looked at all the same.
+        drop(TemporaryFolder::make(&path));
         Ok(Self {
             path,
             temporary,
@@ -232,15 +234,22 @@ impl Folder {
         Ok(Stated::new(Some(name), text.to_owned()))
     }
 
-    /// Writes a material, and returns its name.
+    /// Writes a material, and returns its name: that of its record, with a number where the material of another record has it.
     ///
     /// # Errors
-    /// [`JobError`] where it is none, or cannot be written.
-    pub(crate) fn keep_material(&self, stem: &str, text: &str) -> Result<String, JobError> {
+    /// [`JobError`] where it cannot be written.
+    pub(crate) fn keep_material(&self, stem: &str, material: &MaterialFile) -> Result<String, JobError> {
         let stem = Path::new(stem).file_stem().unwrap_or_default().to_string_lossy().into_owned();
-        let name = format!("{}{MATERIAL}", names::plain(stem.trim_end_matches(".material")));
-        parse_material(text, Path::new(&name))?;
-        self.write(&name, text)?;
+        let stem = names::plain(stem.trim_end_matches(".material"));
+        let is_free = |name: &String| {
+            let path = self.path.join(name);
+            let stands = || parse_material(&read_text(&path).ok()?, &path).ok();
+            !path.is_symlink()
+                && (!path.exists() || stands().is_some_and(|other| other.origin.record == material.origin.record))
+        };
+        let numbered = (2..).map(|number| format!("{stem}-{number}{MATERIAL}"));
+        let name = std::iter::once(format!("{stem}{MATERIAL}")).chain(numbered).find(is_free).unwrap_or_default();
+        self.write(&name, &material.to_toml())?;
         Ok(name)
     }
 

@@ -68,10 +68,12 @@ impl Access {
                 "expected a request of the page of the lab, found one of another page\n",
             ));
         }
-        // A person may come to the page from anywhere, by the address; nothing else is for other sites.
+        // A person may come to the page from anywhere, by the address, and to a report from another one, which is a page of no site; nothing
+        // else is for other sites.
         let is_page = path.trim_matches('/') == self.token;
+        let is_report = path.contains("/files/") && path.ends_with(".html");
         let site = text(header::HeaderName::from_static("sec-fetch-site")).unwrap_or("none");
-        if !is_page && !matches!(site, "same-origin" | "none") {
+        if !is_page && !is_report && !matches!(site, "same-origin" | "none") {
             return Some((
                 StatusCode::FORBIDDEN,
                 "expected a request of the page of the lab, found one of another site\n",

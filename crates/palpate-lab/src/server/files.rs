@@ -7,7 +7,7 @@ use axum::body::Body;
 use axum::extract::{Path, State};
 use axum::response::{IntoResponse, Response};
 use http_body_util::BodyExt;
-use palpate_files::description::{Edit, machines, schema_test, shapes};
+use palpate_files::description::{Edit, machines, parse_material, schema_test, shapes};
 use palpate_files::naming::Quantity;
 use palpate_jobs::{ErrorKind, JobError};
 use palpate_report::document::Software;
@@ -145,7 +145,11 @@ pub(super) async fn keep_material(
 ) -> Result<Response, Refusal> {
     let name = {
         let server: Arc<Server> = Arc::clone(&server);
-        aside(move || server.folder.keep_material(&name, &text)).await?
+        aside(move || {
+            let material = parse_material(&text, std::path::Path::new(&name))?;
+            server.folder.keep_material(&name, &material)
+        })
+        .await?
     };
     server.tasks.folder_changed();
     Ok(Json(json!({ "name": name })).into_response())

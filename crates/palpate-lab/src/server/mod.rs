@@ -21,6 +21,7 @@ use std::sync::Arc;
 use axum::Router;
 use axum::extract::DefaultBodyLimit;
 use axum::middleware::from_fn_with_state;
+use axum::response::Redirect;
 use axum::routing::{delete, get, post, put};
 
 pub(crate) use access::Access;
@@ -65,5 +66,9 @@ pub(crate) fn routes(server: Arc<Server>) -> Router {
         .layer(DefaultBodyLimit::max(LARGEST_BODY))
         .with_state(Arc::clone(&server));
     let root = format!("/{}", server.access.token());
-    Router::new().nest(&format!("{root}/"), own).layer(from_fn_with_state(server, access::guard))
+    let page = Redirect::permanent(&format!("{root}/"));
+    Router::new()
+        .route(&root, get(page))
+        .nest(&format!("{root}/"), own)
+        .layer(from_fn_with_state(server, access::guard))
 }

@@ -5,6 +5,8 @@ use axum::http::StatusCode;
 use axum::response::{IntoResponse, Response};
 use palpate_jobs::{ErrorKind, JobError, RefusalDocument};
 
+use crate::refusal::page_words;
+
 /// Why there is no answer.
 pub(super) struct Refusal(pub(super) StatusCode, RefusalDocument);
 
@@ -24,7 +26,7 @@ impl From<JobError> for Refusal {
             ErrorKind::File(_) => StatusCode::INTERNAL_SERVER_ERROR,
             _ => StatusCode::UNPROCESSABLE_ENTITY,
         };
-        Self(status, (&error).into())
+        Self(status, page_words(&error))
     }
 }
 

@@ -14,6 +14,7 @@ use tokio::sync::watch;
 
 use super::{Made, Request};
 use crate::folder::Folder;
+use crate::refusal::refusal;
 
 /// Tasks that are kept once they are done.
 const KEPT: usize = 200;
@@ -119,7 +120,12 @@ impl Tasks {
     pub(crate) fn add(&self, request: Request, first: bool) -> u64 {
         let (key, place) = (request.key(&self.folder), request.place());
         let mut inner = self.lock();
-        let is_good = |task: &Task| !matches!(task.state, State::Cancelled | State::Failed(_));
+        let is_good = |task: &Task| match task.state {
+            State::Waiting | State::Running { .. } => !task.cancel.load(Ordering::Relaxed),
+            // A file that was written may have gone since.
+            State::Done => !task.request.writes(),
+            State::Failed(_) | State::Cancelled => false,
+        };
         let same = inner.tasks.iter().rev().find(|(_, task)| task.key == key && is_good(task));
         if let Some((id, task)) = same {
             let (id, waits) = (*id, task.state == State::Waiting);
@@ -201,6 +207,11 @@ impl Tasks {
     fn work(&self, only_quick: bool) {
         loop {
             let (id, request, cancel) = self.next(only_quick);
+            // What is stated may have changed while the task waited: it computes what is stated now.
+            let key = request.key(&self.folder);
+            if let Some(task) = self.lock().tasks.get_mut(&id) {
+                task.key = key;
+            }
             let mut watch = TaskWatch {
                 tasks: self,
                 id,
@@ -266,7 +277,7 @@ impl Tasks {
                 State::Done
             }
             Err(error) if error.kind == ErrorKind::Cancelled => State::Cancelled,
-            Err(error) => State::Failed((&error).into()),
+            Err(error) => State::Failed(refusal(&error, &self.folder)),
         };
         self.set(&mut inner, id, state);
         let ended = |task: &&Task| !matches!(task.state, State::Waiting | State::Running { .. });

@@ -2,6 +2,7 @@
 
 use std::path::Path;
 
+use palpate::grip::PlanKind;
 use palpate::watch::Watch;
 use palpate_jobs::input::OpenedFile;
 use palpate_jobs::{
@@ -17,6 +18,7 @@ use serde_json::{Value, json};
 use super::{Made, Request};
 use crate::folder::{Folder, Subject};
 use crate::lines;
+use crate::refusal::refusal;
 
 impl Request {
     /// Runs the job; `take` gets the tests of a batch as they are done.
@@ -71,9 +73,13 @@ fn inspect(folder: &Folder, subject: &Subject, watch: &mut dyn Watch) -> Result<
     let figure = found.figure().as_ref().map(shown).transpose()?;
     let mut document = serde_json::to_value(found.document())?;
     document["path"] = subject.file.clone().into();
+    if let Some(error) = &found.refused {
+        document["tests"][0]["refused"] = serde_json::to_value(refusal(error, folder))?;
+    }
     let answer = json!({
         "document": document,
         "figure": figure,
+        "guess": found.description.as_deref().and_then(|draft| toml::from_str::<Value>(draft).ok()),
         "draft": found.description,
         "notes": outcome.notes.iter().map(|note| with_flags(note)).collect::<Vec<_>>(),
     });
@@ -182,7 +188,7 @@ fn calibrate(
         let document = serde_json::to_value(made.document())?;
         (made.material(), made.text(), made.figure(), document, outcome.notes)
     };
-    let written = material.map(|material| folder.keep_material(&name, &material.to_toml())).transpose()?;
+    let written = material.map(|material| folder.keep_material(&name, &material)).transpose()?;
     let answer = json!({
         "material": written,
         "text": text,
@@ -201,13 +207,18 @@ fn grip(folder: &Folder, material: &str, options: &PlanGrip, watch: &mut dyn Wat
     let outcome = options.run(&source, watch)?;
     let body = outcome.result;
     let bundle = grip_bundle(&body, &without_figures())?;
-    let squeeze = body.answer.squeeze.as_ref().ok().map(|made| made.found.displacement);
+    let made = body.answer.squeeze.as_ref().ok();
+    // Of another motion than a plain squeeze the displacement alone would be another grip.
+    let squeeze = made.and_then(|made| match made.found.plan.kind {
+        PlanKind::Squeeze { displacement, .. } => Some(displacement),
+        _ => None,
+    });
     let answer = json!({
         "verdict": body.verdict(),
         "holds": body.answer.holds().ok(),
         "squeeze_m": squeeze,
         "remarks": body.remarks(),
-        "figure": squeeze.map(|_| shown(&grip_figure(&body, "grip"))).transpose()?,
+        "figure": made.map(|_| shown(&grip_figure(&body, "grip"))).transpose()?,
         "files": names(&bundle),
         "lines": lines::of_grip(material, options),
     });

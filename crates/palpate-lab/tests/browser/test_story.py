@@ -304,3 +304,89 @@ def test_all_of_it_is_reached_by_the_keyboard(browser: Browser, lab: Lab) -> Non
     found.wait("#grip .finding")
     assert "specimen" in found.page.inner_text("#grip .finding")
     found.context.close()
+
+
+def test_a_boundary_stops_before_its_neighbour(browser: Browser, lab: Lab) -> None:
+    """Holds that touched could not be read again, and no field led back."""
+    assert lab.folder is not None
+    (lab.folder / "ball.csv").write_bytes((EXAMPLES / "ball.csv").read_bytes())
+    found = opened(browser, lab.address)
+    found.wait("#laws .lede")
+    found.settle()
+    found.page.get_by_role("slider", name="Start of hold 2").locator("visible=true").focus()
+    for _ in range(8):
+        found.page.keyboard.press("Shift+ArrowLeft")
+    found.page.keyboard.press("Enter")
+    found.wait("caption:has-text('Holds as stated')")
+    found.settle()
+    ends = [float(found.page.get_by_label(name).input_value()) for name in ("End of hold 1, in seconds", "Start of hold 2, in seconds")]
+    assert 0.0 < ends[1] - ends[0] < 0.2
+    # Holds that overlap are refused beside the table, and the field is as it was.
+    field = found.page.get_by_label("Start of hold 2, in seconds")
+    before = field.input_value()
+    field.fill("3")
+    field.press("Enter")
+    found.wait("#record .finding")
+    found.settle()
+    if found.page.locator("#holds").count():
+        assert found.page.get_by_label("Start of hold 2, in seconds").input_value() == before
+    found.page.get_by_role("button", name="Detect again").click()
+    found.wait("caption:has-text('Holds as detected')")
+    found.context.close()
+
+
+def test_what_is_not_taken_yet_stays(browser: Browser, lab: Lab) -> None:
+    """Text and rows were thrown away by a change of something else."""
+    assert lab.folder is not None
+    (lab.folder / "ball.csv").write_bytes((EXAMPLES / "ball.csv").read_bytes())
+    found = opened(browser, lab.address)
+    page = found.page
+    found.wait("#laws .lede")
+    found.settle()
+    page.select_option("#shape", "profile")
+    page.fill("#size-areas", "0 mm; 0 mm^2\n1 mm; 40 mm^2")
+    page.press("#size-areas", "Tab")
+    page.click("#text > summary")
+    page.fill("#text textarea", '[about]\ntitle = "Mine"\n')
+    page.get_by_role("button", name="Remove hold 5").click()
+    found.wait("caption:has-text('Holds as stated')")
+    found.settle()
+    assert page.input_value("#text textarea") == '[about]\ntitle = "Mine"\n'
+    assert page.input_value("#shape") == "profile" and page.input_value("#size-areas").endswith("40 mm^2")
+    found.context.close()
+
+
+def test_reports_of_a_comparison_open(browser: Browser, lab: Lab, tmp_path: Path) -> None:
+    """Their links come from a page of no site, and were refused."""
+    assert lab.folder is not None
+    for number in (1, 2):
+        write(lab.folder / f"pad {number}.csv", steps([3.0, 1.0], 12.0, 12.0, number))
+    found = opened(browser, lab.address)
+    for number in (1, 2):
+        found.page.get_by_label(f"Choose pad {number}.csv").check()
+    found.page.get_by_role("button", name="Compare 2 records").click()
+    found.wait("#compared iframe")
+    frame = found.page.frame_locator("#compared iframe")
+    frame.get_by_role("link", name="pad 2").click()
+    frame.locator("h1:has-text('pad 2')").wait_for()
+    found.context.close()
+
+
+def test_a_material_that_is_gone_is_made_again_and_none_is_overwritten(browser: Browser, lab: Lab) -> None:
+    assert lab.folder is not None
+    (lab.folder / "ball.csv").write_bytes((EXAMPLES / "ball.csv").read_bytes())
+    (lab.folder / "ball.toml").write_bytes((EXAMPLES / "ball.toml").read_bytes())
+    other = (EXAMPLES / "ball-material.toml").read_bytes()
+    (lab.folder / "ball.material.toml").write_bytes(other)
+    found = opened(browser, lab.address)
+    found.wait("#laws .lede")
+    found.settle()
+    own = lab.folder / "ball-2.material.toml"
+    for _ in range(2):
+        found.page.get_by_role("button", name="Calibrate on the whole record").click()
+        found.wait("#grip b:has-text('ball-2.material.toml')")
+        found.settle()
+        assert own.is_file()
+        own.unlink()
+    assert (lab.folder / "ball.material.toml").read_bytes() == other
+    found.context.close()
