@@ -10,6 +10,7 @@ mod contacts;
 mod files;
 mod records;
 
+#[cfg(feature = "lab")]
 use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
