@@ -17,7 +17,8 @@ from pathlib import Path
 
 import axe_playwright_python
 import pytest
-from playwright.sync_api import Browser, BrowserContext, Dialog, Page, sync_playwright
+from browsers import browser as browser
+from playwright.sync_api import Browser, BrowserContext, Dialog, Page
 
 EXAMPLES = Path(__file__).parents[4] / "examples/records"
 AXE = (Path(axe_playwright_python.__file__).parent / "axe.min.js").read_text()
@@ -58,14 +59,6 @@ def lab(tmp_path: Path) -> Iterator[Lab]:
     lab = started(folder)
     yield lab
     lab.end()
-
-
-@pytest.fixture(scope="session")
-def browser() -> Iterator[Browser]:
-    with sync_playwright() as playwright:
-        browser = playwright.chromium.launch(executable_path=os.environ["CHROMIUM"], args=["--no-sandbox"])
-        yield browser
-        browser.close()
 
 
 @dataclass

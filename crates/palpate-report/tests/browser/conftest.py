@@ -7,12 +7,12 @@ from __future__ import annotations
 
 import os
 import subprocess
-from collections.abc import Iterator
 from dataclasses import dataclass, field
 from pathlib import Path
 
 import pytest
-from playwright.sync_api import Browser, BrowserContext, Dialog, Page, sync_playwright
+from browsers import browser as browser
+from playwright.sync_api import Browser, BrowserContext, Dialog, Page
 from records import HOSTILE, steps, write
 
 def command(folder: Path, *arguments: str | Path) -> subprocess.Popen[str]:
@@ -58,14 +58,6 @@ def reports(tmp_path_factory: pytest.TempPathFactory) -> Reports:
     assert len(hostile) == 2
     pages = [folder / f"{name}/report.html" for name in ("many", "long", "paper")]
     return Reports(pages[0], pages[1], hostile[0], folder / "set/index.html", pages[2])
-
-
-@pytest.fixture(scope="session")
-def browser() -> Iterator[Browser]:
-    with sync_playwright() as playwright:
-        browser = playwright.chromium.launch(executable_path=os.environ["CHROMIUM"], args=["--no-sandbox"])
-        yield browser
-        browser.close()
 
 
 @dataclass
