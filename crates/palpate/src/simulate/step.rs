@@ -150,7 +150,8 @@ impl ContactState {
     /// Current contact force, N; zero while the jaw is off.
     #[must_use]
     pub fn force(&self, model: &ContactModel) -> f64 {
-        let strain = (self.jaw - self.behind) * (1.0 / model.layers.thickness(model.specimen.depth()));
+        // A quotient, as in the solution for a displacement, so that `step_force` finds again the force that it reached.
+        let strain = (self.jaw - self.behind) / model.layers.thickness(model.specimen.depth());
         match model.separation {
             Separation::Unilateral if strain <= 0.0 => 0.0,
             _ => model.specimen.force(strain, self.jaw),

@@ -118,7 +118,7 @@ impl Block {
             let excess = (jaw[lane] - behind[lane]) * per_thickness - jaw[lane] * per_depth + kick;
             let excess = self.relaxed(power, lane, excess, dt[lane]) + kick;
             let left = u - self.thickness[lane] * (excess + u * per_depth);
-            let strain = (u - left) * per_thickness;
+            let strain = (u - left) / self.thickness[lane];
             let inside = if u > 0.0 { u } else { 0.0 };
             let round = std::f64::consts::PI * inside * (self.diameter[lane] - inside);
             let area = if self.diameter[lane] > 0.0 { round } else { self.section[lane] };
