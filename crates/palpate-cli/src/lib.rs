@@ -75,6 +75,7 @@ where
         Command::Inspect(arguments) => commands::inspect::run(&arguments),
         Command::Analyze(arguments) => commands::analyze::run(&arguments),
         Command::Batch(arguments) => commands::batch::run(&arguments),
+        Command::Merge(arguments) => commands::merge::run(&arguments),
         Command::Convert(arguments) => commands::convert::run(&arguments),
         Command::Compare(arguments) => commands::compare::run(&arguments),
         Command::Calibrate(arguments) => commands::calibrate::run(&arguments),

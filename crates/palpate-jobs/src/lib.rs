@@ -12,6 +12,7 @@
 //! | `output.rs` | files that appear whole or not at all, and never in the place of one that is read |
 //! | `depends.rs` | what a result depends on, as one digest |
 //! | `store.rs` | what can be resumed |
+//! | `shard/` | one of several slices of a batch or a sweep |
 //! | `threads.rs` | many pieces of work over threads |
 //! | `report_index.rs` | the index of the reports of several records |
 //! | `analyze.rs` … | one job each |
@@ -32,11 +33,13 @@ mod depends;
 mod error;
 mod grip;
 mod inspect;
+mod merge;
 mod options;
 mod outcome;
 mod predict;
 mod report_index;
 mod reproduce;
+mod shard;
 mod simulate;
 mod store;
 mod sweep;
@@ -57,10 +60,12 @@ pub use inspect::{
     ColumnRole, Inspect, Inspected, InspectedColumn, InspectedRecord, InspectedTest, InspectionDocument, PhaseDocument,
     RefusalDocument, SkippedDocument, machines_text,
 };
+pub use merge::{Merge, Merged};
 pub use outcome::{Outcome, Results, Verdict};
 pub use predict::{Predict, Predicted};
 pub use report_index::{ReportIndex, write_reports};
 pub use reproduce::{Reproduce, ReproducedRecord};
+pub use shard::{Shard, Slice};
 pub use simulate::{DriveBy, Simulate, Simulated};
 pub use sweep::{Sweep, Swept, sweep_fields, sweep_rows};
 pub use watch_log::{Event, HoldObserved, Observed, WatchLog};

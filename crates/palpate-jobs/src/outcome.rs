@@ -75,6 +75,17 @@ impl<R> Outcome<R> {
         self
     }
 
+    /// The same with its result made into another.
+    #[must_use]
+    pub fn map<T>(self, make: impl FnOnce(R) -> T) -> Outcome<T> {
+        let Self { result, verdict, notes } = self;
+        Outcome {
+            result: make(result),
+            verdict,
+            notes,
+        }
+    }
+
     /// The same, where the answer may be a no.
     #[must_use]
     pub fn answered(mut self, positive: bool) -> Self {

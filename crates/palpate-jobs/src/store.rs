@@ -76,6 +76,11 @@ impl Store {
         self.found.get(key).cloned()
     }
 
+    /// The keys of all pieces that were there when the store was opened.
+    pub(crate) fn keys(&self) -> impl Iterator<Item = &str> {
+        self.found.keys().map(String::as_str)
+    }
+
     /// Adds a piece and returns where it lies.
     ///
     /// It need not reach the disk before the next one: what a power cut damages, its digest gives away.

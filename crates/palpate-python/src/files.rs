@@ -1,13 +1,16 @@
 //! Jobs from files to files and to text, as the command does them.
 
+use std::io;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 use palpate::laws::Law;
 use palpate_files::description::{NamedColumns, parse_test, read_material};
-use palpate_jobs::input::{Described, NamedFile, NamedRecords, OpenedFile};
+use palpate_jobs::input::{Described, Fetch, NamedFile, NamedRecords, OpenedFile};
 use palpate_jobs::output::write_bundle;
 use palpate_jobs::{
-    Batch, BatchAnswer, Convert, CurveMap, HoldObserved, Inspect, Observed, Reproduce, Results, WatchLog,
+    Batch, BatchAnswer, Batched, Convert, CurveMap, HoldObserved, Inspect, Observed, Reproduce, Results, Shard,
+    WatchLog,
 };
 use palpate_report::document::{WatchDocument, WatchSummaryDocument};
 use palpate_report::study::reproduction_bundle;
@@ -30,13 +33,29 @@ pub(crate) fn stated(tell: &str, given: &Bound<'_, PyAny>) -> PyResult<(Option<P
     given.py().import("palpate._descriptions")?.call_method1(tell, (given,))?.extract()
 }
 
-/// A file of records as the package tells it apart: by its path, or by a name and its bytes.
-type FileOfPython = (PathBuf, Option<Vec<u8>>);
+/// A file of records as the package tells it apart: by its path, by a name and its bytes, or by a name, a size and what fetches its bytes.
+#[derive(FromPyObject)]
+pub(crate) enum FileOfPython {
+    Here(PathBuf, Option<Vec<u8>>),
+    Remote(PathBuf, u64, Py<PyAny>),
+}
 
-fn named((name, bytes): FileOfPython) -> NamedFile {
-    match bytes {
-        Some(bytes) => NamedFile::Bytes(name, bytes.into()),
-        None => NamedFile::Path(name),
+/// Calls a function of Python for the bytes of a file.
+#[derive(Debug)]
+struct Fetched(Py<PyAny>);
+
+impl Fetch for Fetched {
+    fn fetch(&self) -> io::Result<Vec<u8>> {
+        // An error of the operating system keeps its kind.
+        Ok(Python::attach(|py| self.0.call0(py)?.extract(py))?)
+    }
+}
+
+pub(crate) fn named(file: FileOfPython) -> NamedFile {
+    match file {
+        FileOfPython::Here(name, Some(bytes)) => NamedFile::Bytes(name, bytes.into()),
+        FileOfPython::Here(name, None) => NamedFile::Path(name),
+        FileOfPython::Remote(name, size, fetch) => NamedFile::Remote(name, size, Arc::new(Fetched(fetch))),
     }
 }
 
@@ -51,7 +70,7 @@ pub(crate) fn record_file(given: &Bound<'_, PyAny>, name: Option<&str>) -> PyRes
 }
 
 /// Several files of records.
-fn record_files(given: &Bound<'_, PyAny>) -> PyResult<Vec<NamedFile>> {
+pub(crate) fn record_files(given: &Bound<'_, PyAny>) -> PyResult<Vec<NamedFile>> {
     let found: Vec<FileOfPython> =
         given.py().import("palpate._files")?.call_method1("record_files", (given,))?.extract()?;
     Ok(found.into_iter().map(named).collect())
@@ -106,6 +125,12 @@ pub(crate) fn law(name: &str) -> PyResult<Law> {
 /// Laws by their names.
 pub(crate) fn all_laws(names: &[String]) -> PyResult<Vec<Law>> {
     names.iter().map(|name| law(name)).collect()
+}
+
+/// A shard as its text states it.
+pub(crate) fn shard(text: Option<&str>) -> PyResult<Option<Shard>> {
+    let parsed = text.map(str::parse).transpose();
+    parsed.map_err(|message: String| refused_plainly::<OptionError>(format!("shard: {message}")))
 }
 
 /// What is in a file of records: columns, sampling, phases; the text of ``palpate inspect``.
@@ -213,6 +238,9 @@ pub(crate) fn convert(
 ///     Language of the readers of a CSV, as for `Analysis.report`.
 /// restart
 ///     Whether all records are analysed again, whatever was done before.
+/// shard
+///     "3/40": analyse only the third of 40 slices of the files, equal in bytes, into the folder `out` that all slices share; `merge` makes
+///     one table of them.
 ///
 /// Returns
 /// -------
@@ -224,7 +252,7 @@ pub(crate) fn convert(
 /// OptionError, OSError
 ///     A description or a law that is wrong, a table that cannot be written.
 #[pyfunction]
-#[pyo3(signature = (paths, out, *, test=None, columns=None, laws=None, intervals=None, fit_until_s=None, map=None, csv_locale=None, restart=false))]
+#[pyo3(signature = (paths, out, *, test=None, columns=None, laws=None, intervals=None, fit_until_s=None, map=None, csv_locale=None, restart=false, shard=None))]
 #[expect(clippy::too_many_arguments, reason = "keywords of Python")]
 pub(crate) fn batch(
     py: Python<'_>,
@@ -238,6 +266,7 @@ pub(crate) fn batch(
     map: Option<Vec<String>>,
     csv_locale: Option<&str>,
     restart: bool,
+    shard: Option<&str>,
 ) -> PyResult<BatchResult> {
     let (files, described) = (record_files(paths)?, described_with(test, None, columns)?);
     let question = Batch {
@@ -247,15 +276,22 @@ pub(crate) fn batch(
         map: map.unwrap_or_default(),
         csv_locale: readers(csv_locale)?,
         restart,
+        shard: self::shard(shard)?,
         ..Batch::default()
     };
-    let done = writing_job(py, move |watch| question.run(NamedRecords::find(files, described)?, &out, watch))?.result;
-    Ok(BatchResult {
-        answer: done.answer,
-        rows: done.rows,
-        map: done.map,
-        failures: done.failures.into_iter().map(|refused| refused.message).collect(),
-    })
+    let done = writing_job(py, move |watch| question.run(NamedRecords::find(files, described)?, &out, watch))?;
+    Ok(done.result.into())
+}
+
+impl From<Batched> for BatchResult {
+    fn from(done: Batched) -> Self {
+        Self {
+            answer: done.answer,
+            rows: done.rows,
+            map: done.map,
+            failures: done.failures.into_iter().map(|refused| refused.message).collect(),
+        }
+    }
 }
 
 /// What a batch found over all holds; ``print(result)`` shows what ``palpate batch`` prints.

@@ -14,6 +14,7 @@
 //! | `errors.rs` | exceptions and warnings |
 //! | `report_files.rs` | how the files of a report are written |
 //! | `files.rs` | jobs from files to files |
+//! | `shards.rs` | slices of a batch or a sweep, and all of them as one table |
 //! | `command.rs` | the command line |
 
 mod arrays;
@@ -29,6 +30,7 @@ mod observers;
 mod pickles;
 mod records;
 mod report_files;
+mod shards;
 mod shown;
 mod table;
 mod work;
@@ -44,6 +46,7 @@ mod _palpate {
     #[pymodule_init]
     fn init(module: &Bound<'_, PyModule>) -> PyResult<()> {
         module.add("__version__", env!("CARGO_PKG_VERSION"))?;
+        module.add("_BUILD", palpate_jobs::BUILD)?;
         module.add("_SI_ENDINGS", crate::mappings::UNITS.into_py_dict(module.py())?)
     }
 
@@ -74,6 +77,7 @@ mod _palpate {
         records::read::{read, read_all},
         records::record::Record,
         records::several::{SeveralCalibrations, calibrate},
+        shards::{_found, _run_slice, _sliced, merge},
         table::Table,
     };
 }

@@ -132,7 +132,7 @@ pub(crate) struct SweepArguments {
     /// Protocol (TOML) with a table named sweep
     #[arg(value_name = "PROTOCOL.toml")]
     pub(crate) protocol: PathBuf,
-    /// File for the table (Parquet), one row per run; default: PROTOCOL.parquet in the current folder
+    /// File for the table (Parquet), one row per run; default: PROTOCOL.parquet in the current folder; with --shard, a folder for all shards
     #[arg(long, value_name = "FILE.parquet")]
     pub(crate) out: Option<PathBuf>,
     /// File for a figure (.svg, .png or .pdf): a curve, a heat map, several heat maps, or points

@@ -30,7 +30,7 @@ pub(crate) use contacts::{GripArguments, PredictArguments, ReproduceArguments, S
 pub(crate) use files::FilesArguments;
 pub(crate) use records::{
     AnalyzeArguments, BatchArguments, CalibrateArguments, CompareArguments, ConvertArguments, InspectArguments,
-    TableFormat, WatchArguments, WatchFormat,
+    MergeArguments, TableFormat, WatchArguments, WatchFormat,
 };
 
 /// Viscoelastic contact: laws from squeeze-and-hold tests, and forces from laws.
@@ -89,6 +89,7 @@ pub(crate) enum Command {
     Inspect(InspectArguments),
     Analyze(AnalyzeArguments),
     Batch(BatchArguments),
+    Merge(MergeArguments),
     Compare(CompareArguments),
     Calibrate(CalibrateArguments),
     Predict(PredictArguments),
@@ -192,6 +193,7 @@ const SCHEMAS: &[Choice<fn() -> Value>] = &[
     ("job-simulate", "Options of `palpate simulate` as a job", schema::<jobs::Simulate>),
     ("job-sweep", "Options of `palpate sweep` as a job", schema::<jobs::Sweep>),
     ("job-batch", "Options of `palpate batch` as a job", schema::<jobs::Batch>),
+    ("job-merge", "Options of `palpate merge` as a job", schema::<jobs::Merge>),
     ("job-convert", "Options of `palpate convert` as a job", schema::<jobs::Convert>),
     ("job-reproduce", "Options of `palpate reproduce` as a job", schema::<jobs::Reproduce>),
 ];

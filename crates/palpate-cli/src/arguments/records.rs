@@ -164,12 +164,13 @@ Examples:
   palpate batch curves --out holds.parquet --test cell.toml        a folder and its subfolders
   palpate batch \"run-*/**/*.csv\" --out holds.csv                 a pattern
   palpate batch curves --out laws.parquet --laws latency,prony:2   further laws
-  palpate batch cell.jpk-force-map --test cell.toml --out cell.csv --map E   a map of the modulus")]
+  palpate batch cell.jpk-force-map --test cell.toml --out cell.csv --map E   a map of the modulus
+  palpate batch curves --out holds --shard 3/40                    one of 40 jobs of a cluster")]
 pub(crate) struct BatchArguments {
     /// Records: files, folders, or patterns in quotes
     #[arg(value_name = "RECORD", required = true)]
     pub(crate) records: Vec<PathBuf>,
-    /// File for the table (.parquet or .csv)
+    /// File for the table (.parquet or .csv); with --shard, a folder for all shards
     #[arg(long, value_name = "TABLE")]
     pub(crate) out: PathBuf,
     /// Test description (TOML): columns, units, geometry, options; for all records
@@ -180,6 +181,28 @@ pub(crate) struct BatchArguments {
     pub(crate) columns: Option<NamedColumns>,
     #[command(flatten)]
     pub(crate) job: jobs::Batch,
+}
+
+/// Make one table of the shards of a batch or a sweep.
+#[derive(Debug, Args)]
+#[command(after_help = "\
+Shards are written by palpate batch --shard K/N and palpate sweep --shard K/N. Every shard must be
+there once, of the same files, options and version of palpate, and as it was written. The table is
+byte for byte that of the whole at once. Failures are listed at the end (exit code 1).
+
+Examples:
+  palpate merge holds --out holds.parquet            the shards in the folder holds
+  palpate merge node-1 node-2 --out holds.csv        shards of two machines
+  palpate merge cell --out cell.csv --map E          with a map of the modulus")]
+pub(crate) struct MergeArguments {
+    /// Folders of shards
+    #[arg(value_name = "DIR", required = true)]
+    pub(crate) folders: Vec<PathBuf>,
+    /// File for the table (.parquet or .csv; of a sweep .parquet)
+    #[arg(long, value_name = "TABLE")]
+    pub(crate) out: PathBuf,
+    #[command(flatten)]
+    pub(crate) job: jobs::Merge,
 }
 
 /// Compare laws: which one predicts a hold, with what certainty, and how much worse others predict.

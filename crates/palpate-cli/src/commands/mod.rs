@@ -10,6 +10,7 @@ pub(crate) mod grip;
 pub(crate) mod inspect;
 #[cfg(feature = "lab")]
 pub(crate) mod lab;
+pub(crate) mod merge;
 pub(crate) mod predict;
 pub(crate) mod reproduce;
 pub(crate) mod schema;

@@ -13,5 +13,6 @@ mod grip;
 mod inspect;
 mod maps;
 mod several_tests;
+mod shards;
 mod sweep;
 mod watch;

@@ -52,3 +52,39 @@ pub struct Rows {
     /// The columns in order, all of one length.
     pub columns: Vec<Values>,
 }
+
+impl Values {
+    /// No values of this kind.
+    #[must_use]
+    pub fn empty(kind: Kind) -> Self {
+        match kind {
+            Kind::Count => Self::Count(Vec::new()),
+            Kind::OptionalCount => Self::OptionalCount(Vec::new()),
+            Kind::Number => Self::Number(Vec::new()),
+            Kind::Text => Self::Text(Vec::new()),
+        }
+    }
+
+    pub(super) fn len(&self) -> usize {
+        match self {
+            Self::Count(column) => column.len(),
+            Self::OptionalCount(column) => column.len(),
+            Self::Number(column) => column.len(),
+            Self::Text(column) => column.len(),
+        }
+    }
+}
+
+impl Rows {
+    /// How many rows there are.
+    #[must_use]
+    pub fn len(&self) -> usize {
+        self.columns.first().map_or(0, Values::len)
+    }
+
+    /// Whether there is none.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+}

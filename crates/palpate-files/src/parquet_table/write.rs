@@ -11,16 +11,22 @@ use parquet::{
 
 use super::{
     error::TableError,
-    rows::{Field, Kind, Rows},
+    rows::{Field, Kind, Rows, Values},
 };
 
 /// Rows that are held back until they make a row group.
 const GROUP: usize = 1 << 16;
 
+/// Rows that are encoded together, a divisor of [`GROUP`]: a page ends only behind so many, so that the bytes of a table do not depend on
+/// how its rows were divided among calls.
+const ENCODED: usize = 1 << 10;
+
 /// Writes rows as they come, in memory for one row group.
 pub struct TableWriter<W: Write + Send> {
     writer: ArrowWriter<W>,
     schema: SchemaRef,
+    /// Fewer than [`ENCODED`].
+    held: Rows,
 }
 
 impl<W: Write + Send> TableWriter<W> {
@@ -29,6 +35,9 @@ impl<W: Write + Send> TableWriter<W> {
     /// # Errors
     /// [`TableError`] where two columns share a name, or `out` refuses.
     pub fn new(out: W, fields: &[Field]) -> Result<Self, TableError> {
+        let held = Rows {
+            columns: fields.iter().map(|field| Values::empty(field.kind)).collect(),
+        };
         let columns = fields.iter().map(|field| match field.kind {
             Kind::Count => Column::new(&field.name, DataType::Int64, false),
             Kind::OptionalCount => Column::new(&field.name, DataType::Int64, true),
@@ -45,7 +54,7 @@ impl<W: Write + Send> TableWriter<W> {
             .with_schema_root("table".to_owned())
             .with_skip_arrow_metadata(true);
         let writer = ArrowWriter::try_new_with_options(out, schema.clone(), options)?;
-        Ok(Self { writer, schema })
+        Ok(Self { writer, schema, held })
     }
 
     /// Adds rows.
@@ -53,22 +62,36 @@ impl<W: Write + Send> TableWriter<W> {
     /// # Errors
     /// [`TableError`] where the rows have other columns, or the file cannot be written.
     pub fn write(&mut self, rows: Rows) -> Result<(), TableError> {
+        self.held.append(rows).ok_or(TableError::OtherColumns)?;
+        while self.held.len() >= ENCODED {
+            let rest = self.held.split_off(ENCODED);
+            let full = std::mem::replace(&mut self.held, rest);
+            self.encode(full)?;
+        }
+        Ok(())
+    }
+
+    fn encode(&mut self, rows: Rows) -> Result<(), TableError> {
         let columns = rows.columns.into_iter().map(ArrayRef::from).collect();
         let batch = RecordBatch::try_new(self.schema.clone(), columns).map_err(|_| TableError::OtherColumns)?;
         Ok(self.writer.write(&batch)?)
     }
 
-    /// Writes what is left and closes the table, with texts that say what it is.
+    /// Writes what is left and closes the table, with texts that say what it is; returns what it was written to.
     ///
     /// # Errors
     /// [`TableError`] where the file cannot be written.
-    pub fn finish(mut self, marks: &[(&str, &str)]) -> Result<(), TableError> {
+    pub fn finish(mut self, marks: &[(&str, &str)]) -> Result<W, TableError> {
+        let rest = self.held.split_off(0);
+        if !rest.is_empty() {
+            self.encode(rest)?;
+        }
         for (key, value) in marks {
             let mark = KeyValue::new((*key).to_owned(), (*value).to_owned());
             self.writer.append_key_value_metadata(mark);
         }
-        self.writer.finish()?;
-        self.writer.inner_mut().flush()?;
-        Ok(())
+        let mut out = self.writer.into_inner()?;
+        out.flush()?;
+        Ok(out)
     }
 }

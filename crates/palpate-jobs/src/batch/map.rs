@@ -12,6 +12,7 @@ use serde_json::Value;
 
 use super::{Entry, parameters, rows};
 use crate::JobError;
+use crate::input::called;
 use crate::output::{check_figure, file_name};
 
 /// Short names of quantities, as the theory writes them.
@@ -53,9 +54,16 @@ impl CurveMap {
         let place = |name: &str| fields.iter().position(|field| field.name == name).unwrap_or(usize::MAX);
         let [record, part, hold, x, y, recommended] =
             ["record", "part", "hold", "x_m", "y_m", "recommended"].map(place);
+        let of = parameters::fields().iter().position(|field| field.name == "record").unwrap_or(usize::MAX);
+        let mut lines = &entry.parameters[..];
         // Of each test the first row: that of the law recommended for its first hold, if there is one.
         let tests = entry.rows.chunk_by(|a, b| (&a[record], &a[part]) == (&b[record], &b[part]));
         for row in tests.filter_map(<[_]>::first) {
+            let called = called(Path::new(row[record].as_str().unwrap_or_default()), row[part].as_str());
+            // The parameters stand in the order of the tests.
+            let count = lines.iter().take_while(|line| line[of].as_str() == Some(&called)).count();
+            let own;
+            (own, lines) = lines.split_at(count);
             let (Some(x), Some(y)) = (row[x].as_f64(), row[y].as_f64()) else {
                 continue;
             };
@@ -63,30 +71,26 @@ impl CurveMap {
             self.positions.push([x, y]);
             let is_recommended = row[recommended].as_i64() == Some(1);
             for (field, value) in fields.iter().zip(row) {
-                let is_place = matches!(field.name.as_str(), "x_m" | "y_m");
-                if field.kind == Kind::Number && !is_place && (is_recommended || rows::is_of_hold(&field.name)) {
+                let is_place = matches!(field.name.as_str(), "x_m" | "y_m" | "hold" | "map_index");
+                if matches!(field.kind, Kind::Number | Kind::OptionalCount)
+                    && !is_place
+                    && (is_recommended || rows::is_of_hold(&field.name))
+                {
                     self.insert(curve, &field.name, unit_of(&field.name), value.as_f64());
                 }
             }
             if is_recommended {
-                let called = match row[part].as_str() {
-                    Some(part) => format!("{}, {part}", row[record].as_str().unwrap_or_default()),
-                    None => row[record].as_str().unwrap_or_default().to_owned(),
-                };
-                self.add_parameters(curve, &entry.parameters, &called, &row[hold]);
+                self.add_parameters(curve, own, &row[hold]);
             }
         }
     }
 
-    fn add_parameters(&mut self, curve: usize, lines: &[Vec<Value>], record: &str, hold: &Value) {
+    fn add_parameters(&mut self, curve: usize, lines: &[Vec<Value>], hold: &Value) {
         let fields = parameters::fields();
         let place = |name: &str| fields.iter().position(|field| field.name == name).unwrap_or(usize::MAX);
-        let [of, held, name, unit, value, recommended] =
-            ["record", "hold", "parameter", "unit", "value", "recommended"].map(place);
+        let [held, name, unit, value, recommended] = ["hold", "parameter", "unit", "value", "recommended"].map(place);
         let text = |line: &[Value], column: usize| line[column].as_str().unwrap_or_default().to_owned();
-        let wanted = |line: &&Vec<Value>| {
-            line[of].as_str() == Some(record) && line[held] == *hold && line[recommended].as_i64() == Some(1)
-        };
+        let wanted = |line: &&Vec<Value>| line[held] == *hold && line[recommended].as_i64() == Some(1);
         for line in lines.iter().filter(wanted) {
             self.insert(curve, &text(line, name), &text(line, unit), line[value].as_f64());
         }

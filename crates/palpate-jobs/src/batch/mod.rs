@@ -6,12 +6,20 @@
 //! | `map.rs` | curves that have a position |
 //! | `rows.rs` | an analysed record as rows |
 //! | `parameters.rs` | its parameters as rows of a tidy table |
+//! | `failures.rs` | the tests without rows |
 //! | `table.rs` | the rows as files |
+//! | `begun.rs` | tests that end the process |
+//! | `shard.rs` | one of several slices of the files |
+//! | `merge.rs` | all slices as one table |
 
 mod answer;
+mod begun;
+mod failures;
 mod map;
+mod merge;
 mod parameters;
 mod rows;
+mod shard;
 mod table;
 
 use std::num::NonZeroUsize;
@@ -35,13 +43,16 @@ use serde_json::Value;
 use crate::depends::BUILD;
 use crate::input::{Described, NamedFile, NamedRecords, OpenedFile, Source};
 use crate::output::{Stage, is_same, keep_apart, picture, sha256, stem};
+use crate::shard::{Shard, Slice};
 use crate::store::{Store, beside};
 use crate::threads::{Share, over_threads};
 use crate::written_by_batch::is_written_by_batch;
 use crate::{ErrorKind, JobError, Outcome};
 pub use answer::{BatchAnswer, Spread};
+use begun::Begun;
 pub use map::CurveMap;
-use table::Format;
+pub(crate) use merge::merge;
+use table::{Format, Out};
 
 /// Analyse many records into one table, one row per hold and law.
 ///
@@ -98,6 +109,17 @@ pub struct Batch {
     /// Analyse all records again, and ignore earlier results.
     #[cfg_attr(feature = "clap", arg(long))]
     pub restart: bool,
+    /// Analyse only this of so many slices of the files, equal in bytes, into the folder that the table is named by; `palpate merge` makes
+    /// one table of all.
+    #[cfg_attr(
+        feature = "clap",
+        arg(
+            long,
+            value_name = "K/N",
+            help = "Analyse only slice K of N, equal in bytes, into the folder OUT that all slices share; palpate merge makes one table of them",
+        )
+    )]
+    pub shard: Option<Shard>,
 }
 
 /// A table with a row per hold and law.
@@ -118,6 +140,10 @@ pub struct Batched {
 /// A test that could not be analysed.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Refused {
+    /// The file.
+    pub record: String,
+    /// What the file calls the test, where it holds several.
+    pub part: Option<String>,
     /// What is wrong, with the path.
     pub message: String,
     /// Remedy.
@@ -146,8 +172,10 @@ struct Entry {
     parameters: Vec<Vec<Value>>,
     /// The tests that gave none, with why.
     failures: Vec<Refused>,
-    /// How many tests there are in the file.
+    /// How many tests those are.
     tests: usize,
+    /// How many there are in the file.
+    of: usize,
 }
 
 impl Batch {
@@ -157,6 +185,10 @@ impl Batch {
     /// [`JobError`] where the table cannot be written, or the watch ends it; what is done stays to go on from. A record that fails stops no
     /// other.
     pub fn run(&self, records: NamedRecords, out: &Path, watch: &mut dyn Watch) -> Result<Outcome<Batched>, JobError> {
+        if let Some(shard) = self.shard {
+            let slice = Slice::of(&records.files, [shard])?.remove(0);
+            return self.run_slice(&slice, &records.described, out, watch);
+        }
         let started = Instant::now();
         let NamedRecords { mut files, described } = records;
         let of_parameters = table::of_parameters(out);
@@ -181,20 +213,25 @@ impl Batch {
         let settings = settings(&options, &described)?;
         let store = Store::open(&journal, "batch", &sha256(settings.as_bytes()), self.restart)?;
         let progress = Progress::counted("analysing", 0, files.len());
-        let places = over_threads(files.len(), self.threads, progress, watch, |index, share| {
-            let place = file(&files[index], &described, &options, &store, share)?;
+        let work = Work {
+            described: &described,
+            options: &options,
+            store: &store,
+            begun: None,
+        };
+        let done = over_threads(files.len(), self.threads, progress, watch, |index, share| {
+            let done = work.file(index, &files[index], |count| 0..count, share)?;
             share.advance(1)?;
-            Ok(place)
+            Ok(done)
         })?;
-        let how = (settings.as_str(), options.compare.is_some());
-        let batched = table::write(out, (format, self.csv_locale), &store, places.iter().map(|(place, _)| place), how)?;
+        let written = Out::Tables(out, (format, self.csv_locale));
+        let entries = done.iter().map(|done| entry(&store, &done.place));
+        let batched = table::write(written, &settings, options.compare.is_some(), |take| {
+            entries.into_iter().try_for_each(|entry| take(entry?))
+        })?;
         // The table is there whatever the maps lack.
-        let mut stage = Stage::default();
-        for (quantity, path) in &maps {
-            stage.bytes(path, &picture(path, &batched.map.figure(quantity, &stem(path))?)?)?;
-        }
-        stage.commit()?;
-        let before = places.iter().filter(|(_, before)| *before).count();
+        batched.draw(&maps)?;
+        let before = done.iter().filter(|done| done.was_before).count();
         let (all, notes) = (batched.failures.is_empty(), batched.notes(out, files.len(), before, started));
         Ok(Outcome::of(batched).answered(all).noted(notes))
     }
@@ -215,7 +252,7 @@ impl Batch {
         for (index, part) in opened.tests.parts.iter().enumerate() {
             watch.report(Progress::counted("analysing", index, total))?;
             let mut entry = Entry::default();
-            entry.take(document(opened, *part, &options, watch))?;
+            entry.take(opened, *part, document(opened, *part, &options, watch))?;
             map.add(&entry);
             let named = |row: Vec<Value>| fields.iter().map(|field| field.name.clone()).zip(row).collect();
             take(BatchedTest {
@@ -247,36 +284,96 @@ impl Batch {
     }
 }
 
-/// Where the entry of a file lies, and whether it was there before.
-fn file(
-    named: &NamedFile,
-    described: &Described,
-    options: &AnalysisOptions,
-    store: &Store,
-    mut share: Share<'_>,
-) -> Result<(Range<u64>, bool), JobError> {
-    let (path, source) = (named.name(), Source::open(named));
-    let digest = source.as_ref().ok().and_then(|source| source.digest.get(&mut share).ok());
-    let key = format!("{} {}", digest.as_deref().unwrap_or("-"), path.display());
-    if let Some(place) = store.find(&key).filter(|_| digest.is_some()) {
-        return Ok((place, true));
-    }
-    let (mut entry, mut is_lasting) = (Entry::default(), true);
-    match source.and_then(|source| OpenedFile::of(source, described)) {
-        Ok(opened) => {
-            entry.tests = opened.tests.parts.len();
-            for part in &opened.tests.parts {
-                is_lasting &= entry.take(document(&opened, *part, options, &mut share))?;
+/// What the files of a batch are analysed with.
+struct Work<'a> {
+    described: &'a Described,
+    options: &'a AnalysisOptions,
+    store: &'a Store,
+    /// Says which tests are passed over.
+    begun: Option<Begun<'a>>,
+}
+
+/// A file that is done.
+struct Done {
+    /// Where its entry lies.
+    place: Range<u64>,
+    /// Whether that was there before.
+    was_before: bool,
+    digest: Option<String>,
+    /// Whether the same would come of it again.
+    is_lasting: bool,
+}
+
+impl Work<'_> {
+    /// Analyses those of the tests of a file that `own` picks of so many.
+    fn file(
+        &self,
+        index: usize,
+        named: &NamedFile,
+        own: impl Fn(usize) -> Range<usize>,
+        mut share: Share<'_>,
+    ) -> Result<Done, JobError> {
+        let path = named.name();
+        let begin = |step| self.begun.as_ref().map_or(Ok(None), |begun| begun.begin(index, step));
+        let source = match begin(0)? {
+            Some(error) => Err(error.of(path.display())),
+            None => Source::open(named),
+        };
+        let digest = source.as_ref().ok().and_then(|source| source.digest.get(&mut share).ok());
+        let key = format!("{} {}", digest.as_deref().unwrap_or("-"), path.display());
+        if let Some(place) = self.store.find(&key).filter(|_| digest.is_some()) {
+            self.end(index)?;
+            let (was_before, is_lasting) = (true, true);
+            return Ok(Done {
+                place,
+                was_before,
+                digest,
+                is_lasting,
+            });
+        }
+        let (mut entry, mut is_lasting) = (Entry::default(), true);
+        match source.and_then(|source| OpenedFile::of(source, self.described)) {
+            Ok(opened) => {
+                entry.of = opened.tests.parts.len();
+                for test in own(entry.of) {
+                    let part = opened.tests.parts[test];
+                    let made = match begin(test + 1)? {
+                        Some(error) => Err(error.of(path.display())),
+                        None => document(&opened, part, self.options, &mut share),
+                    };
+                    is_lasting &= entry.take(&opened, part, made)?;
+                }
+                entry.tests = own(entry.of).len();
+            }
+            Err(error) => {
+                is_lasting &= !matches!(error.kind, ErrorKind::File(_));
+                entry.of = 1;
+                entry.tests = own(entry.of).len();
+                if entry.tests > 0 {
+                    entry.failures.push(Refused::new(path, None, error));
+                }
             }
         }
-        Err(error) => {
-            is_lasting &= !matches!(error.kind, ErrorKind::File(_));
-            entry.tests = 1;
-            entry.failures.push(Refused::from(error));
-        }
+        let key = if is_lasting { key } else { format!("- {}", path.display()) };
+        let place = self.store.add(&key, &serde_json::to_vec(&entry)?)?;
+        self.end(index)?;
+        Ok(Done {
+            place,
+            was_before: false,
+            digest,
+            is_lasting,
+        })
     }
-    let key = if is_lasting { key } else { format!("- {}", path.display()) };
-    Ok((store.add(&key, &serde_json::to_vec(&entry)?)?, false))
+
+    /// Notes that a file is done, where that is noted.
+    fn end(&self, index: usize) -> Result<(), JobError> {
+        self.begun.as_ref().map_or(Ok(()), |begun| begun.end(index))
+    }
+}
+
+/// What came of a file, from its place in the store.
+fn entry(store: &Store, place: &Range<u64>) -> Result<Entry, JobError> {
+    Ok(serde_json::from_slice(&store.read(place)?)?)
 }
 
 fn document(
@@ -293,7 +390,12 @@ fn document(
 
 impl Entry {
     /// Takes what came of a test, and says whether that stays so: what the operating system refused once it may give the next time.
-    fn take(&mut self, made: Result<AnalysisDocument, JobError>) -> Result<bool, JobError> {
+    fn take(
+        &mut self,
+        opened: &OpenedFile<'_>,
+        part: usize,
+        made: Result<AnalysisDocument, JobError>,
+    ) -> Result<bool, JobError> {
         match made {
             Ok(document) => {
                 self.rows.extend(rows::rows(&document));
@@ -303,16 +405,18 @@ impl Entry {
             Err(error) if error.kind == ErrorKind::Cancelled => Err(error),
             Err(error) => {
                 let is_lasting = !matches!(error.kind, ErrorKind::File(_));
-                self.failures.push(Refused::from(error));
+                self.failures.push(Refused::new(&opened.contents.input.name, opened.name(part), error));
                 Ok(is_lasting)
             }
         }
     }
 }
 
-impl From<JobError> for Refused {
-    fn from(error: JobError) -> Self {
+impl Refused {
+    fn new(record: &Path, part: Option<&str>, error: JobError) -> Self {
         Self {
+            record: record.display().to_string(),
+            part: part.map(str::to_owned),
             message: error.to_string(),
             hint: error.hint,
         }
@@ -332,6 +436,15 @@ fn settings(options: &AnalysisOptions, described: &Described) -> Result<String, 
 }
 
 impl Batched {
+    /// Draws maps into their files, all of them or none.
+    fn draw(&self, maps: &[(&str, PathBuf)]) -> Result<(), JobError> {
+        let mut stage = Stage::default();
+        for (quantity, path) in maps {
+            stage.bytes(path, &picture(path, &self.map.figure(quantity, &stem(path))?)?)?;
+        }
+        stage.commit()
+    }
+
     /// Says what was done, and what could not be.
     fn notes(&self, out: &Path, files: usize, before: usize, started: Instant) -> Vec<String> {
         const MOST: usize = 1000;

@@ -112,7 +112,7 @@ const LAST: [Column; 10] = [
     (Number, "loading_modulus_pa", |line| line.of_ramp(|found| found.modulus_pa)),
     (Number, "loading_modulus_standard_error_pa", |line| line.of_ramp(|found| found.standard_error_pa)),
     (Number, "loading_relative_rmse", |line| line.of_ramp(|found| found.relative_rmse)),
-    (Number, "samples", |line| line.of_law(|fit| fit.samples.into(), |_| Value::Null)),
+    (OptionalCount, "samples", |line| line.of_law(|fit| fit.samples.into(), |_| Value::Null)),
     (Number, "residual_correlation", |line| {
         line.of_law(|fit| fit.residual_correlation.into(), |_| Value::Null)
     }),

@@ -2,7 +2,6 @@
 
 use std::ffi::OsStr;
 use std::io::{self, BufWriter, Write};
-use std::ops::Range;
 use std::path::{Path, PathBuf};
 
 use palpate_files::parquet_table::{Field, TableError, TableWriter};
@@ -10,12 +9,11 @@ use palpate_report::table::{CsvLocale, csv_writer, text_cell};
 use serde_json::Value;
 
 use super::answer::Tally;
-use super::parameters;
 use super::rows::{self, table_rows};
-use super::{Batched, Entry};
+use super::{Batched, Entry, failures, parameters};
 use crate::JobError;
-use crate::output::{Stage, check_ending, check_no_folder, unwritten_table};
-use crate::store::Store;
+use crate::output::{Stage, StagedFile, check_ending, check_no_folder, unwritten, unwritten_table};
+use crate::shard::{Manifest, Places, ShardTable};
 use crate::written_by_batch::MARK;
 
 /// How the table is written.
@@ -35,41 +33,103 @@ impl Format {
     }
 }
 
-/// Writes the entries at `places`, one in memory at a time, with `settings` inside.
-pub(super) fn write<'a>(
-    out: &Path,
-    (format, locale): (Format, CsvLocale),
-    store: &Store,
-    places: impl Iterator<Item = &'a Range<u64>>,
-    (settings, compared): (&str, bool),
+/// Where the rows go.
+pub(super) enum Out<'a> {
+    /// To a table, and to that of the parameters beside it.
+    Tables(&'a Path, (Format, CsvLocale)),
+    /// To the tables of a slice, with the manifest that is finished once their digests are known.
+    Slice(Places<'a>, Box<Manifest>),
+    /// Nowhere: only the answer is wanted.
+    Nowhere,
+}
+
+/// How entries are handed over: to a function, one after the other.
+pub(super) type Taken<'a> = &'a mut dyn FnMut(Entry) -> Result<(), JobError>;
+
+/// Writes the entries that `each` hands over, one in memory at a time, with `settings` inside.
+pub(super) fn write(
+    out: Out<'_>,
+    settings: &str,
+    compared: bool,
+    each: impl FnOnce(Taken<'_>) -> Result<(), JobError>,
 ) -> Result<Batched, JobError> {
-    let mut batched = Batched::default();
-    let mut tally = Tally::new();
-    let of_parameters = of_parameters(out);
-    let refused = |error: TableError| unwritten_table(out, &error);
-    let mut stage = Stage::default();
-    let (mut table, mut tidy) = (stage.open(out)?, stage.open(&of_parameters)?);
-    let mut sink =
-        Sink::new((format, locale), BufWriter::new(&mut table), rows::fields(), settings).map_err(refused)?;
-    let mut parameters =
-        Sink::new((format, locale), BufWriter::new(&mut tidy), parameters::fields(), settings).map_err(refused)?;
-    for place in places {
-        let entry: Entry = serde_json::from_slice(&store.read(place)?)?;
+    let (mut batched, mut tally, mut stage) = (Batched::default(), Tally::new(), Stage::default());
+    let parquet = (Format::Parquet, CsvLocale::default());
+    let mut open = |path: &Path, how, fields| Written::open(&mut stage, path, how, fields, settings);
+    let mut tables = match &out {
+        Out::Tables(path, how) => {
+            vec![open(&of_parameters(path), *how, parameters::fields())?, open(path, *how, rows::fields())?]
+        }
+        Out::Slice(places, _) => vec![
+            open(&places.table(ShardTable::Parameters), parquet, parameters::fields())?,
+            open(&places.table(ShardTable::Rows), parquet, rows::fields())?,
+            open(&places.table(ShardTable::Failures), parquet, failures::fields())?,
+        ],
+        Out::Nowhere => Vec::new(),
+    };
+    each(&mut |entry| {
         tally.add(&entry);
         batched.map.add(&entry);
         batched.rows += entry.rows.len();
         batched.tests += entry.tests;
+        for (table, rows) in tables.iter_mut().zip([&entry.parameters, &entry.rows, &failures::rows(&entry.failures)]) {
+            table.write(rows)?;
+        }
         batched.failures.extend(entry.failures);
-        sink.write(&entry.rows).map_err(refused)?;
-        parameters.write(&entry.parameters).map_err(refused)?;
+        Ok(())
+    })?;
+    let mut finished = Vec::new();
+    for table in tables {
+        finished.push(table.finish(settings)?);
     }
-    sink.finish(settings).map_err(refused)?;
-    parameters.finish(settings).map_err(refused)?;
-    stage.take(table)?;
-    stage.take(tidy)?;
+    if let Out::Slice(places, mut manifest) = out {
+        let kinds = [ShardTable::Parameters, ShardTable::Rows, ShardTable::Failures];
+        for (kind, file) in kinds.into_iter().zip(&finished) {
+            manifest.tables.insert(kind, file.sha256()?);
+        }
+        manifest.tests = batched.tests;
+        // The table is the last to appear.
+        finished.swap(1, 2);
+        stage.bytes(&places.manifest(), &serde_json::to_vec_pretty(&*manifest)?)?;
+    }
+    for file in finished {
+        stage.take(file)?;
+    }
     stage.commit()?;
     batched.answer = tally.answer(compared);
     Ok(batched)
+}
+
+/// A table that is being written.
+struct Written {
+    path: PathBuf,
+    sink: Sink<BufWriter<StagedFile>>,
+}
+
+impl Written {
+    fn open(
+        stage: &mut Stage,
+        path: &Path,
+        how: (Format, CsvLocale),
+        fields: Vec<Field>,
+        settings: &str,
+    ) -> Result<Self, JobError> {
+        let file = BufWriter::new(stage.open(path)?);
+        Ok(Self {
+            path: path.to_owned(),
+            sink: Sink::new(how, file, fields, settings).map_err(|error| unwritten_table(path, &error))?,
+        })
+    }
+
+    fn write(&mut self, lines: &[Vec<Value>]) -> Result<(), JobError> {
+        self.sink.write(lines).map_err(|error| unwritten_table(&self.path, &error))
+    }
+
+    fn finish(self, settings: &str) -> Result<StagedFile, JobError> {
+        let Self { path, sink } = self;
+        let file = sink.finish(settings).map_err(|error| unwritten_table(&path, &error))?;
+        file.into_inner().map_err(|error| unwritten(&path, error.error()))
+    }
 }
 
 /// Where the table of parameters of a table lies: `holds_parameters.csv` beside `holds.csv`.
@@ -118,12 +178,15 @@ impl<W: Write + Send> Sink<W> {
         Ok(())
     }
 
-    fn finish(self, settings: &str) -> Result<(), TableError> {
+    /// What it was written to.
+    fn finish(self, settings: &str) -> Result<W, TableError> {
         match self {
-            Self::Csv(mut writer, _) => writer.flush()?,
-            Self::Parquet(writer, _) => writer.finish(&[(MARK, settings)])?,
+            Self::Csv(mut writer, _) => {
+                writer.flush()?;
+                Ok(writer.into_inner().map_err(|error| io::Error::from(error.error().kind()))?)
+            }
+            Self::Parquet(writer, _) => writer.finish(&[(MARK, settings)]),
         }
-        Ok(())
     }
 }
 

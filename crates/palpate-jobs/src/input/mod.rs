@@ -19,5 +19,5 @@ pub use described::Described;
 pub use named::{NamedRecords, Part};
 pub(crate) use opened::averaged;
 pub use opened::{Measurement, OpenedFile, called, record_sha256};
-pub use source::NamedFile;
 pub(crate) use source::Source;
+pub use source::{Fetch, NamedFile};

@@ -1,6 +1,9 @@
 //! The bytes of a file and their digest.
 
 use std::cell::{OnceCell, RefCell};
+use std::fmt;
+use std::fs;
+use std::io;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -27,6 +30,17 @@ pub enum NamedFile {
     Path(PathBuf),
     /// In memory, under a name for results and messages.
     Bytes(PathBuf, Arc<[u8]>),
+    /// Elsewhere, such as in a store of objects: its name, its size in bytes, and what fetches it each time that it is read.
+    Remote(PathBuf, u64, Arc<dyn Fetch>),
+}
+
+/// Fetches the bytes of a file that is not on a disk of this machine.
+pub trait Fetch: fmt::Debug + Send + Sync {
+    /// All of its bytes.
+    ///
+    /// # Errors
+    /// What kept it from them.
+    fn fetch(&self) -> io::Result<Vec<u8>>;
 }
 
 impl NamedFile {
@@ -34,8 +48,24 @@ impl NamedFile {
     #[must_use]
     pub fn name(&self) -> &Path {
         match self {
-            Self::Path(name) | Self::Bytes(name, _) => name,
+            Self::Path(name) | Self::Bytes(name, _) | Self::Remote(name, ..) => name,
         }
+    }
+
+    /// Its length in bytes; 0 where it cannot be found.
+    #[must_use]
+    pub fn size(&self) -> u64 {
+        match self {
+            Self::Path(path) => fs::metadata(path).map_or(0, |about| about.len()),
+            Self::Bytes(_, bytes) => bytes.len() as u64,
+            Self::Remote(_, size, _) => *size,
+        }
+    }
+
+    /// Whether it is standard input.
+    #[must_use]
+    pub fn is_standard_input(&self) -> bool {
+        self.path().is_some_and(is_standard_input)
     }
 
     /// Where it lies, if it lies on a disk.
@@ -62,6 +92,10 @@ impl Source {
     pub(crate) fn open(file: &NamedFile) -> Result<Self, JobError> {
         let input = match file {
             NamedFile::Bytes(name, bytes) => Input::from_bytes(name, Arc::clone(bytes)),
+            NamedFile::Remote(name, _, remote) => {
+                let bytes = remote.fetch().map_err(|error| JobError::unread(name, &error))?;
+                Input::from_bytes(name, bytes)
+            }
             NamedFile::Path(path) if is_standard_input(path) => Input::read(path),
             // Opened first: only a regular file is read.
             NamedFile::Path(path) => {

@@ -14,6 +14,8 @@ mod stage;
 mod target;
 mod temporary;
 
+use std::fs::File;
+use std::io::{self, BufRead, BufReader};
 use std::path::Path;
 
 use palpate_report::figure::{Figure, PictureFormat};
@@ -91,6 +93,23 @@ pub fn sha256_of_parts<'a>(parts: impl IntoIterator<Item = &'a [u8]>) -> String 
     let mut digest = Sha256::new();
     parts.into_iter().for_each(|part| digest.update(part));
     hexadecimal(digest.finalize())
+}
+
+/// SHA-256 of the bytes of a file, hexadecimal.
+pub(crate) fn file_sha256(path: &Path) -> Result<String, JobError> {
+    let digest = || -> io::Result<String> {
+        let (mut file, mut digest) = (BufReader::with_capacity(1 << 18, File::open(path)?), Sha256::new());
+        loop {
+            let piece = file.fill_buf()?;
+            if piece.is_empty() {
+                return Ok(hexadecimal(digest.finalize()));
+            }
+            digest.update(piece);
+            let length = piece.len();
+            file.consume(length);
+        }
+    };
+    digest().map_err(|error| JobError::unread(path, &error))
 }
 
 /// A digest in hexadecimal.

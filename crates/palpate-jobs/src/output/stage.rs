@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 
 use palpate_files::faults::{Operation, before};
 
+use super::file_sha256;
 use super::target::{check_regular, folder_of, unwritten};
 use super::temporary::{Folders, TemporaryFolder, undisturbed};
 use crate::JobError;
@@ -59,6 +60,16 @@ impl Write for StagedFile {
 
     fn flush(&mut self) -> io::Result<()> {
         self.file.flush()
+    }
+}
+
+impl StagedFile {
+    /// SHA-256 of what was written, hexadecimal.
+    ///
+    /// # Errors
+    /// [`JobError`] where it cannot be read again.
+    pub fn sha256(&self) -> Result<String, JobError> {
+        file_sha256(&self.staged.written)
     }
 }
 

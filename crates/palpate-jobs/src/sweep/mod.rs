@@ -4,13 +4,16 @@
 //! |---|---|
 //! | `rows.rs` | what a run comes to |
 //! | `chart.rs` | the table as a figure |
+//! | `shard.rs` | one of several slices of the runs, and all slices as one table |
 
 mod chart;
 mod rows;
+mod shard;
 
 use std::fs::File;
 use std::io::Write;
 use std::num::NonZeroUsize;
+use std::ops::Range;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
@@ -21,11 +24,13 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 pub use rows::{fields as sweep_fields, simulated as sweep_rows};
+pub(crate) use shard::merge;
 
 use crate::depends::Dependencies;
 use crate::output::{
-    Stage, check_ending, check_no_folder, keep_apart, remove_left_beside, unwritten_table, write_file,
+    Stage, StagedFile, check_ending, check_no_folder, keep_apart, remove_left_beside, unwritten_table, write_file,
 };
+use crate::shard::Shard;
 use crate::store::{Store, beside, depends_on};
 use crate::threads::over_threads;
 use crate::{JobError, Outcome};
@@ -50,6 +55,16 @@ pub struct Sweep {
     /// Compute all runs again, and ignore earlier results.
     #[cfg_attr(feature = "clap", arg(long))]
     pub restart: bool,
+    /// Compute only this of so many slices of the runs, into the folder that the table is named by; `palpate merge` makes one table of all.
+    #[cfg_attr(
+        feature = "clap",
+        arg(
+            long,
+            value_name = "K/N",
+            help = "Compute only slice K of N of the runs, into the folder OUT that all slices share; palpate merge makes one table of them",
+        )
+    )]
+    pub shard: Option<Shard>,
 }
 
 impl Default for Sweep {
@@ -58,6 +73,7 @@ impl Default for Sweep {
             show: "peak_force_n".to_owned(),
             threads: None,
             restart: false,
+            shard: None,
         }
     }
 }
@@ -106,6 +122,9 @@ impl Sweep {
         figure: Option<&Path>,
         watch: &mut dyn Watch,
     ) -> Result<Outcome<Swept>, JobError> {
+        if let Some(shard) = self.shard {
+            return self.run_slice(sweep, place, shard, out, figure, watch);
+        }
         let started = Instant::now();
         let out = table_of(place, out)?;
         let chart = figure.map(|figure| Chart::new(sweep, figure, &self.show)).transpose()?;
@@ -113,23 +132,7 @@ impl Sweep {
         if let Some(chart) = chart {
             write_file(&chart.path, &chart.draw(sweep, &out)?)?;
         }
-        let (refused, first) = refused(&out).map_err(|error| unwritten_table(&out, &error))?;
-        let runs = sweep.runs;
-        let first = first.map(|(run, reason)| format!("{refused} of {runs} runs refused, first run {run}: {reason}"));
-        let before = match computed_before {
-            0 => String::new(),
-            all if all == runs => ", all computed before".to_owned(),
-            some => format!(", {some} computed before"),
-        };
-        let seconds = started.elapsed().as_secs_f64();
-        let done = format!("{}: {runs} runs in {seconds:.1} s{before}", out.display());
-        let result = Swept {
-            table: out,
-            runs,
-            refused,
-            computed_before,
-        };
-        Ok(Outcome::of(result).answered(refused != runs).noted(first.into_iter().chain([done]).collect()))
+        Swept::of(out, sweep.runs, computed_before, started)
     }
 
     /// Makes the table, unless it is there, and returns how many of its runs were computed before.
@@ -153,40 +156,106 @@ impl Sweep {
             .of(folder.display()));
         }
         let store = Store::open(&folder, "sweep", &digest, self.restart)?;
-        let (runs, size) = (sweep.runs, part_size(sweep.runs));
-        let parts = usize::try_from(runs.div_ceil(size)).unwrap_or(usize::MAX);
-        let runs_of = |part: usize| part as u64 * size..runs.min((part as u64 + 1) * size);
-        let done: u64 = (0..parts)
-            .filter(|part| store.find(&part.to_string()).is_some())
-            .map(|part| runs_of(part).end - runs_of(part).start)
-            .sum();
-        let fields = sweep_fields(sweep);
-        let progress = Progress {
-            task: "simulating",
-            done,
-            total: Some(runs),
+        let parts = Parts {
+            sweep,
+            path,
+            store: &store,
         };
-        // Each part is the work of one thread, so that its bytes do not depend on how many there are.
-        let places = over_threads(parts, self.threads, progress, watch, |part, share| {
-            let key = part.to_string();
-            if let Some(place) = store.find(&key) {
-                return Ok(place);
-            }
-            let (rows, _) = sweep_rows(sweep, path, runs_of(part), &[], &mut |_: Progress<'_>| share.advance(1))?;
-            store.add(&key, &packed(&fields, rows).map_err(|error| unwritten_table(&folder, &error))?)
-        })?;
+        let (places, done) = parts.computed(0..parts.count(), self.threads, watch)?;
         let mut stage = Stage::default();
-        stage.file(out, |file| {
-            let refused = |error: TableError| unwritten_table(out, &error);
-            let mut writer = TableWriter::new(file, &fields).map_err(refused)?;
-            for place in &places {
-                unpacked(&store.read(place)?, |rows| writer.write(rows)).map_err(refused)?;
-            }
-            writer.finish(&[(MARK, &digest)]).map_err(refused)
-        })?;
+        let table = parts.written(&mut stage, out, &places, &[(MARK, &digest)])?;
+        stage.take(table)?;
         stage.commit()?;
         store.remove()?;
         Ok(done)
+    }
+}
+
+/// The parts that the runs of a sweep are computed in, and the store that keeps them.
+struct Parts<'a> {
+    sweep: &'a SweptProtocol,
+    path: &'a Path,
+    store: &'a Store,
+}
+
+impl Parts<'_> {
+    fn count(&self) -> u64 {
+        self.sweep.runs.div_ceil(part_size(self.sweep.runs))
+    }
+
+    /// The runs of a part.
+    fn runs(&self, part: u64) -> Range<u64> {
+        let (runs, size) = (self.sweep.runs, part_size(self.sweep.runs));
+        part * size..runs.min((part + 1) * size)
+    }
+
+    /// Computes parts that are not there yet. Where all of them lie, and how many of their runs were there.
+    fn computed(
+        &self,
+        parts: Range<u64>,
+        threads: Option<NonZeroUsize>,
+        watch: &mut dyn Watch,
+    ) -> Result<(Vec<Range<u64>>, u64), JobError> {
+        let length = |part: u64| self.runs(part).end - self.runs(part).start;
+        let is_there = |part: &u64| self.store.find(&part.to_string()).is_some();
+        let done: u64 = parts.clone().filter(is_there).map(length).sum();
+        let fields = sweep_fields(self.sweep);
+        let progress = Progress {
+            task: "simulating",
+            done,
+            total: Some(parts.clone().map(length).sum()),
+        };
+        let count = usize::try_from(parts.end - parts.start).unwrap_or(usize::MAX);
+        // Each part is the work of one thread, so that its bytes do not depend on how many there are.
+        let places = over_threads(count, threads, progress, watch, |index, share| {
+            let part = parts.start + index as u64;
+            let key = part.to_string();
+            if let Some(place) = self.store.find(&key) {
+                return Ok(place);
+            }
+            let mut watch = |_: Progress<'_>| share.advance(1);
+            let (rows, _) = sweep_rows(self.sweep, self.path, self.runs(part), &[], &mut watch)?;
+            self.store.add(&key, &packed(&fields, rows).map_err(|error| unwritten_table(self.path, &error))?)
+        })?;
+        Ok((places, done))
+    }
+
+    /// Writes parts as one table that is to appear at `out`.
+    fn written(
+        &self,
+        stage: &mut Stage,
+        out: &Path,
+        places: &[Range<u64>],
+        marks: &[(&str, &str)],
+    ) -> Result<StagedFile, JobError> {
+        let refused = |error: TableError| unwritten_table(out, &error);
+        let mut writer = TableWriter::new(stage.open(out)?, &sweep_fields(self.sweep)).map_err(refused)?;
+        for place in places {
+            unpacked(&self.store.read(place)?, |rows| writer.write(rows)).map_err(refused)?;
+        }
+        writer.finish(marks).map_err(refused)
+    }
+}
+
+impl Swept {
+    /// The table at `out`, with what to know of it.
+    fn of(out: PathBuf, runs: u64, computed_before: u64, started: Instant) -> Result<Outcome<Self>, JobError> {
+        let (refused, first) = refused(&out).map_err(|error| unwritten_table(&out, &error))?;
+        let first = first.map(|(run, reason)| format!("{refused} of {runs} runs refused, first run {run}: {reason}"));
+        let before = match computed_before {
+            0 => String::new(),
+            all if all == runs => ", all computed before".to_owned(),
+            some => format!(", {some} computed before"),
+        };
+        let seconds = started.elapsed().as_secs_f64();
+        let done = format!("{}: {runs} runs in {seconds:.1} s{before}", out.display());
+        let result = Self {
+            table: out,
+            runs,
+            refused,
+            computed_before,
+        };
+        Ok(Outcome::of(result).answered(refused != runs).noted(first.into_iter().chain([done]).collect()))
     }
 }
 

@@ -17,7 +17,11 @@ from palpate._options import Control, Intervals, LawName, Quantity
 
 __all__ = [
     "__version__",
+    "_BUILD",
     "_SI_ENDINGS",
+    "_found",
+    "_run_slice",
+    "_sliced",
     "Analysis",
     "BackOff",
     "BatchResult",
@@ -58,6 +62,7 @@ __all__ = [
     "fit_many",
     "forecast",
     "inspect",
+    "merge",
     "latency",
     "law_names",
     "mapping_text",
@@ -72,6 +77,7 @@ __all__ = [
 ]
 
 __version__: Final[str]
+_BUILD: Final[str]
 _SI_ENDINGS: Final[dict[str, str]]
 
 _Doubles: TypeAlias = NDArray[np.float64]
@@ -2199,6 +2205,7 @@ def batch(
     map: Sequence[str] | None = None,
     csv_locale: str | None = None,
     restart: bool = False,
+    shard: str | None = None,
 ) -> BatchResult:
     """Analyse many records into one table, a row per hold and law: ``palpate batch``.
 
@@ -2240,8 +2247,31 @@ def batch(
         A description or a law that is wrong, a table that cannot be written.
     """
     ...
+_Slice: TypeAlias = tuple[int, int, str, int, int, int, float, float]
+_SlicedFile: TypeAlias = tuple[_Path, bytes | None] | tuple[_Path, int, Callable[[], bytes]]
+
+def _found(paths: Sequence[_Path]) -> list[Path]: ...
+def _sliced(files: Sequence[_SlicedFile], of: int) -> list[_Slice]: ...
+def _run_slice(
+    slice: _Slice,
+    files: Sequence[_SlicedFile],
+    out: _Path,
+    *,
+    test: _Described | None = None,
+    columns: _Columns | None = None,
+    laws: Sequence[LawName] | None = None,
+    intervals: Intervals | None = None,
+    fit_until_s: float | None = None,
+    restart: bool = False,
+    threads: int = 1,
+) -> tuple[int, int, int]: ...
+def merge(
+    folders: Sequence[_Path], out: _Path, *, map: Sequence[str] | None = None, csv_locale: str | None = None
+) -> BatchResult | tuple[int, int]:
+    """"""
+    ...
 def sweep(
-    protocol: _Path | Mapping[str, Any], out: _Path, *, figure: _Path | None = None, show: str | None = None, restart: bool = False
+    protocol: _Path | Mapping[str, Any], out: _Path, *, figure: _Path | None = None, show: str | None = None, restart: bool = False, shard: str | None = None
 ) -> tuple[int, int]:
     """Simulate the runs of a protocol with a table ``[sweep]`` into one table: ``palpate sweep``.
 

@@ -7,7 +7,7 @@ use palpate_jobs::Sweep;
 use pyo3::prelude::*;
 
 use super::protocol::StatedProtocol;
-use crate::files::stated;
+use crate::files::{shard, stated};
 use crate::work::writing_job;
 
 /// Simulate the runs of a protocol with a table ``[sweep]`` into one table: ``palpate sweep``.
@@ -27,6 +27,8 @@ use crate::work::writing_job;
 ///     Which result the figure shows, by the name of its column; the peak force if left out.
 /// restart
 ///     Whether all runs are computed again, whatever was computed before.
+/// shard
+///     "3/40": compute only the third of 40 slices of the runs, into the folder `out` that all slices share; `merge` makes one table of them.
 ///
 /// Returns
 /// -------
@@ -52,7 +54,7 @@ use crate::work::writing_job;
 /// ...     palpate.sweep(protocol, Path(folder) / "runs.parquet")
 /// (6, 0)
 #[pyfunction]
-#[pyo3(signature = (protocol, out, *, figure=None, show=None, restart=false))]
+#[pyo3(signature = (protocol, out, *, figure=None, show=None, restart=false, shard=None))]
 pub(crate) fn sweep(
     py: Python<'_>,
     protocol: &Bound<'_, PyAny>,
@@ -60,11 +62,13 @@ pub(crate) fn sweep(
     figure: Option<PathBuf>,
     show: Option<String>,
     restart: bool,
+    shard: Option<&str>,
 ) -> PyResult<(u64, u64)> {
     let usual = Sweep::default();
     let question = Sweep {
         show: show.unwrap_or(usual.show),
         restart,
+        shard: self::shard(shard)?,
         threads: None,
     };
     let (path, text) = stated("described", protocol)?;

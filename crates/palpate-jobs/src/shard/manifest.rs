@@ -1,0 +1,123 @@
+//! What a finished slice says of itself.
+
+use std::collections::BTreeMap;
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use serde::{Deserialize, Serialize};
+
+use super::{Places, Shard};
+use crate::JobError;
+use crate::output::file_sha256;
+
+/// A table of a slice.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub(crate) enum ShardTable {
+    Parameters,
+    Failures,
+    /// The last to appear.
+    Rows,
+}
+
+impl ShardTable {
+    pub(super) fn folder(self) -> &'static str {
+        match self {
+            Self::Parameters => "parameters",
+            Self::Failures => "failures",
+            Self::Rows => "table",
+        }
+    }
+}
+
+/// Where a slice ends within a file that the next one goes on with.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub(crate) struct Cut {
+    /// The index of the file among all.
+    pub(crate) file: usize,
+    /// Its digest.
+    pub(crate) sha256: Option<String>,
+    /// How many tests it has.
+    pub(crate) tests: usize,
+    /// The first test behind the cut, from 0.
+    pub(crate) at: usize,
+}
+
+/// What a finished slice says of itself: what its tables depend on, and their digests.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct Manifest {
+    /// `batch` or `sweep`.
+    pub(crate) job: String,
+    pub(crate) shard: Shard,
+    /// Version, build, description and options, as they stand in the table of all.
+    pub(crate) settings: String,
+    /// Digest of the names and sizes of all files; of a sweep, of its protocol.
+    pub(crate) plan_sha256: String,
+    /// Files of the batch in all; runs of the sweep in all.
+    pub(crate) total: u64,
+    /// Digest of the files of the slice by name and content.
+    pub(crate) inputs_sha256: Option<String>,
+    /// Tests of the slice; runs of a sweep.
+    pub(crate) tests: usize,
+    /// Whether laws were compared.
+    pub(crate) compared: bool,
+    /// Whether every failure would stay one if the slice were computed again.
+    pub(crate) is_lasting: bool,
+    /// Where it begins in a file that the slice before ends in.
+    pub(crate) start: Option<Cut>,
+    /// Where it ends in a file that the next one begins with.
+    pub(crate) end: Option<Cut>,
+    /// SHA-256 of its tables.
+    pub(crate) tables: BTreeMap<ShardTable, String>,
+}
+
+impl Manifest {
+    /// The manifest at `path`.
+    fn read(path: &Path) -> Result<Self, JobError> {
+        let bytes = fs::read(path).map_err(|error| JobError::unread(path, &error))?;
+        serde_json::from_slice(&bytes).map_err(|error| {
+            let message = format!("expected the manifest of a shard ({error})");
+            JobError::option(message, "run that shard again with this version of palpate").of(path.display())
+        })
+    }
+
+    /// Refuses tables that are not those which the slice wrote.
+    pub(crate) fn check_tables(&self, places: Places<'_>) -> Result<(), JobError> {
+        for (table, sha256) in &self.tables {
+            let path = places.table(*table);
+            if &file_sha256(&path)? != sha256 {
+                let message =
+                    format!("expected the table that shard {} wrote, found another or a damaged one", self.shard);
+                let hint = format!("run shard {} again: it is computed anew", self.shard);
+                return Err(JobError::option(message, &hint).of(path.display()));
+            }
+        }
+        Ok(())
+    }
+}
+
+/// What a slice says of itself, if it was finished and its tables are whole.
+pub(crate) fn finished(places: Places<'_>) -> Option<Manifest> {
+    let manifest = Manifest::read(&places.manifest()).ok()?;
+    manifest.check_tables(places).ok()?;
+    (manifest.shard == places.shard).then_some(manifest)
+}
+
+/// The manifests in the folder of a work, in no order.
+pub(crate) fn manifests(folder: &Path) -> Result<Vec<(PathBuf, Manifest)>, JobError> {
+    let shards = folder.join("shards");
+    let entries = fs::read_dir(&shards).and_then(Iterator::collect::<Result<Vec<_>, _>>).map_err(|_| {
+        let message = "expected a folder that shards were written to, found none";
+        JobError::option(message, "name the folder that the shards had as their ⟨out⟩").of(folder.display())
+    })?;
+    let of_manifest = |entry: &fs::DirEntry| {
+        let path = entry.path();
+        (path.is_file() && path.extension().is_some_and(|ending| ending == "json")).then_some(path)
+    };
+    entries
+        .iter()
+        .filter_map(of_manifest)
+        .map(|path| Ok((folder.to_owned(), Manifest::read(&path)?)))
+        .collect()
+}

@@ -1,0 +1,128 @@
+//! Slices of a batch or a sweep, and all of them as one table.
+
+use std::path::PathBuf;
+
+use palpate_jobs::input::{NamedFile, NamedRecords};
+use palpate_jobs::{Batch, Merge, Merged, Shard, Slice};
+use pyo3::IntoPyObjectExt;
+use pyo3::prelude::*;
+
+use crate::errors::{OptionError, failed, refused_plainly};
+use crate::files::{BatchResult, FileOfPython, Given, all_laws, described_with, named, shard};
+use crate::fits::fit;
+use crate::report_files::csv_locale as readers;
+use crate::work::writing_job;
+
+/// Make one table of the shards of `batch` or `sweep`, byte for byte that of the whole at once: ``palpate merge``.
+///
+/// Parameters
+/// ----------
+/// folders
+///     The folders that the shards had as their ``out``.
+/// out
+///     A table ending in .parquet or .csv; of a sweep in .parquet.
+/// map
+///     Maps over the positions of the curves of a batch, as for `batch`.
+/// csv_locale
+///     Language of the readers of a CSV, as for `Analysis.report`.
+///
+/// Returns
+/// -------
+/// BatchResult | tuple[int, int]
+///     What `batch` or `sweep` of the whole returns.
+///
+/// Raises
+/// ------
+/// OptionError, OSError
+///     A shard that is missing, there twice, of other files, settings or another version, or damaged; a table that cannot be written.
+#[pyfunction]
+#[pyo3(signature = (folders, out, *, map=None, csv_locale=None))]
+pub(crate) fn merge<'py>(
+    py: Python<'py>,
+    folders: Vec<PathBuf>,
+    out: PathBuf,
+    map: Option<Vec<String>>,
+    csv_locale: Option<&str>,
+) -> PyResult<Bound<'py, PyAny>> {
+    let question = Merge {
+        map: map.unwrap_or_default(),
+        csv_locale: readers(csv_locale)?,
+    };
+    match writing_job(py, move |watch| question.run(&folders, &out, watch))?.result {
+        Merged::Batch(done) => BatchResult::from(*done).into_bound_py_any(py),
+        Merged::Sweep(done) => (done.runs, done.refused).into_bound_py_any(py),
+    }
+}
+
+/// A slice without its files: number, of, digest of the plan, how many files there are, its first one, and how many, start and end in shares
+/// of the first and the last.
+type SliceOfPython = (u32, u32, String, usize, usize, usize, f64, f64);
+
+/// The paths that names lead to, in the order of a batch.
+#[pyfunction]
+pub(crate) fn _found(py: Python<'_>, paths: Vec<PathBuf>) -> PyResult<Vec<PathBuf>> {
+    let found = py.detach(|| NamedRecords::find(paths, Default::default())).map_err(failed)?;
+    Ok(found.names().map(PathBuf::from).collect())
+}
+
+/// The slices of files; each takes `count` of them from `first` on.
+#[pyfunction]
+pub(crate) fn _sliced(py: Python<'_>, files: Vec<FileOfPython>, of: u32) -> PyResult<Vec<SliceOfPython>> {
+    let files: Vec<NamedFile> = files.into_iter().map(named).collect();
+    let shards = Shard::all(of).map_err(|message| refused_plainly::<OptionError>(format!("shards: {message}")))?;
+    let slices = py.detach(|| Slice::of(&files, shards)).map_err(failed)?;
+    let stated = |slice: Slice| {
+        let count = slice.files.len();
+        (
+            slice.shard.number(),
+            slice.shard.of(),
+            slice.plan_sha256,
+            slice.total,
+            slice.first,
+            count,
+            slice.start,
+            slice.end,
+        )
+    };
+    Ok(slices.into_iter().map(stated).collect())
+}
+
+/// Analyses a slice into the folder of all; its rows, its tests, and how many of them failed.
+#[pyfunction]
+#[pyo3(signature = (slice, files, out, *, test=None, columns=None, laws=None, intervals=None, fit_until_s=None, restart=false, threads=1))]
+#[expect(clippy::too_many_arguments, reason = "keywords of Python")]
+pub(crate) fn _run_slice(
+    py: Python<'_>,
+    slice: SliceOfPython,
+    files: Vec<FileOfPython>,
+    out: PathBuf,
+    test: Given<'_, '_>,
+    columns: Given<'_, '_>,
+    laws: Option<Vec<String>>,
+    intervals: Option<&str>,
+    fit_until_s: Option<f64>,
+    restart: bool,
+    threads: usize,
+) -> PyResult<(usize, usize, usize)> {
+    let (number, of, plan_sha256, total, first, _, start, end) = slice;
+    let slice = Slice {
+        shard: shard(Some(&format!("{number}/{of}")))?.ok_or_else(|| OptionError::new_err("expected a shard"))?,
+        plan_sha256,
+        total,
+        first,
+        files: files.into_iter().map(named).collect(),
+        start,
+        end,
+    };
+    let described = described_with(test, None, columns)?;
+    let question = Batch {
+        laws: laws.map(|laws| all_laws(&laws)).transpose()?,
+        intervals: intervals.map(fit::intervals).transpose()?,
+        fit_until_s,
+        restart,
+        threads: threads.try_into().ok(),
+        ..Batch::default()
+    };
+    let done = writing_job(py, move |watch| question.run_slice(&slice, &described, &out, watch))?.result;
+    Ok((done.rows, done.tests, done.failures.len()))
+}
