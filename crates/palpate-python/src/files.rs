@@ -1,6 +1,7 @@
 //! Jobs from files to files and to text, as the command does them.
 
 use std::io;
+use std::num::NonZeroUsize;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -241,6 +242,8 @@ pub(crate) fn convert(
 /// shard
 ///     "3/40": analyse only the third of 40 slices of the files, equal in bytes, into the folder `out` that all slices share; `merge` makes
 ///     one table of them.
+/// threads
+///     How many records are analysed side by side; as many as there are processors if left out. The table does not depend on it.
 ///
 /// Returns
 /// -------
@@ -252,7 +255,7 @@ pub(crate) fn convert(
 /// OptionError, OSError
 ///     A description or a law that is wrong, a table that cannot be written.
 #[pyfunction]
-#[pyo3(signature = (paths, out, *, test=None, columns=None, laws=None, intervals=None, fit_until_s=None, map=None, csv_locale=None, restart=false, shard=None))]
+#[pyo3(signature = (paths, out, *, test=None, columns=None, laws=None, intervals=None, fit_until_s=None, map=None, csv_locale=None, restart=false, shard=None, threads=None))]
 #[expect(clippy::too_many_arguments, reason = "keywords of Python")]
 pub(crate) fn batch(
     py: Python<'_>,
@@ -267,6 +270,7 @@ pub(crate) fn batch(
     csv_locale: Option<&str>,
     restart: bool,
     shard: Option<&str>,
+    threads: Option<NonZeroUsize>,
 ) -> PyResult<BatchResult> {
     let (files, described) = (record_files(paths)?, described_with(test, None, columns)?);
     let question = Batch {
@@ -277,6 +281,7 @@ pub(crate) fn batch(
         csv_locale: readers(csv_locale)?,
         restart,
         shard: self::shard(shard)?,
+        threads,
         ..Batch::default()
     };
     let done = writing_job(py, move |watch| question.run(NamedRecords::find(files, described)?, &out, watch))?;

@@ -1,4 +1,4 @@
-"""Arrays as the compiled part takes them: contiguous doubles, or an error that says what was found."""
+"""Arrays as the compiled part takes them: contiguous aligned doubles, or an error that says what was found."""
 
 from __future__ import annotations
 
@@ -46,7 +46,7 @@ def as_doubles(values: Any, name: str, omit_nan: bool = False) -> NDArray[np.flo
     if array.dtype.kind == "O" and omit_nan:
         array = np.array([np.nan if type(value).__name__ in ("NoneType", "NAType", "NaTType") else value for value in array])
     try:
-        return np.ascontiguousarray(array, dtype=np.float64)
+        return np.require(array, dtype=np.float64, requirements=("C", "A"))
     except (TypeError, ValueError):
         raise OptionError(f"{name}: expected numbers, found {_reported(array[0])}") from None
 

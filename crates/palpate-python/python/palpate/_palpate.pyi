@@ -2206,6 +2206,7 @@ def batch(
     csv_locale: str | None = None,
     restart: bool = False,
     shard: str | None = None,
+    threads: int | None = None,
 ) -> BatchResult:
     """Analyse many records into one table, a row per hold and law: ``palpate batch``.
 
@@ -2271,7 +2272,14 @@ def merge(
     """"""
     ...
 def sweep(
-    protocol: _Path | Mapping[str, Any], out: _Path, *, figure: _Path | None = None, show: str | None = None, restart: bool = False, shard: str | None = None
+    protocol: _Path | Mapping[str, Any],
+    out: _Path,
+    *,
+    figure: _Path | None = None,
+    show: str | None = None,
+    restart: bool = False,
+    shard: str | None = None,
+    threads: int | None = None,
 ) -> tuple[int, int]:
     """Simulate the runs of a protocol with a table ``[sweep]`` into one table: ``palpate sweep``.
 

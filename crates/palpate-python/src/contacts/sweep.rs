@@ -1,5 +1,6 @@
 //! A protocol and its sweep, to a file.
 
+use std::num::NonZeroUsize;
 use std::path::PathBuf;
 
 use palpate_files::description::parse_sweep;
@@ -29,6 +30,8 @@ use crate::work::writing_job;
 ///     Whether all runs are computed again, whatever was computed before.
 /// shard
 ///     "3/40": compute only the third of 40 slices of the runs, into the folder `out` that all slices share; `merge` makes one table of them.
+/// threads
+///     How many runs are simulated side by side; as many as there are processors if left out. The table does not depend on it.
 ///
 /// Returns
 /// -------
@@ -54,7 +57,7 @@ use crate::work::writing_job;
 /// ...     palpate.sweep(protocol, Path(folder) / "runs.parquet")
 /// (6, 0)
 #[pyfunction]
-#[pyo3(signature = (protocol, out, *, figure=None, show=None, restart=false, shard=None))]
+#[pyo3(signature = (protocol, out, *, figure=None, show=None, restart=false, shard=None, threads=None))]
 pub(crate) fn sweep(
     py: Python<'_>,
     protocol: &Bound<'_, PyAny>,
@@ -63,13 +66,14 @@ pub(crate) fn sweep(
     show: Option<String>,
     restart: bool,
     shard: Option<&str>,
+    threads: Option<NonZeroUsize>,
 ) -> PyResult<(u64, u64)> {
     let usual = Sweep::default();
     let question = Sweep {
         show: show.unwrap_or(usual.show),
         restart,
         shard: self::shard(shard)?,
-        threads: None,
+        threads,
     };
     let (path, text) = stated("described", protocol)?;
     let done = match path {
