@@ -2236,6 +2236,11 @@ def batch(
         Language of the readers of a CSV, as for `Analysis.report`.
     restart
         Whether all records are analysed again, whatever was done before.
+    shard
+        "3/40": analyse only the third of 40 slices of the files, equal in bytes, into the folder `out` that all slices share; `merge` makes
+        one table of them.
+    threads
+        How many records are analysed side by side; as many as there are processors if left out. The table does not depend on it.
 
     Returns
     -------
@@ -2269,7 +2274,29 @@ def _run_slice(
 def merge(
     folders: Sequence[_Path], out: _Path, *, map: Sequence[str] | None = None, csv_locale: str | None = None
 ) -> BatchResult | tuple[int, int]:
-    """"""
+    """Make one table of the shards of `batch` or `sweep`, byte for byte that of the whole at once: ``palpate merge``.
+
+    Parameters
+    ----------
+    folders
+        The folders that the shards had as their ``out``.
+    out
+        A table ending in .parquet or .csv; of a sweep in .parquet.
+    map
+        Maps over the positions of the curves of a batch, as for `batch`.
+    csv_locale
+        Language of the readers of a CSV, as for `Analysis.report`.
+
+    Returns
+    -------
+    BatchResult | tuple[int, int]
+        What `batch` or `sweep` of the whole returns.
+
+    Raises
+    ------
+    OptionError, OSError
+        A shard that is missing, there twice, of other files, settings or another version, or damaged; a table that cannot be written.
+    """
     ...
 def sweep(
     protocol: _Path | Mapping[str, Any],
@@ -2298,6 +2325,10 @@ def sweep(
         Which result the figure shows, by the name of its column; the peak force if left out.
     restart
         Whether all runs are computed again, whatever was computed before.
+    shard
+        "3/40": compute only the third of 40 slices of the runs, into the folder `out` that all slices share; `merge` makes one table of them.
+    threads
+        How many runs are simulated side by side; as many as there are processors if left out. The table does not depend on it.
 
     Returns
     -------

@@ -207,18 +207,18 @@ def fit_many(
     Returns
     -------
     dask.dataframe.DataFrame
-        A row a curve with the columns of `palpate.fit_many`; it is computed when it is asked for. Of an array the index is the number of
-        the curve.
+        A row a curve with the columns of `palpate.fit_many`, computed when its values are needed. Of an array the index is the number
+        of the curve; of a data frame and of a bag there is no column ``curve``.
 
     Raises
     ------
     OptionError
         As for `palpate.fit_many`; a collection of another kind.
     """
-    import dask
     import dask.array as da
     import dask.bag as db
     import dask.dataframe as dd
+    from dask.delayed import delayed
 
     options = {**options, "progress": False}
     if isinstance(time_s, dd.DataFrame):
@@ -231,56 +231,65 @@ def fit_many(
         if missing:
             raise OptionError(f"expected columns {', '.join(columns)}, found no {', '.join(missing)}")
         together = time_s if is_index and time_s.known_divisions else time_s.shuffle(on=names)
-        example = _example(options)
-        labels = time_s._meta.reset_index()[names] if is_index else time_s._meta[names]
-        meta = labels.iloc[:0].reset_index(drop=True).join(example)
+        labels = time_s._meta_nonempty.reset_index() if is_index else time_s._meta_nonempty
+        times, signals = _example_hold()
+        example = labels[names].iloc[[0] * len(times)].assign(**{time: times, signal: signals})
+        meta = _fit_frame(example, names, time, signal, options).iloc[:0]
         return together.map_partitions(_fit_frame, names, time, signal, options, meta, meta=meta)
     if isinstance(time_s, db.Bag):
-        parts = [dask.delayed(_fit_pairs)(part, options) for part in time_s.to_delayed()]
-        return dd.from_delayed(parts, meta=_example(options))
+        parts = [delayed(_fit_pairs)(part, options) for part in time_s.to_delayed()]
+        return dd.from_delayed(parts, meta=_example(options).drop(columns="curve"))
     if not isinstance(signal, da.Array) or signal.ndim != 2:
         kinds = "a dask.dataframe.DataFrame, a dask.bag.Bag, or a signal that is a dask.array.Array of shape (curves, samples)"
         raise OptionError(f"expected {kinds}, found {type(time_s).__name__} and {type(signal).__name__}")
-    rows = signal.rechunk({1: -1})
+    rows = signal.rechunk({1: -1})  # pyright: ignore[reportArgumentType]
     if any(size != size for size in rows.chunks[0]):
         rows = rows.compute_chunk_sizes()
     signals = rows.to_delayed()[:, 0]
     times = [time_s] * len(signals)
     if isinstance(time_s, da.Array):
-        times = list(time_s.rechunk(rows.chunks).to_delayed()[:, 0]) if time_s.ndim == 2 else [dask.delayed(time_s)] * len(signals)
+        times = list(time_s.rechunk(rows.chunks).to_delayed()[:, 0]) if time_s.ndim == 2 else [delayed(time_s)] * len(signals)
     starts = [sum(rows.chunks[0][:index]) for index in range(len(signals))]
-    fit = dask.delayed(_fit_rows)
+    fit = delayed(_fit_rows)
     parts = [fit(own, block, start, options) for own, block, start in zip(times, signals, starts, strict=True)]
     return dd.from_delayed(parts, meta=_example(options))
 
 
-def _example(options: Mapping[str, Any]) -> pandas.DataFrame:
-    """The columns of a table of fits, without rows."""
+def _example_hold() -> tuple[Any, Any]:
+    """A hold that every law can be fitted to."""
     import numpy as np
 
     times = np.linspace(0.0, 10.0, 64)
-    return _fit_many([times], [1.0 + (1.0 + 2.0 * times) ** -0.25], **options).to_pandas().iloc[:0]
+    return times, 1.0 + (1.0 + 2.0 * times) ** -0.25
+
+
+def _example(options: Mapping[str, Any]) -> pandas.DataFrame:
+    """The columns of a table of fits, without rows."""
+    times, signal = _example_hold()
+    return _fit_many([times], [signal], **options).to_pandas().iloc[:0]
 
 
 def _fit_frame(
-    part: pandas.DataFrame, by: list[str], time: str, signal: str, options: Mapping[str, Any], meta: pandas.DataFrame
+    part: pandas.DataFrame, by: list[str], time: str, signal: str, options: Mapping[str, Any], meta: pandas.DataFrame | None = None
 ) -> pandas.DataFrame:
-    if part.empty:
+    if part.empty and meta is not None:
         return meta
     part = part.reset_index() if by == [part.index.name] else part
-    return _fit_many(part[[*by, time, signal]], by=by, time=time, signal=signal, **options).to_pandas()
+    fits = _fit_many(part[[*by, time, signal]], by=by, time=time, signal=signal, **options).to_pandas()
+    # Labels tell curves apart, not their number in a partition.
+    return fits if "curve" in by else fits.drop(columns="curve")
 
 
 def _fit_pairs(part: Iterable[tuple[Any, Any]], options: Mapping[str, Any]) -> pandas.DataFrame:
     pairs = list(part)
-    if not pairs:
-        return _example(options)
-    return _fit_many([time for time, _ in pairs], [signal for _, signal in pairs], **options).to_pandas()
+    fits = _fit_many([time for time, _ in pairs], [signal for _, signal in pairs], **options).to_pandas() if pairs else _example(options)
+    # A bag does not know how many pairs are in other partitions.
+    return fits.drop(columns="curve")
 
 
 def _fit_rows(time_s: Any, signal: Any, start: int, options: Mapping[str, Any]) -> pandas.DataFrame:
     fits = _fit_many(time_s, signal, **options).to_pandas()
-    return fits.set_axis(range(start, start + len(fits)), axis=0)
+    return fits.assign(curve=fits["curve"] + start).set_axis(range(start, start + len(fits)), axis=0)
 
 
 def _files(names: Iterable[str | os.PathLike[str]], storage_options: dict[str, Any]) -> Iterator[_SlicedFile]:
@@ -365,7 +374,7 @@ def _connected(client: Client | None) -> Iterator[Client]:
             client = distributed.default_client()
         except ValueError:
             processors = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
-            cluster = distributed.LocalCluster(n_workers=processors, threads_per_worker=1, dashboard_address=None)
+            cluster = distributed.LocalCluster(n_workers=processors, threads_per_worker=1, dashboard_address=":0")
             with cluster, distributed.Client(cluster) as own:
                 yield own
             return
@@ -385,11 +394,12 @@ def _check_workers(client: Client) -> None:
             return None
         return found
 
-    builds = client.run(build, on_error="return")
-    without = sorted(worker for worker, found in builds.items() if not isinstance(found, str))
+    builds: dict[str, Any] = client.run(build, on_error="return")  # pyright: ignore[reportAssignmentType]
+    without = sorted(worker for worker, found in builds.items() if found is None)
     if without:
         raise OptionError(f"expected palpate on every worker, found none on {_listed(without)}\nhint: install palpate {palpate.__version__} there")
-    others = sorted(worker for worker, found in builds.items() if found != _BUILD)
+    # A worker that has just ended gives an error; the one in its place is heard with its first shard.
+    others = sorted(worker for worker, found in builds.items() if isinstance(found, str) and found != _BUILD)
     if others:
         raise OptionError(
             f"expected the same build of palpate everywhere, found another one on {_listed(others)}\nhint: install palpate {palpate.__version__} there"
@@ -421,7 +431,8 @@ def _driven(
             completed.add(future)
 
         def fill() -> None:
-            window = 2 * max(1, sum(client.nthreads().values())) + 8
+            threads: dict[str, int] = client.nthreads()  # pyright: ignore[reportAssignmentType]
+            window = 2 * max(1, sum(threads.values())) + 8
             while len(running) < window and (task := next(tasks, None)) is not None:
                 submit(*task, 1)
 
