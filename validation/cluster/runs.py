@@ -50,18 +50,22 @@ def dask(job: Job, out: pathlib.Path, shards: int, workers: int) -> tuple[Cost, 
     return of_workers, of_client
 
 
-def page(job: Job, scratch: pathlib.Path, curves: int, shards: int, with_dask: bool) -> str:
-    """The tables of this part, in Markdown."""
+def page(job: Job, scratch: pathlib.Path, curves: int, shards: int, with_dask: bool) -> tuple[str, bool]:
+    """The tables of this part, in Markdown, and whether all merged tables are those of the plain command."""
     rows: list[tuple[object, ...]] = []
     memory: list[tuple[object, ...]] = []
     one, two = plain(job, 1), plain(job, 2)
+    well = True
 
     def row(name: str, against: Cost | None, cost: Cost, out: pathlib.Path | None, cpu_s: float) -> None:
+        nonlocal well
         shown = ["", "", ""]
         if out is not None:
             merged = out.with_name(f"{out.name}.parquet")
             lost, doubled = lost_and_doubled(job.plain, merged)
-            shown = ["yes" if same_bytes(job.plain, merged) else "**no**", lost, doubled]
+            same = same_bytes(job.plain, merged)
+            shown = ["yes" if same else "**no**", lost, doubled]
+            well &= same
         more = lambda now, then: f"{100 * (now / then - 1):+.1f} %"
         overhead = ["", ""] if against is None else [more(cost.wall_s, against.wall_s), more(cpu_s, against.cpu_s)]
         rows.append((name, f"{cost.wall_s:.1f}", f"{cpu_s:.1f}", *overhead, f"{100 * cost.others:.0f} %", *shown))
@@ -82,7 +86,7 @@ def page(job: Job, scratch: pathlib.Path, curves: int, shards: int, with_dask: b
         row(f"LocalCluster, {workers} worker{'s' * (workers > 1)}, {shards} shards", against, of_client, out, of_client.cpu_s + of_workers.cpu_s)
         memory.append((f"LocalCluster, {workers} worker{'s' * (workers > 1)}", f"{of_workers.peak_bytes / MIB:.0f}", f"{of_client.peak_bytes / MIB:.0f}"))
     head = ("run", "time, s", "processor time, s", "time against plain", "processor time against plain", "others' load", "same bytes", "rows lost", "rows doubled")
-    return f"""## Time and bytes
+    text = f"""## Time and bytes
 
 {curves} curves of 256 samples, {shards} shards of about {two.cpu_s / shards:.0f} s of processor time. The time ends with the merged table. Slurm with two
 nodes and two workers stand against two threads of the plain command, one worker against one thread. *Others' load* is the share of both
@@ -96,3 +100,4 @@ The largest resident memory of one process, MiB:
 
 {table(("run", "command or worker", "client"), memory)}
 """
+    return text, well
