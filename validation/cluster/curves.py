@@ -82,7 +82,9 @@ def archive(path: pathlib.Path, ids: list[str], time_s: np.ndarray, displacement
 FORMATS = {"parquet": parquet, "csv": csv, "zip": archive}
 
 
-def write(folder: pathlib.Path, count: int, per_file: int, samples: int = 256, seed: int = 1, kind: str = "map", ending: str = "parquet") -> None:
+def write(
+    folder: pathlib.Path, count: int, per_file: int, samples: int = 256, seed: int = 1, kind: str = "map", ending: str = "parquet"
+) -> None:
     """Writes `count` curves in files of `per_file`; files that are there already are kept."""
     records = folder / "records"
     records.mkdir(parents=True, exist_ok=True)

@@ -156,7 +156,11 @@ class Kills:
                     time.sleep(0.02)
                 workers = json.loads(note.read_text())["workers"]
                 time.sleep(self.chance.uniform(0, SHARDS * self.shard_s / len(workers)))
-                pids = {"a worker of Dask": self.chance.choice(workers), "the client of Dask": client.pid, "the scheduler of Dask": scheduler.pid}
+                pids = {
+                    "a worker of Dask": self.chance.choice(workers),
+                    "the client of Dask": client.pid,
+                    "the scheduler of Dask": scheduler.pid,
+                }
                 if client.poll() is None:
                     subprocess.run(["kill", "-KILL", str(pids[name])], check=True)
                     self.counts[name].kills += 1
@@ -180,7 +184,17 @@ class Kills:
     def _client(self, out: pathlib.Path, file: pathlib.Path) -> subprocess.Popen[bytes]:
         script = pathlib.Path(__file__).with_name("dask_job.py")
         log = out.with_name(f"{out.name}.txt").open("w")
-        command = [sys.executable, str(script), str(self.job.folder), str(out), str(SHARDS), "--scheduler-file", str(file)]
+        command = [
+            sys.executable,
+            str(script),
+            str(self.job.folder),
+            str(out),
+            str(SHARDS),
+            "--workers",
+            "2",
+            "--scheduler-file",
+            str(file),
+        ]
         return subprocess.Popen(command, stdout=log, stderr=log)
 
 
@@ -200,7 +214,12 @@ def _dask(scratch: pathlib.Path) -> Iterator[tuple[subprocess.Popen[bytes], path
     """A scheduler and two workers as processes of their own; all are killed at the end."""
     file = scratch / f"scheduler-{time.monotonic_ns()}.json"
     log = file.with_suffix(".txt").open("w")
-    begin = lambda *words: subprocess.Popen([sys.executable, "-m", "distributed.cli." + words[0], *words[1:], "--scheduler-file", str(file)], stdout=log, stderr=log, start_new_session=True)
+    begin = lambda *words: subprocess.Popen(
+        [sys.executable, "-m", "distributed.cli." + words[0], *words[1:], "--scheduler-file", str(file)],
+        stdout=log,
+        stderr=log,
+        start_new_session=True,
+    )
     scheduler = begin("dask_scheduler", "--host", "127.0.0.1", "--port", "0", "--no-dashboard")
     while not file.exists():
         time.sleep(0.05)
@@ -220,7 +239,9 @@ def page(job: Job, scratch: pathlib.Path, kills: int, seed: int, with_dask: bool
     parts: dict[str, Callable[[str, int], None]] = {
         "a shard": test.shards,
         "a merge": test.merges,
-        "a job of Slurm, by SIGKILL": lambda name, count: test.slurm(name, count, lambda job_id: run(["scancel", "--signal=KILL", "--full", job_id])),
+        "a job of Slurm, by SIGKILL": lambda name, count: test.slurm(
+            name, count, lambda job_id: run(["scancel", "--signal=KILL", "--full", job_id])
+        ),
         "a job of Slurm, by a requeue": lambda name, count: test.slurm(name, count, lambda job_id: run(["scontrol", "requeue", job_id])),
         **({name: test.dask for name in SHARES if "Dask" in name} if with_dask else {}),
     }
@@ -233,9 +254,7 @@ def page(job: Job, scratch: pathlib.Path, kills: int, seed: int, with_dask: bool
     of = lambda at: sum(row[at] or 0 for row in rows)  # type: ignore[misc]
     rows.append(("**all**", of(1), "", of(3), of(4), of(5), of(6)))
     head = ("killed", "kills", "while writing", "tables compared", "other bytes", "rows lost", "rows doubled")
-    text = f"""## Kills
-
-{SHARDS} shards of about {test.shard_s:.1f} s, seed {seed}. Every kill is SIGKILL at a random time. *While writing*: a temporary file was there at that moment.
+    text = f"""{SHARDS} shards of about {test.shard_s:.1f} s, seed {seed}. Every kill is SIGKILL at a random time. *While writing*: a temporary file was there at that moment.
 
 {table(head, rows)}
 """

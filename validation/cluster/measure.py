@@ -4,8 +4,8 @@
         [--seed 1] [--write]
 
 PALPATE is the command, called `palpate`. Python needs `validation/cluster/requirements.txt`, and the package palpate for the parts on
-Dask, which are left out without it. The table is printed; with --write it goes to docs/validation/cluster.md. Exit code 1 if a row was
-lost or doubled, or a byte differs. A Slurm of two nodes runs on this host meanwhile (`slurm.sh`).
+Dask, which are left out without it. The tables are printed; with --write they go to docs/validation/cluster.md, where those of the other
+parts stay. Exit code 1 if a row was lost or doubled, or a byte differs. A Slurm of two nodes runs on this host meanwhile (`slurm.sh`).
 """
 
 from __future__ import annotations
@@ -24,8 +24,39 @@ import runs
 import scaling
 from _cluster import PROCESSORS, ROOT, Job, succeeded
 
+# Curves of the other parts.
+FEW = 1000
 PAGE = ROOT / "docs" / "validation" / "cluster.md"
-PARTS = ("runs", "kills", "scaling")
+# The parts with the titles of their sections.
+PARTS = {"runs": "Time, bytes and memory", "kills": "Kills", "scaling": "Scaling"}
+HEAD = """# Clusters
+
+A batch on a cluster against the plain command, by `validation/cluster/measure.py`; Slurm has two nodes of one processor each on this host.
+How to run a batch on a cluster: [Clusters](../guides/cluster.md).
+"""
+
+
+def measured(part: str, wanted: argparse.Namespace, scratch: pathlib.Path, with_dask: bool) -> tuple[str, bool]:
+    """The text of one part, and whether all is well."""
+    folder = scratch / part
+    count = wanted.curves if part == "runs" else FEW
+    curves.write(folder, count, min(1000, count // 10), seed=wanted.seed)
+    job = Job(wanted.palpate, folder)
+    if part == "runs":
+        return runs.page(job, scratch, wanted.curves, wanted.shards, with_dask)
+    if part == "kills":
+        return kills.page(job, scratch, wanted.kills, wanted.seed, with_dask)
+    return scaling.page(job, scratch, FEW, wanted.workers, wanted.empty_shards), True
+
+
+def sections(text: str) -> dict[str, str]:
+    """The sections of a page by their titles."""
+    parts = text.split("\n## ")[1:]
+    return {part.split("\n", 1)[0]: part.split("\n", 1)[1].strip("\n") for part in parts}
+
+
+def page(found: dict[str, str]) -> str:
+    return "\n".join([HEAD, *(f"## {title}\n\n{found[title]}\n" for title in PARTS.values() if title in found)])
 
 
 def main() -> int:
@@ -46,39 +77,24 @@ def main() -> int:
     if "SLURM_CONF" not in os.environ:
         slurm = pathlib.Path(__file__).with_name("slurm.sh")
         os.execv(slurm, [str(slurm), sys.executable, *sys.argv])
+    wanted.palpate = palpate
     parts = wanted.only.split(",")
     if not set(parts) <= set(PARTS):
         parser.error(f"expected some of {', '.join(PARTS)}, found {wanted.only}")
     with_dask = importlib.util.find_spec("palpate") is not None and importlib.util.find_spec("palpate.dask") is not None
-    texts, well = [], True
-    with tempfile.TemporaryDirectory(prefix="palpate-cluster-") as name:
-        scratch = pathlib.Path(name)
-        if "runs" in parts:
-            curves.write(scratch / "runs", wanted.curves, 1000, seed=wanted.seed)
-            text, good = runs.page(Job(palpate, scratch / "runs"), scratch, wanted.curves, wanted.shards, with_dask)
-            texts.append(text)
-            well &= good
-        if "kills" in parts or "scaling" in parts:
-            curves.write(scratch / "few", 1000, 100, seed=wanted.seed)
-        if "kills" in parts:
-            text, good = kills.page(Job(palpate, scratch / "few"), scratch, wanted.kills, wanted.seed, with_dask)
-            texts.append(text)
-            well &= good
-        if "scaling" in parts:
-            texts.append(scaling.page(Job(palpate, scratch / "few"), scratch, 1000, wanted.workers, wanted.empty_shards))
     version = succeeded([str(palpate), "--version"]).split("\n")[0]
-    left_out = "" if with_dask else "The parts on `palpate.dask` were left out: the package was not installed.\n\n"
-    command = " ".join(argument for argument in sys.argv[1:] if argument != "--write").replace(str(wanted.palpate), "PALPATE")
-    text = f"""# Clusters
-
-Written by `python validation/cluster/measure.py {command} --write`: {version}, {platform.system()} {platform.release()},
-{PROCESSORS} processors; Slurm has two nodes of one processor each on this host. How to run a batch on a cluster:
-[Clusters](../guides/cluster.md).
-
-{left_out}{chr(10).join(texts)}"""
-    print(text)
-    if wanted.write:
-        PAGE.write_text(text)
+    options = " ".join(argument for argument in sys.argv[2:] if argument != "--write")
+    origin = f"`measure.py PALPATE {options}`: {version}, {platform.system()} {platform.release()}, {PROCESSORS} processors."
+    left_out = "" if with_dask else " Without the parts on `palpate.dask`, which was not installed."
+    found, well = sections(PAGE.read_text()) if wanted.write and PAGE.exists() else {}, True
+    for part in parts:
+        with tempfile.TemporaryDirectory(prefix="palpate-cluster-") as scratch:
+            text, good = measured(part, wanted, pathlib.Path(scratch), with_dask)
+        well &= good
+        found[PARTS[part]] = f"{text.strip()}\n\n{origin}{left_out}"
+        if wanted.write:
+            PAGE.write_text(page(found))
+    print(page(found))
     return 0 if well else 1
 
 

@@ -55,7 +55,9 @@ def snakemake_killed(job: Job, shards: int, scratch: pathlib.Path) -> pathlib.Pa
     """Snakemake killed after its first shard, and run again as the guide says."""
     [command] = next(commands for name, _, commands in recipes(job, shards, scratch) if name == "Snakemake")
     command = [*command[:-1], "out=killed"]
-    process = subprocess.Popen(command, cwd=scratch, env=job.environment(), stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, start_new_session=True)
+    process = subprocess.Popen(
+        command, cwd=scratch, env=job.environment(), stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, start_new_session=True
+    )
     while process.poll() is None and not list(scratch.glob("killed/table/*-of-*.parquet")):
         time.sleep(0.02)
     os.killpg(process.pid, 9)
@@ -87,7 +89,9 @@ def main() -> int:
             print(f"{name}: {'the bytes of the plain command' if good else 'FAILED'}", flush=True)
             if not good:
                 logs = "".join(path.read_text() for path in scratch.glob("slurm-*.txt"))
-                failed.append(f"{name}: expected the bytes of the plain command, found {'others' if table.exists() else 'no table'}\n{said}{logs}")
+                failed.append(
+                    f"{name}: expected the bytes of the plain command, found {'others' if table.exists() else 'no table'}\n{said}{logs}"
+                )
 
         for title, table, commands in recipes(job, wanted.shards, scratch):
             said = ""

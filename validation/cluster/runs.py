@@ -83,18 +83,36 @@ def page(job: Job, scratch: pathlib.Path, curves: int, shards: int, with_dask: b
         of_workers, of_client = dask(job, out, shards, workers)
         # The time of the client, which began first.
         of_client.others = max(of_client.others - of_workers.cpu_s / of_client.wall_s / (os.cpu_count() or 1), 0)
-        row(f"LocalCluster, {workers} worker{'s' * (workers > 1)}, {shards} shards", against, of_client, out, of_client.cpu_s + of_workers.cpu_s)
-        memory.append((f"LocalCluster, {workers} worker{'s' * (workers > 1)}", f"{of_workers.peak_bytes / MIB:.0f}", f"{of_client.peak_bytes / MIB:.0f}"))
-    head = ("run", "time, s", "processor time, s", "time against plain", "processor time against plain", "others' load", "same bytes", "rows lost", "rows doubled")
-    text = f"""## Time and bytes
-
-{curves} curves of 256 samples, {shards} shards of about {two.cpu_s / shards:.0f} s of processor time. The time ends with the merged table. Slurm with two
+        row(
+            f"LocalCluster, {workers} worker{'s' * (workers > 1)}, {shards} shards",
+            against,
+            of_client,
+            out,
+            of_client.cpu_s + of_workers.cpu_s,
+        )
+        memory.append(
+            (
+                f"LocalCluster, {workers} worker{'s' * (workers > 1)}",
+                f"{of_workers.peak_bytes / MIB:.0f}",
+                f"{of_client.peak_bytes / MIB:.0f}",
+            )
+        )
+    head = (
+        "run",
+        "time, s",
+        "processor time, s",
+        "time against plain",
+        "processor time against plain",
+        "others' load",
+        "same bytes",
+        "rows lost",
+        "rows doubled",
+    )
+    text = f"""{curves} curves of 256 samples, {shards} shards of about {two.cpu_s / shards:.0f} s of processor time. The time ends with the merged table. Slurm with two
 nodes and two workers stand against two threads of the plain command, one worker against one thread. *Others' load* is the share of both
 processors that processes outside the measurement took meanwhile. Rows are compared with those of the plain table by DuckDB.
 
 {table(head, rows)}
-
-## Memory
 
 The largest resident memory of one process, MiB:
 

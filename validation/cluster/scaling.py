@@ -56,7 +56,10 @@ def folders(out: pathlib.Path) -> pathlib.Path:
 
 
 async def _workers(address: str, count: int, note: pathlib.Path) -> None:
-    made = [Worker(address, nthreads=1, name=number, memory_limit=0, local_directory=str(note.parent), dashboard=False) for number in range(count)]
+    made = [
+        Worker(address, nthreads=1, name=number, memory_limit=0, local_directory=str(note.parent), dashboard=False)
+        for number in range(count)
+    ]
     for at in range(0, count, 50):
         await asyncio.gather(*made[at : at + 50])
     note.write_text("")
@@ -71,7 +74,18 @@ def simulated(scratch: pathlib.Path, workers: int, shards: int) -> dict[str, flo
     # Both import the function from this file.
     environment = {**os.environ, "PYTHONPATH": str(pathlib.Path(__file__).parent)}
     scheduler = subprocess.Popen(
-        [sys.executable, "-m", "distributed.cli.dask_scheduler", "--host", "127.0.0.1", "--port", "0", "--no-dashboard", "--scheduler-file", str(file)],
+        [
+            sys.executable,
+            "-m",
+            "distributed.cli.dask_scheduler",
+            "--host",
+            "127.0.0.1",
+            "--port",
+            "0",
+            "--no-dashboard",
+            "--scheduler-file",
+            str(file),
+        ],
         stdout=subprocess.DEVNULL,
         stderr=(base / "scheduler.txt").open("w"),
         env=environment,
@@ -82,7 +96,11 @@ def simulated(scratch: pathlib.Path, workers: int, shards: int) -> dict[str, flo
             time.sleep(0.05)
         address = json.loads(file.read_text())["address"]
         start = time.perf_counter()
-        crowd = subprocess.Popen([sys.executable, __file__, "--workers", str(workers), "--address", address, "--note", str(note)], stderr=(base / "workers.txt").open("w"), env=environment)
+        crowd = subprocess.Popen(
+            [sys.executable, __file__, "--workers", str(workers), "--address", address, "--note", str(note)],
+            stderr=(base / "workers.txt").open("w"),
+            env=environment,
+        )
         while not note.exists():
             if crowd.poll() is not None:
                 raise SystemExit((base / "workers.txt").read_text()[-3000:])
@@ -161,7 +179,9 @@ def merge_s(job: Job, scratch: pathlib.Path, curves: int, shards: int = 4) -> tu
     return curve_s, min(took) / curves
 
 
-def predicted_s(workers: int, shards: int, shard_s: float, serial_s: float, merge_total_s: float, spread: float = 0.1, seed: int = 1) -> float:
+def predicted_s(
+    workers: int, shards: int, shard_s: float, serial_s: float, merge_total_s: float, spread: float = 0.1, seed: int = 1
+) -> float:
     """Time of a job by a discrete-event model: one scheduler hands out shards one after the other, each takes its time on a worker."""
     chance = random.Random(seed)
     free = [0.0] * workers
@@ -209,10 +229,10 @@ def page(job: Job, scratch: pathlib.Path, curves: int, most: int, shards: int) -
         ideal = count * shard_s / workers
         model = predicted_s(workers, count, shard_s, serial_s, 0.0)
         merge = count * per_shard * merged_s
-        ends.append((f"{workers}", f"{count}", f"{count * per_shard / 1e6:.1f}", f"{model:.0f}", f"{100 * ideal / model:.1f} %", f"{merge:.0f}"))
-    return f"""## Scaling
-
-{shards} empty shards by Dask; the workers are objects of one process, scheduler and client are processes of their own. *Idle*: the share of
+        ends.append(
+            (f"{workers}", f"{count}", f"{count * per_shard / 1e6:.1f}", f"{model:.0f}", f"{100 * ideal / model:.1f} %", f"{merge:.0f}")
+        )
+    return f"""{shards} empty shards by Dask; the workers are objects of one process, scheduler and client are processes of their own. *Idle*: the share of
 a processor that {", ".join(map(str, runs))} workers take without a shard. The last columns are processor time per shard in ms, heartbeats
 included. Every shard ran once and left its three files. The time of many workers is that of the one process they share here; on a cluster
 only scheduler and client are shared.
