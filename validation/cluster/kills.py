@@ -128,8 +128,7 @@ class Kills:
     def slurm(self, name: str, kills: int, kill: Callable[[str], None]) -> None:
         while self.counts[name].kills < kills:
             out = self.fresh()
-            submit = lambda: succeeded(self.job.submit(out, SHARDS), cwd=self.scratch, env=self.job.environment())
-            submit()
+            self._submit(out)
             for _ in range(self.chance.randint(1, 3)):
                 if self.counts[name].kills == kills:
                     break
@@ -142,9 +141,12 @@ class Kills:
             wait_for_slurm()
             if not out.with_name(f"{out.name}.parquet").exists():
                 # The merge has found a shard missing.
-                submit()
+                self._submit(out)
                 wait_for_slurm()
             self.compare(name, out)
+
+    def _submit(self, out: pathlib.Path) -> None:
+        succeeded(self.job.submit(out, SHARDS), cwd=self.scratch, env=self.job.environment())
 
     def dask(self, name: str, kills: int) -> None:
         while self.counts[name].kills < kills:
