@@ -59,7 +59,7 @@ class Cost:
 
 
 class Measured:
-    """Measures the processes that run one executable, or those of `pids`, while its block runs."""
+    """Measures the processes that run one command, or those of `pids`, while its block runs."""
 
     def __init__(self, executable: pathlib.Path | None = None, pids: list[int] | None = None) -> None:
         self.executable = executable and executable.resolve()
@@ -99,7 +99,9 @@ def _pids_of(executable: pathlib.Path | None) -> list[int]:
     for entry in os.scandir("/proc"):
         if entry.name.isdecimal():
             try:
-                if os.readlink(f"/proc/{entry.name}/exe") == str(executable):
+                # The command of the Python package is a script, which its interpreter runs.
+                words = pathlib.Path(f"/proc/{entry.name}/cmdline").read_bytes().split(b"\0")[:2]
+                if os.readlink(f"/proc/{entry.name}/exe") == str(executable) or str(executable).encode() in words:
                     found.append(int(entry.name))
             except OSError:
                 continue

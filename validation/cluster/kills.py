@@ -125,7 +125,7 @@ class Kills:
             succeeded(self.job.merge(out))
             self.compare(name, out)
 
-    def slurm(self, name: str, kills: int, kill: Callable[[str], None]) -> None:
+    def slurm(self, name: str, kills: int, kill: list[str]) -> None:
         while self.counts[name].kills < kills:
             out = self.fresh()
             self._submit(out)
@@ -136,8 +136,7 @@ class Kills:
                     time.sleep(0.05)
                 time.sleep(self.chance.uniform(0, self.shard_s))
                 if running:
-                    kill(self.chance.choice(running))
-                    self.counts[name].kills += 1
+                    self.counts[name].kills += run([*kill, self.chance.choice(running)]).returncode == 0
             wait_for_slurm()
             if not out.with_name(f"{out.name}.parquet").exists():
                 # The merge has found a shard missing.
@@ -241,10 +240,8 @@ def page(job: Job, scratch: pathlib.Path, kills: int, seed: int, with_dask: bool
     parts: dict[str, Callable[[str, int], None]] = {
         "a shard": test.shards,
         "a merge": test.merges,
-        "a job of Slurm, by SIGKILL": lambda name, count: test.slurm(
-            name, count, lambda job_id: run(["scancel", "--signal=KILL", "--full", job_id])
-        ),
-        "a job of Slurm, by a requeue": lambda name, count: test.slurm(name, count, lambda job_id: run(["scontrol", "requeue", job_id])),
+        "a job of Slurm, by SIGKILL": lambda name, count: test.slurm(name, count, ["scancel", "--signal=KILL", "--full"]),
+        "a job of Slurm, by a requeue": lambda name, count: test.slurm(name, count, ["scontrol", "requeue"]),
         **({name: test.dask for name in SHARES if "Dask" in name} if with_dask else {}),
     }
     rows: list[tuple[object, ...]] = []

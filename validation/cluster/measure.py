@@ -24,8 +24,6 @@ import runs
 import scaling
 from _cluster import PROCESSORS, ROOT, Job, succeeded
 
-# Curves of the other parts.
-FEW = 1000
 PAGE = ROOT / "docs" / "validation" / "cluster.md"
 # The parts with the titles of their sections.
 PARTS = {"runs": "Time, bytes and memory", "kills": "Kills", "scaling": "Scaling"}
@@ -39,14 +37,14 @@ How to run a batch on a cluster: [Clusters](../guides/cluster.md).
 def measured(part: str, wanted: argparse.Namespace, scratch: pathlib.Path, with_dask: bool) -> tuple[str, bool]:
     """The text of one part, and whether all is well."""
     folder = scratch / part
-    count = wanted.curves if part == "runs" else FEW
+    count = {"runs": wanted.curves, "kills": 1000, "scaling": 5000}[part]
     curves.write(folder, count, min(1000, count // 10), seed=wanted.seed)
     job = Job(wanted.palpate, folder)
     if part == "runs":
         return runs.page(job, scratch, wanted.curves, wanted.shards, with_dask)
     if part == "kills":
         return kills.page(job, scratch, wanted.kills, wanted.seed, with_dask)
-    return scaling.page(job, scratch, FEW, wanted.workers, wanted.empty_shards), True
+    return scaling.page(job, scratch, count, wanted.workers, wanted.empty_shards), True
 
 
 def sections(text: str) -> dict[str, str]:

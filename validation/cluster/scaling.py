@@ -13,6 +13,7 @@ import json
 import os
 import pathlib
 import random
+import resource
 import shutil
 import subprocess
 import sys
@@ -164,35 +165,37 @@ def slurm_s(jobs: int = 40) -> tuple[float, float]:
     return submission_s, (time.perf_counter() - start) / jobs
 
 
+def _children_s() -> float:
+    """Processor time of all commands that have ended."""
+    used = resource.getrusage(resource.RUSAGE_CHILDREN)
+    return used.ru_utime + used.ru_stime
+
+
 def merge_s(job: Job, scratch: pathlib.Path, curves: int, shards: int = 4) -> tuple[float, float]:
-    """Processor time of one curve, and time of the merge per curve, from shards of one run."""
+    """Processor time of the analysis and of the merge, per curve, from shards of one run."""
     out = scratch / "merged"
-    start = time.perf_counter()
+    start = _children_s()
     for number in range(1, shards + 1):
         succeeded(job.shard(out, number, shards))
-    curve_s = (time.perf_counter() - start) / curves
-    took = []
+    analysed = _children_s()
     for _ in range(3):
-        start = time.perf_counter()
         succeeded(job.merge(out))
-        took.append(time.perf_counter() - start)
-    return curve_s, min(took) / curves
+    return (analysed - start) / curves, (_children_s() - analysed) / (3 * curves)
 
 
-def predicted_s(
-    workers: int, shards: int, shard_s: float, serial_s: float, merge_total_s: float, spread: float = 0.1, seed: int = 1
-) -> float:
-    """Time of a job by a discrete-event model: one scheduler hands out shards one after the other, each takes its time on a worker."""
+def efficiency(workers: int, shards: int, shard_s: float, serial_s: float, spread: float = 0.1, seed: int = 1) -> tuple[float, float]:
+    """Time of a job, and its share that all workers are busy, by a discrete-event model: one scheduler hands out shards one after the other,
+    and each takes its time, with a relative standard deviation `spread`, on a worker."""
     chance = random.Random(seed)
     free = [0.0] * workers
-    heapq.heapify(free)
-    scheduler = end = 0.0
+    scheduler = end = work = 0.0
     for _ in range(shards):
         scheduler = max(scheduler, heapq.heappop(free)) + serial_s
-        done = scheduler + shard_s * max(chance.gauss(1, spread), 0.1)
-        heapq.heappush(free, done)
-        end = max(end, done)
-    return end + merge_total_s
+        lasts = shard_s * max(chance.gauss(1, spread), 0.1)
+        heapq.heappush(free, scheduler + lasts)
+        work += lasts
+        end = max(end, scheduler + lasts)
+    return end, work / (workers * end)
 
 
 def page(job: Job, scratch: pathlib.Path, curves: int, most: int, shards: int) -> str:
@@ -226,12 +229,11 @@ def page(job: Job, scratch: pathlib.Path, curves: int, most: int, shards: int) -
     for workers in (1, 2, 10, 100, 1000, 10_000):
         # Ten shards a worker, of a minute, so that the work grows with the workers.
         count = 10 * workers
-        ideal = count * shard_s / workers
-        model = predicted_s(workers, count, shard_s, serial_s, 0.0)
+        lasts_s, busy = efficiency(workers, count, shard_s, serial_s)
         merge = count * per_shard * merged_s
-        ends.append(
-            (f"{workers}", f"{count}", f"{count * per_shard / 1e6:.1f}", f"{model:.0f}", f"{100 * ideal / model:.1f} %", f"{merge:.0f}")
-        )
+        whole = busy * lasts_s / (lasts_s + merge)
+        million = count * per_shard / 1e6
+        ends.append((workers, count, f"{million:.1f}", f"{lasts_s:.0f}", f"{100 * busy:.1f} %", f"{merge:.0f}", f"{100 * whole:.1f} %"))
     return f"""{shards} empty shards by Dask; the workers are objects of one process, scheduler and client are processes of their own. *Idle*: the share of
 a processor that {", ".join(map(str, runs))} workers take without a shard. The last columns are processor time per shard in ms, heartbeats
 included. Every shard ran once and left its three files. The time of many workers is that of the one process they share here; on a cluster
@@ -247,11 +249,11 @@ A scheduler hands out shards one after the other, at most one per {1e3 * serial_
 at most 60 s / {1e3 * serial_s:.1f} ms = {60 / serial_s:.0f} workers busy with shards of a minute. The discrete-event model, ten shards of 60 s
 (± 10 %) for each worker, gives:
 
-{table(("workers", "shards", "million curves", "time, s", "efficiency", "merge, s"), ends)}
+{table(("workers", "shards", "million curves", "time, s", "workers busy", "merge, s", "busy with the merge"), ends)}
 
 Where it ends: a million curves are {1e6 * curve_s / shard_s:.0f} shards of a minute, and no more workers than shards are of use. The merge is
-one process, {1e6 * merged_s:.0f} s for a million curves, and takes as long as the analysis on {curve_s / merged_s:.0f} workers; with more,
-it is the longest step, until the scheduler is at {60 / serial_s:.0f}.
+one process, {1e6 * merged_s:.0f} s for a million curves, and takes as long as the analysis on {curve_s / merged_s:.0f} workers; with more
+workers it is the longest step. The scheduler comes after it, at {60 / serial_s:.0f} workers.
 """
 
 
