@@ -147,16 +147,16 @@ impl Approach {
 
     fn two_lines(&self) -> Option<f64> {
         let (travel, force) = self.start()?;
-        self.best(&travel, &|touch| fitted(&travel, &force, &|x| [1.0, (x - touch).min(0.0), (x - touch).max(0.0)]))
+        self.best(&travel, &|touch| fitted(&travel, &force, |x| [1.0, (x - touch).min(0.0), (x - touch).max(0.0)]))
     }
 
     /// With a level baseline, or a sloping one if that lowers the Bayesian information criterion.
     fn hertz(&self) -> Option<f64> {
         let (travel, force) = self.start()?;
         let from = travel[0];
-        let power = |x: f64, touch: f64| (x - touch).max(0.0).powf(self.power);
-        let level = |touch: f64| fitted(&travel, &force, &|x| [1.0, power(x, touch), 0.0]);
-        let sloping = |touch: f64| fitted(&travel, &force, &|x| [1.0, power(x, touch), x - from]);
+        let power = |x: f64, touch: f64| if x > touch { (x - touch).powf(self.power) } else { 0.0 };
+        let level = |touch: f64| fitted(&travel, &force, |x| [1.0, power(x, touch), 0.0]);
+        let sloping = |touch: f64| fitted(&travel, &force, |x| [1.0, power(x, touch), x - from]);
         let flat = self.best(&travel, &level)?;
         let Some(tilted) = self.best(&travel, &sloping) else {
             return Some(flat);
@@ -199,22 +199,22 @@ impl Approach {
 }
 
 /// Sum of squared residuals of the least-squares combination of three columns of x, the last of which may be none.
-fn fitted(travel: &[f64], force: &[f64], columns: &dyn Fn(f64) -> [f64; 3]) -> Option<f64> {
+fn fitted(travel: &[f64], force: &[f64], columns: impl Fn(f64) -> [f64; 3]) -> Option<f64> {
+    let rows: Vec<[f64; 3]> = travel.iter().map(|x| columns(*x)).collect();
     let mut normal = [[0.0; 3]; 3];
     let mut right = [0.0; 3];
-    for (x, y) in travel.iter().zip(force) {
-        let row = columns(*x);
-        for ((own, equation), sum) in row.iter().zip(&mut normal).zip(&mut right) {
-            equation.iter_mut().zip(row).for_each(|(entry, other)| *entry += own * other);
-            *sum += own * y;
+    for ([a, b, c], y) in rows.iter().zip(force) {
+        let products = [[a * a, a * b, a * c], [b * a, b * b, b * c], [c * a, c * b, c * c]];
+        for (entries, products) in normal.iter_mut().zip(products) {
+            entries.iter_mut().zip(products).for_each(|(entry, product)| *entry += product);
         }
+        right.iter_mut().zip([a, b, c]).for_each(|(sum, own)| *sum += own * y);
     }
     if normal[2][2] == 0.0 {
         normal[2][2] = 1.0;
     }
-    let numbers = solved(normal, right)?;
-    let predicted = |x: f64| columns(x).iter().zip(numbers).map(|(a, b)| a * b).sum::<f64>();
-    Some(travel.iter().zip(force).map(|(x, y)| (y - predicted(*x)).powi(2)).sum())
+    let [k, l, m] = solved(normal, right)?;
+    Some(rows.iter().zip(force).map(|([a, b, c], y)| (y - (a * k + b * l + c * m)).powi(2)).sum())
 }
 
 #[cfg(test)]
