@@ -113,7 +113,7 @@ def page(job: Job, scratch: pathlib.Path, curves: int, shards: int, with_dask: b
     )
     text = f"""{curves} curves of 256 samples, {shards} shards of about {two.cpu_s / shards:.0f} s of processor time. The time ends with the merged table. Slurm with two
 nodes and two workers stand against two threads of the plain command, one worker against one thread. *Others' load* is the share of both
-processors that processes outside the measurement took meanwhile. Rows are compared with those of the plain table by DuckDB.
+processors that processes outside the measurement took meanwhile; where it is large, times say little. Rows are compared with those of the plain table by DuckDB.
 
 {table(head, rows)}
 
