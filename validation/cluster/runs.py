@@ -33,21 +33,23 @@ def slurm(job: Job, out: pathlib.Path, shards: int) -> Cost:
     return cost
 
 
-def dask(job: Job, out: pathlib.Path, shards: int, workers: int) -> tuple[Cost, Cost]:
-    """A LocalCluster: the cost of its workers and of its client, the time in both from the start of the client to the merged table."""
+def dask(job: Job, out: pathlib.Path, shards: int, workers: int) -> tuple[Cost, Cost, float]:
+    """A LocalCluster: the cost of its workers and of its client, whose time ends with the merged table, and the time until workers are there."""
     script = pathlib.Path(__file__).with_name("dask_job.py")
     command = [sys.executable, str(script), str(job.folder), str(out), str(shards), "--workers", str(workers)]
+    start = time.perf_counter()
     client = subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
     note = out.with_name(f"{out.name}.json")
     with Measured(pids=[client.pid]) as of_client:
         while not note.exists() and client.poll() is None:
             time.sleep(0.05)
+        start_s = time.perf_counter() - start
         pids = json.loads(note.read_text())["workers"] if note.exists() else [os.getpid()]
         with Measured(pids=pids) as of_workers:
             _, said = client.communicate()
     if client.returncode:
         raise SystemExit(f"{' '.join(command)} ended with {client.returncode}:\n{said}")
-    return of_workers, of_client
+    return of_workers, of_client, start_s
 
 
 def page(job: Job, scratch: pathlib.Path, curves: int, shards: int, with_dask: bool) -> tuple[str, bool]:
@@ -73,14 +75,14 @@ def page(job: Job, scratch: pathlib.Path, curves: int, shards: int, with_dask: b
 
     row("plain command, 1 thread", None, one, None, one.cpu_s)
     row("plain command, 2 threads", None, two, None, two.cpu_s)
-    memory.append(("plain command, 2 threads", f"{two.peak_bytes / MIB:.0f}", ""))
+    memory.append(("plain command, 2 threads", f"{two.peak_bytes / MIB:.0f}", "", ""))
     out = scratch / "slurm"
     cost = slurm(job, out, shards)
     row(f"Slurm, 2 nodes, {shards} shards", two, cost, out, cost.cpu_s)
-    memory.append(("Slurm, a job", f"{cost.peak_bytes / MIB:.0f}", ""))
+    memory.append(("Slurm, a job", f"{cost.peak_bytes / MIB:.0f}", "", ""))
     for workers, against in ((1, one), (2, two)) if with_dask else ():
         out = scratch / f"dask-{workers}"
-        of_workers, of_client = dask(job, out, shards, workers)
+        of_workers, of_client, start_s = dask(job, out, shards, workers)
         # The time of the client, which began first.
         of_client.others = max(of_client.others - of_workers.cpu_s / of_client.wall_s / (os.cpu_count() or 1), 0)
         row(
@@ -95,6 +97,7 @@ def page(job: Job, scratch: pathlib.Path, curves: int, shards: int, with_dask: b
                 f"LocalCluster, {workers} worker{'s' * (workers > 1)}",
                 f"{of_workers.peak_bytes / MIB:.0f}",
                 f"{of_client.peak_bytes / MIB:.0f}",
+                f"{start_s:.1f}",
             )
         )
     head = (
@@ -110,12 +113,12 @@ def page(job: Job, scratch: pathlib.Path, curves: int, shards: int, with_dask: b
     )
     text = f"""{curves} curves of 256 samples, {shards} shards of about {two.cpu_s / shards:.0f} s of processor time. The time ends with the merged table. Slurm with two
 nodes and two workers stand against two threads of the plain command, one worker against one thread. *Others' load* is the share of both
-processors that processes outside the measurement took meanwhile. Rows are compared with those of the plain table by DuckDB.
+processors that processes outside the measurement took meanwhile; where it is large, times say little. Rows are compared with those of the plain table by DuckDB.
 
 {table(head, rows)}
 
-The largest resident memory of one process, MiB:
+The largest resident memory of one process, and the part of the time that Dask takes to start, whatever the size of the batch:
 
-{table(("run", "command or worker", "client"), memory)}
+{table(("run", "command or worker, MiB", "client, MiB", "start of client and workers, s"), memory)}
 """
     return text, well

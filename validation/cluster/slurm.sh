@@ -12,7 +12,7 @@ set -euo pipefail
 [[ $(id -u) == 0 ]] || { echo "slurm.sh: expected root, which starts the daemons; found $(id -un)" >&2; exit 2; }
 
 export PATH="$PATH:/usr/sbin"
-if ! command -v slurmctld slurmd sbatch munged >/dev/null; then
+if ! (command -v slurmctld && command -v slurmd && command -v sbatch && command -v munged) >/dev/null; then
     export DEBIAN_FRONTEND=noninteractive
     apt-get update -qq
     apt-get install -y -qq --no-install-recommends slurm-wlm munge >/dev/null
