@@ -21,18 +21,22 @@ const show = (text) => {
   box.textContent = text ?? "";
 };
 const ended = () => {
+  if (lost) return;
   lost = true;
   show("The lab has ended, or was started anew. Start it again with “palpate lab”, and open the address that it prints; what lies in the folder is kept.");
-};
-const answers = () => {
-  if (lost) show(null);
-  lost = false;
 };
 
 export const address = (path) => new URL(path, base).href;
 
+// A lab that was started anew has another address, and answers this one with a text.
+const isForeign = (status, type) => status === 404 && !type?.startsWith("application/json");
 const read = async (answer) => {
-  answers();
+  if (isForeign(answer.status, answer.headers.get("content-type"))) {
+    ended();
+    throw new Lost();
+  }
+  if (lost) show(null);
+  lost = false;
   if (answer.ok) return answer.json();
   let found = null;
   try { found = await answer.json(); } catch { found = { message: `the lab answered with ${answer.status}` }; }
@@ -61,8 +65,9 @@ export const send = (file, heard) => new Promise((resolve, reject) => {
   request.addEventListener("load", () => {
     let found = { message: `the lab answered with ${request.status}` };
     try { found = JSON.parse(request.responseText); } catch { /* as above */ }
-    if (request.status === 200) resolve(found.name);
-    else reject(new Refused(found, request.status));
+    if (request.status === 200) return resolve(found.name);
+    if (isForeign(request.status, request.getResponseHeader("content-type"))) ended();
+    reject(new Refused(found, request.status));
   });
   request.send(file);
 });

@@ -14,10 +14,11 @@ export const calibration = (subjects, made) => {
     try {
       const { id, answer } = await running.done;
       result.replaceChildren(
-        answer.material ? el("p", {}, "Material written: ", el("b", {}, answer.material)) : refusal({ message: "the law that was calibrated is no material: a parameter is open" }),
+        answer.material ? el("p", {}, "Material written: ", el("b", {}, answer.material)) : refusal({ message: "no material can be made of it: the remarks say why" }),
+        el("ul", { className: "remarks" }, answer.remarks.map((remark) => el("li", {}, remark))),
         answer.figure ? drawn(answer.figure) : "",
-        el("details", {}, el("summary", {}, "Parameters and remarks"), el("pre", { tabindex: "0" }, answer.text)),
-        el("p", { className: "takeaway" }, el("a", { href: `api/tasks/${id}/files/calibration.json`, download: "calibration.json" }, "calibration.json")),
+        el("details", {}, el("summary", {}, "Parameters"), el("pre", { tabindex: "0" }, answer.text)),
+        el("p", { className: "takeaway" }, el("a", { href: `api/tasks/${id}/files/calibration.json`, download: `${subjects[0].file.replace(/\.[^.]*$/, "")}-calibration.json` }, "Calibration, JSON")),
         lines(answer.lines));
       if (answer.material) {
         say(`Material written: ${answer.material}`);
@@ -26,9 +27,11 @@ export const calibration = (subjects, made) => {
     } catch (error) {
       if (error instanceof Lost) return;
       result.replaceChildren(error instanceof Cancelled ? el("p", {}, "Cancelled.") : refusal(error));
+      const bad = subjects.filter(({ file }) => subjects.length > 1 && error.message?.includes(file)).map(({ file }) => file);
+      if (bad.length) result.append(el("p", { className: "note-line" }, `Correct what is stated of ${bad.join(", ")}, or leave it out by its box above.`));
     }
   };
-  box.append(el("p", { className: "actions" }, button(subjects.length > 1 ? `Calibrate ${subjects.length} records together` : "Calibrate on the whole record", begin)), result);
+  box.append(el("p", { className: "actions" }, button(subjects.length > 1 ? `Calibrate ${subjects.length} records together` : "Calibrate on the whole record", begin, { disabled: !subjects.length })), result);
   return { box, begin };
 };
 

@@ -46,13 +46,18 @@ const reload = async () => {
   return found;
 };
 
+// Uploads at a time. A browser has six connections to a host: the rest is for what the page does meanwhile.
+const UPLOADS = 2;
+
 // What was dropped: records go into the folder; a description is for the record that is open; a material is kept.
 const take = async (files) => {
   let first = null;
-  await Promise.all([...files].map(async (file) => {
+  const waiting = [...files].map((file) => {
     const bar = el("progress", { max: 1, value: 0, "aria-label": `Upload of ${file.name}` });
-    const entry = el("li", {}, el("span", {}, file.name), bar);
-    byId("uploads").append(entry);
+    return { file, bar, entry: el("li", {}, el("span", {}, file.name), bar) };
+  });
+  byId("uploads").append(...waiting.map(({ entry }) => entry));
+  const takeOne = async ({ file, bar, entry }) => {
     try {
       if (/\.toml$/i.test(file.name) && file.size < 1 << 20) {
         await takeText(file);
@@ -68,7 +73,9 @@ const take = async (files) => {
     } catch (error) {
       entry.replaceChildren(refusal(error), button("Dismiss", () => entry.remove(), { className: "quiet" }));
     }
-  }));
+  };
+  const oneByOne = async () => { while (waiting.length) await takeOne(waiting.shift()); };
+  await Promise.all(Array.from({ length: UPLOADS }, oneByOne));
   await reload();
   if (files.length > 1) say(`${files.length} files have arrived.`);
 };

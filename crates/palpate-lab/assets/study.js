@@ -194,37 +194,65 @@ const COLUMNS = [
   ["exponent", "n", 1, ""], ["relative_rate_per_s", "Relative rate", 1, "1/s"], ["rate_coefficient_per_s", "v", 1, "1/s"], ["equilibrium_force_n", "Equilibrium force", 1, "N"],
   ["force_start_n", "Force at start", 1, "N"], ["force_end_n", "at end", 1, "N"], ["loading_modulus_pa", "E of loading", 1, "Pa"], ["x_m", "x", 1e6, "µm"], ["y_m", "y", 1e6, "µm"],
 ];
+// Of these the data may leave the value open.
+const OF_LAW = new Set(["exponent", "relative_rate_per_s", "rate_coefficient_per_s", "equilibrium_force_n"]);
 // More rows than this make pages slow; the table that is taken away has them all.
-const MOST_ROWS = 3000;
+const MOST_ROWS = 1000;
 
 const testTable = async (study) => {
   const run = (study.tests.run = {});
   const rows = [];
   const [body, head] = [el("tbody"), el("thead")];
   let order = { column: -1, falls: false };
-  const columns = () => COLUMNS.filter(([key]) => rows.some(({ first }) => first?.[key] !== null && first?.[key] !== undefined));
+  // The coefficient of forces has a unit that depends on n: it stands beside those of strains alone.
+  const has = (first, key) => first?.[key] !== null && first?.[key] !== undefined && (key !== "rate_coefficient_per_s" || first.signal === "strain");
+  const columns = () => COLUMNS.filter(([key]) => rows.some(({ first }) => has(first, key)));
   const compared = (a, b) => {
     if (order.column < 0) return a.index - b.index;
-    const value = ({ first, name }) => (order.column === 0 ? name : first?.[shownColumns[order.column - 1][0]]);
+    const key = shownColumns[order.column - 1]?.[0];
+    const value = ({ first, name }) => (order.column === 0 ? name : has(first, key) ? first[key] : null);
     const [x, y] = [value(a), value(b)];
     const missing = (one) => one === null || one === undefined;
     if (missing(x) || missing(y)) return missing(x) - missing(y);
     return (typeof x === "string" ? x.localeCompare(y, "en", { numeric: true }) : x - y) * (order.falls ? -1 : 1);
   };
   let shownColumns = [];
-  const lay = () => {
+  const sorter = (text, column, unit) => el("th", { scope: "col", className: column ? "n" : "" }, button(text, () => { order = { column, falls: order.column === column && !order.falls }; lay(); }), unit && el("span", { className: "unit" }, ` (${unit})`));
+  const layHead = () => {
     shownColumns = columns();
-    const sorter = (text, column, unit) => el("th", { scope: "col", className: column ? "n" : "", "aria-sort": order.column === column ? (order.falls ? "descending" : "ascending") : undefined }, button(text, () => { order = { column, falls: order.column === column && !order.falls }; lay(); }), unit && el("span", { className: "unit" }, ` (${unit})`));
+    rows.forEach((row) => (row.line = null));
+    const held = head.contains(document.activeElement) && document.activeElement.textContent;
     head.replaceChildren(el("tr", {}, sorter("Test", 0), el("th", { scope: "col", className: "n" }, "Holds"), shownColumns.map(([, text, , unit], i) => sorter(text, i + 1, unit))));
-    body.replaceChildren(...[...rows].sort(compared).slice(0, MOST_ROWS).map(line));
+    if (held) [...head.querySelectorAll("button")].find((one) => one.textContent === held)?.focus({ preventScroll: true });
+  };
+  // The table in its order; a row is made once for the same columns.
+  let laid = -Infinity;
+  const lay = () => {
+    if (columns().length !== shownColumns.length || !head.firstChild) layHead();
+    [...head.querySelectorAll("th:has(button)")].forEach((one, column) => { if (order.column === column) one.setAttribute("aria-sort", order.falls ? "descending" : "ascending"); else one.removeAttribute("aria-sort"); });
+    const held = document.activeElement;
+    body.replaceChildren(...[...rows].sort(compared).slice(0, MOST_ROWS).map(lineOf));
+    if (body.contains(held)) held.focus({ preventScroll: true });
+    laid = performance.now();
+  };
+  // Rows that come go to the end, unless the table is sorted: then it is laid anew, now and then.
+  const grow = (fresh) => {
+    if (columns().length !== shownColumns.length || !head.firstChild) return lay();
+    if (order.column < 0) return body.append(...fresh.slice(0, Math.max(0, MOST_ROWS - body.children.length)).map(lineOf));
+    if (performance.now() - laid > 500) lay();
+  };
+  const lineOf = (row) => (row.line ??= line(row));
+  const cell = (first, key, factor) => {
+    if (has(first, key)) return shown(first[key] * factor);
+    return OF_LAW.has(key) && first?.termination?.endsWith("_at_bound") ? "at bound" : "–";
   };
   const line = ({ name, first, holds, refused }) => el("tr", {},
     el("th", { scope: "row" }, button(name, () => study.opened({ file: study.subject.file, part: name }), { className: "link" })),
     el("td", { className: "n" }, String(holds)),
-    refused ? el("td", { colSpan: Math.max(1, shownColumns.length), className: "small" }, refused.message) : shownColumns.map(([key, , factor]) => el("td", { className: "n" }, shown(first?.[key] === null || first?.[key] === undefined ? NaN : first[key] * factor))));
-  const take = (test) => {
-    const holds = new Set(test.rows.map((row) => row.hold).filter((hold) => hold !== null)).size;
-    rows.push({ index: test.index, name: test.name ?? `test ${test.index + 1}`, first: test.rows.find((row) => row.recommended === 1) ?? test.rows.find((row) => row.law === "latency") ?? test.rows[0] ?? null, holds, refused: test.refused });
+    refused ? el("td", { colSpan: Math.max(1, shownColumns.length), className: "small" }, refused.message) : shownColumns.map(([key, , factor]) => el("td", { className: "n" }, cell(first, key, factor))));
+  const row = (test) => {
+    const holds = new Set(test.rows.map(({ hold }) => hold).filter((hold) => hold !== null)).size;
+    return { index: test.index, name: test.name ?? `test ${test.index + 1}`, first: test.rows.find(({ recommended }) => recommended === 1) ?? test.rows.find(({ law }) => law === "latency") ?? test.rows[0] ?? null, holds, refused: test.refused };
   };
   let asked = 0;
   let reading = Promise.resolve();
@@ -233,30 +261,35 @@ const testTable = async (study) => {
     const fresh = await call("GET", `api/tasks/${id}/rows?from=${asked}`);
     if (study.tests.run !== run || !fresh.length) return;
     asked += fresh.length;
-    fresh.forEach(take);
-    lay();
+    const made = fresh.map(row);
+    rows.push(...made);
+    grow(made);
   }));
   const running = task({ kind: "batch", subject: study.subject, options: {} }, { first: true, heard: (brief) => { if (study.tests.run !== run) return; bar.show(brief); if (brief.rows > asked) read(); } });
   const bar = progress(running.cancel);
-  const after = el("div");
-  study.tests.replaceChildren(bar, el("div", { className: "scroll tall", tabindex: "0", role: "region", "aria-label": "Tests of the file" }, el("table", {}, head, body)), after);
+  const [before, after] = [el("div"), el("div")];
+  study.answer.replaceChildren();
+  study.tests.replaceChildren(bar, before, el("div", { className: "scroll tall", tabindex: "0", role: "region", "aria-label": "Tests of the file" }, el("table", { id: "each" }, head, body)), after);
   try {
     const { id, answer } = await running.done;
     await read();
     if (study.tests.run !== run) return;
     bar.remove();
-    say(`${rows.length} tests are analysed.`);
-    after.append(el("div", { className: "takeaway" }, el("a", { href: `api/tasks/${id}/rows.csv`, download: "holds.csv" }, "Table, CSV")), lines(answer.lines));
+    lay();
+    before.append(drawn(answer.first, "first"));
+    if (answer.refused) before.append(el("p", { className: "note-line" }, `Of ${rows.length} tests ${answer.refused} could not be analysed: their rows say why.`));
+    study.answer.replaceChildren(before.querySelector(".lede")?.textContent ?? "");
+    say(`${rows.length} tests are analysed. ${study.answer.textContent}`);
+    after.append(el("div", { className: "takeaway" }, el("a", { href: `api/tasks/${id}/rows.csv`, download: `${study.subject.file.replace(/\.[^.]*$/, "")}-holds.csv` }, "Table, CSV")), lines(answer.lines));
     if (rows.length > MOST_ROWS) after.prepend(el("p", { className: "small" }, `The first ${MOST_ROWS} of ${rows.length} rows in this order; the table that is taken away has all.`));
-    if (answer.quantities.length) after.append(await mapView(id, answer.quantities));
+    if (answer.quantities.length) after.append(await mapView(id, answer.quantities, answer.shown));
   } catch (error) {
     if (study.tests.run === run && !(error instanceof Lost)) bar.replaceWith(failed(error));
   }
 };
 
-const mapView = async (id, quantities) => {
+const mapView = async (id, quantities, usual) => {
   const [box, wrong] = [el("div"), el("div")];
-  const usual = ["rate_coefficient_per_s", "loading_modulus_pa", "exponent", "relative_rate_per_s"].find((name) => quantities.includes(name)) ?? quantities[0];
   const show = async (quantity) => {
     wrong.replaceChildren();
     try {
@@ -271,12 +304,18 @@ const mapView = async (id, quantities) => {
 
 // Several records beside each other, or one material of them all.
 export const together = (subjects, { opened, materialMade }) => {
-  const [compared, grip] = [el("div"), el("div")];
+  const [compared, calibrated, grip] = [el("div"), el("div"), el("div")];
   const study = { showGrip: (panel) => grip.replaceChildren(panel) };
   const box = el("div", { className: "study" },
     el("div", { className: "study-head" }, el("h2", { className: "title", tabindex: "-1" }, `${subjects.length} records`), el("p", { className: "small" }, subjects.map(({ file }) => file).join(", "))),
     card("compared", "Beside each other", compared),
-    card("material", "One material", el("p", {}, "Parameters that the records share are estimated together; the material is that of another specimen of the batch."), calibration(subjects, (name) => materialMade(name, study)).box, grip));
+    card("material", "One material", el("p", {}, "Parameters that the records share are estimated together; the material is that of another specimen of the batch."), calibrated, grip));
+  // Of those that count; one that cannot be calibrated is left out by its box.
+  const counted = new Set(subjects);
+  const choice = (subject) => el("li", {}, el("label", { className: "check" }, el("input", { type: "checkbox", checked: true, onchange: (event) => { if (event.target.checked) counted.add(subject); else counted.delete(subject); lay(); } }), subject.file));
+  const boxes = el("ul", { className: "counted", "aria-label": "Records that count" }, subjects.map(choice));
+  const lay = () => calibrated.replaceChildren(boxes, calibration(subjects.filter((one) => counted.has(one)), (name) => materialMade(name, study)).box);
+  lay();
   const start = () => into(compared, { kind: "compare", subjects }, (answer, id) => [
     el("iframe", { src: `api/tasks/${id}/files/index.html`, title: "Comparison of the records", sandbox: "allow-scripts allow-popups allow-downloads" }),
     el("div", { className: "takeaway" }, el("a", { href: `api/tasks/${id}/files/index.html`, target: "_blank", rel: "noopener" }, "In a tab of its own"), answer.files.includes("tables.xlsx") && el("a", { href: `api/tasks/${id}/files/tables.xlsx`, download: "comparison.xlsx" }, "Workbook"), answer.files.includes("specimens.json") && el("a", { href: `api/tasks/${id}/files/specimens.json`, download: "specimens.json" }, "JSON")),

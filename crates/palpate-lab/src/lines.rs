@@ -71,9 +71,10 @@ pub(crate) fn of_analysis(subject: &Subject, stated: Option<&str>) -> Lines {
     }
 }
 
-pub(crate) fn of_batch(subject: &Subject, stated: Option<&str>, has_map: bool) -> Lines {
+pub(crate) fn of_batch(subject: &Subject, stated: Option<&str>, mapped: Option<&str>) -> Lines {
     let out = format!("{}-holds.csv", stem(&subject.file));
-    let (map, map_python) = if has_map { (" --map v", ", map=[\"v\"]") } else { ("", "") };
+    let map = mapped.map_or_else(String::new, |name| format!(" --map {}", word(name)));
+    let map_python = mapped.map_or_else(String::new, |name| format!(", map=[{}]", literal(name)));
     let test = stated.map_or_else(String::new, |name| format!(", test={}", literal(name)));
     Lines {
         shell: Some(format!("palpate batch {} --out {}{map}", record_words(subject, stated), word(&out))),
@@ -203,5 +204,8 @@ mod tests {
         assert_eq!(part_option("-x y"), " --part='-x y'");
         let two = [one.clone(), Subject { part: None, ..one }];
         assert_eq!(of_comparison(&two, &[None, None]).shell, None);
+        let map = of_batch(&two[1], None, Some("relative_rate_per_s"));
+        assert_eq!(map.shell.unwrap(), "palpate batch 'a b.xlsx' --out 'a b-holds.csv' --map relative_rate_per_s");
+        assert!(map.python.contains("map=[\"relative_rate_per_s\"]"));
     }
 }

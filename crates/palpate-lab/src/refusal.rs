@@ -18,22 +18,16 @@ fn field(name: &str, value: Option<&str>) -> String {
 }
 
 /// An error in the words of the page.
-pub(crate) fn page_words(error: &JobError) -> RefusalDocument {
-    RefusalDocument {
-        message: spelled(&error.to_string(), &field),
-        hint: error.hint.as_deref().map(|hint| spelled(hint, &field)),
-    }
-}
-
-/// The same about a file of the folder.
 pub(crate) fn refusal(error: &JobError, folder: &Folder) -> RefusalDocument {
     let place = format!("{}/", folder.path().display());
-    let RefusalDocument { message, hint } = page_words(error);
-    // Readers write this option out.
-    let own =
-        |text: String| text.replace(&place, "").replace("--columns ", "under \u{201c}Columns and units\u{201d}: ");
+    let own = |text: &str| {
+        let text = spelled(text, &field).replace(&place, "");
+        // Readers write this option out, and a body has fields.
+        text.replace("--columns ", "under \u{201c}Columns and units\u{201d}: ")
+            .replace("; `palpate inspect` drafts one with --write-test", ", here under \u{201c}Body\u{201d}")
+    };
     RefusalDocument {
-        message: own(message),
-        hint: hint.map(own),
+        message: own(&error.to_string()),
+        hint: error.hint.as_deref().map(own),
     }
 }

@@ -4,6 +4,7 @@ use std::collections::{BTreeMap, HashMap};
 
 use palpate::number::{counted, significant};
 use palpate_files::parquet_table::Field;
+use palpate_report::page::Block;
 use palpate_report::result::parameter_title;
 use palpate_report::table::{Cell, Table};
 use palpate_report::wrapped;
@@ -184,12 +185,29 @@ impl BatchAnswer {
     /// The answer in sentences and a table.
     #[must_use]
     pub fn text(&self) -> String {
-        let text = [self.of_laws(), self.of_tests()].into_iter().filter(|text| !text.is_empty());
-        text.collect::<Vec<_>>().join("\n")
+        let parts = [
+            self.of_laws().map(|text| wrapped(&text)),
+            self.table().map(|table| table.to_plain_text()),
+            self.of_findings().map(|text| wrapped(&text)),
+            self.of_tests().map(|text| wrapped(&text)),
+        ];
+        parts.into_iter().flatten().collect::<Vec<_>>().join("\n")
+    }
+
+    /// The same for a page.
+    #[must_use]
+    pub fn blocks(&self) -> Vec<Block> {
+        let parts = [
+            self.of_laws().map(Block::Lede),
+            self.of_tests().map(Block::Paragraph),
+            self.table().map(Block::Table),
+            self.of_findings().map(Block::Paragraph),
+        ];
+        parts.into_iter().flatten().collect()
     }
 
     /// What is known of the tests besides their holds.
-    fn of_tests(&self) -> String {
+    fn of_tests(&self) -> Option<String> {
         let without = (self.without_hold > 0).then(|| format!("No hold in {}.", counted(self.without_hold, "test")));
         let modulus = self.loading_modulus.as_ref().map(|found| {
             let [low, median, high] = found.quartiles.map(|value| significant(value, 4));
@@ -200,16 +218,14 @@ impl BatchAnswer {
             )
         });
         let sentences: Vec<String> = without.into_iter().chain(modulus).collect();
-        if sentences.is_empty() { String::new() } else { wrapped(&sentences.join(" ")) }
+        (!sentences.is_empty()).then(|| sentences.join(" "))
     }
 
-    /// Which laws were recommended, with the parameters of the first.
-    fn of_laws(&self) -> String {
+    /// Which laws were recommended.
+    fn of_laws(&self) -> Option<String> {
         let Some((law, count)) = self.laws.first() else {
-            return match self.holds {
-                0 => String::new(),
-                holds => format!("No law could be fitted to any of {}.\n", counted(holds, "hold")),
-            };
+            return (self.holds > 0)
+                .then(|| format!("No law could be fitted to any of {}.", counted(self.holds, "hold")));
         };
         let mut text = format!("Law recommended most often: {law}, on {count} of {}.", counted(self.holds, "hold"));
         if !self.compared {
@@ -222,7 +238,12 @@ impl BatchAnswer {
         if self.unfitted > 0 {
             text.push_str(&format!(" No law was fitted to {}.", counted(self.unfitted, "hold")));
         }
-        text = wrapped(&text);
+        Some(text)
+    }
+
+    /// The parameters of the law that was recommended most often.
+    fn table(&self) -> Option<Table> {
+        let (law, _) = self.laws.first()?;
         let caption = format!("Parameters of {law} over the holds that it is recommended for.");
         let quartile = |index: usize| {
             move |spread: &Spread| match spread.holds {
@@ -230,20 +251,21 @@ impl BatchAnswer {
                 _ => Cell::Text(significant(spread.quartiles[index], 4)),
             }
         };
-        let table = Table::of("spread", caption, &self.parameters)
+        Table::of("spread", caption, &self.parameters)
             .column("Parameter", "parameter", "", |spread| Cell::text(parameter_title(&spread.name)))
             .column("Unit", "unit", "", |spread| Cell::text(&spread.unit))
             .column("Median", "median", "", quartile(1))
             .column("Lower quartile", "lower_quartile", "", quartile(0))
             .column("Upper quartile", "upper_quartile", "", quartile(2))
             .column("Holds", "holds", "", |spread| Cell::Integer(spread.holds as i64))
-            .unless_empty();
-        text.extend(table.map(|table| format!("\n{}", table.to_plain_text())));
-        if !self.findings.is_empty() {
-            let found: Vec<String> =
-                self.findings.iter().map(|(code, count)| format!("{code} on {}", counted(*count, "hold"))).collect();
-            text.push_str(&format!("\n{}", wrapped(&format!("Findings on the most holds: {}.", found.join(", ")))));
-        }
-        text
+            .unless_empty()
+    }
+
+    /// What was found on the most holds.
+    fn of_findings(&self) -> Option<String> {
+        self.laws.first()?;
+        let found: Vec<String> =
+            self.findings.iter().map(|(code, count)| format!("{code} on {}", counted(*count, "hold"))).collect();
+        (!found.is_empty()).then(|| format!("Findings on the most holds: {}.", found.join(", ")))
     }
 }

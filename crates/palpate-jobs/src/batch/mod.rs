@@ -48,6 +48,7 @@ use crate::store::{Store, beside};
 use crate::threads::{Share, over_threads};
 use crate::written_by_batch::is_written_by_batch;
 use crate::{ErrorKind, JobError, Outcome};
+use answer::Tally;
 pub use answer::{BatchAnswer, Spread};
 use begun::Begun;
 pub use map::CurveMap;
@@ -163,6 +164,14 @@ pub struct BatchedTest {
     pub refused: Option<Refused>,
 }
 
+impl BatchedTest {
+    /// The names of the columns, in the order of the table.
+    #[must_use]
+    pub fn columns() -> Vec<String> {
+        rows::fields().into_iter().map(|field| field.name).collect()
+    }
+}
+
 /// What came of one file.
 #[derive(Debug, Default, Serialize, Deserialize)]
 struct Entry {
@@ -236,8 +245,7 @@ impl Batch {
         Ok(Outcome::of(batched).answered(all).noted(notes))
     }
 
-    /// Analyses every test of one file without writing a table: `take` gets each as soon as it is done, in the order of the file. Returns the
-    /// curves that have a position.
+    /// Analyses every test of one file without writing a table: `take` gets each as soon as it is done, in the order of the file.
     ///
     /// # Errors
     /// [`JobError`] where the watch ends it. A test that fails stops no other.
@@ -246,14 +254,18 @@ impl Batch {
         opened: &OpenedFile<'_>,
         watch: &mut dyn Watch,
         mut take: impl FnMut(BatchedTest),
-    ) -> Result<CurveMap, JobError> {
+    ) -> Result<Batched, JobError> {
         let (options, fields) = (self.options(opened.described), rows::fields());
-        let (mut map, total) = (CurveMap::default(), opened.tests.parts.len());
+        let (mut map, mut tally, mut failures) = (CurveMap::default(), Tally::new(), Vec::new());
+        let (mut count, total) = (0, opened.tests.parts.len());
         for (index, part) in opened.tests.parts.iter().enumerate() {
             watch.report(Progress::counted("analysing", index, total))?;
             let mut entry = Entry::default();
             entry.take(opened, *part, document(opened, *part, &options, watch))?;
             map.add(&entry);
+            tally.add(&entry);
+            count += entry.rows.len();
+            failures.extend_from_slice(&entry.failures);
             let named = |row: Vec<Value>| fields.iter().map(|field| field.name.clone()).zip(row).collect();
             take(BatchedTest {
                 index,
@@ -263,7 +275,13 @@ impl Batch {
             });
         }
         watch.report(Progress::counted("analysing", total, total))?;
-        Ok(map)
+        Ok(Batched {
+            answer: tally.answer(options.compare.is_some()),
+            rows: count,
+            tests: total,
+            failures,
+            map,
+        })
     }
 
     fn options(&self, described: &Described) -> AnalysisOptions {

@@ -11,7 +11,8 @@ use palpate_files::parquet_table::TableError;
 use crate::{ErrorKind, JobError};
 
 /// What the operating system says about a file to be written, and what would help.
-pub(crate) fn unwritten(path: &Path, error: &io::Error) -> JobError {
+#[must_use]
+pub fn unwritten(path: &Path, error: &io::Error) -> JobError {
     let hint = match error.kind() {
         io::ErrorKind::PermissionDenied | io::ErrorKind::ReadOnlyFilesystem => "choose a folder with write permission",
         io::ErrorKind::StorageFull | io::ErrorKind::QuotaExceeded => "free some space; nothing was written",

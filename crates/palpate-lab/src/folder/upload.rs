@@ -6,7 +6,7 @@ use std::io::{self, BufRead, BufReader, Write};
 use std::path::Path;
 use std::sync::{MutexGuard, PoisonError};
 
-use palpate_jobs::output::{Stage, StagedFile};
+use palpate_jobs::output::{Stage, StagedFile, unwritten};
 use palpate_jobs::{ErrorKind, JobError};
 
 use super::Folder;
@@ -86,8 +86,8 @@ impl Upload<'_> {
             let hint = "start the lab in the folder where the file lies";
             return Err(JobError::new(ErrorKind::Record, message, hint.to_owned()).of(&self.wanted));
         }
-        let kind = |error: io::Error| JobError::new(ErrorKind::File(error.kind()), error, None).of(&self.wanted);
-        self.file.write_all(piece).map_err(kind)
+        let place = self.name.folder.path().join(&self.wanted);
+        self.file.write_all(piece).map_err(|error| unwritten(&place, &error))
     }
 
     /// The file is whole: it appears, and its name is returned. Where a file of the wanted name is there already, byte by byte the same, it

@@ -40,7 +40,7 @@ pub(super) async fn vocabulary() -> Json<Value> {
 
 /// What is in the folder.
 pub(super) async fn folder(State(server): Lab) -> Result<Json<Value>, Refusal> {
-    let found = aside(move || {
+    let found = aside(&server, |server| {
         let (revision, changed, _) = server.tasks.since(u64::MAX);
         let folder = &server.folder;
         Ok(json!({
@@ -85,14 +85,14 @@ pub(super) async fn upload(
     }
     drop(sender);
     let broken = |_| JobError::new(ErrorKind::Record, "the upload ended unexpectedly", None);
-    let name = disk.await.map_err(broken).flatten()?;
+    let name = disk.await.map_err(broken).flatten().map_err(|error| Refusal::of(&error, &server.folder))?;
     server.tasks.folder_changed();
     Ok(Json(json!({ "name": name })))
 }
 
 /// What is stated about a test.
 pub(super) async fn described(State(server): Lab, Json(subject): Json<Subject>) -> Result<Json<Stated>, Refusal> {
-    Ok(Json(aside(move || server.folder.stated(&subject)).await?))
+    Ok(Json(aside(&server, move |server| server.folder.stated(&subject)).await?))
 }
 
 /// Changes of a description.
@@ -107,10 +107,8 @@ pub(super) struct Change {
 }
 
 pub(super) async fn edit(State(server): Lab, Json(change): Json<Change>) -> Result<Json<Stated>, Refusal> {
-    let stated = {
-        let server = Arc::clone(&server);
-        aside(move || server.folder.edit(&change.subject, change.alone, &change.edits)).await?
-    };
+    let edit = move |server: &Server| server.folder.edit(&change.subject, change.alone, &change.edits);
+    let stated = aside(&server, edit).await?;
     server.tasks.folder_changed();
     Ok(Json(stated))
 }
@@ -124,17 +122,14 @@ pub(super) struct Statement {
 }
 
 pub(super) async fn state(State(server): Lab, Json(statement): Json<Statement>) -> Result<Json<Stated>, Refusal> {
-    let stated = {
-        let server = Arc::clone(&server);
-        aside(move || server.folder.state(&statement.subject, &statement.text)).await?
-    };
+    let stated = aside(&server, move |server| server.folder.state(&statement.subject, &statement.text)).await?;
     server.tasks.folder_changed();
     Ok(Json(stated))
 }
 
 /// What a material allows.
 pub(super) async fn material(State(server): Lab, Path(name): Path<String>) -> Result<Json<Value>, Refusal> {
-    Ok(Json(aside(move || Ok(grip_range(&material_of(&server.folder, &name)?))).await?))
+    Ok(Json(aside(&server, move |server| Ok(grip_range(&material_of(&server.folder, &name)?))).await?))
 }
 
 /// Takes a material file.
@@ -143,14 +138,11 @@ pub(super) async fn keep_material(
     Path(name): Path<String>,
     text: String,
 ) -> Result<Response, Refusal> {
-    let name = {
-        let server: Arc<Server> = Arc::clone(&server);
-        aside(move || {
-            let material = parse_material(&text, std::path::Path::new(&name))?;
-            server.folder.keep_material(&name, &material)
-        })
-        .await?
+    let keep = move |server: &Server| {
+        let material = parse_material(&text, std::path::Path::new(&name))?;
+        server.folder.keep_material(&name, &material)
     };
+    let name = aside(&server, keep).await?;
     server.tasks.folder_changed();
     Ok(Json(json!({ "name": name })).into_response())
 }

@@ -37,7 +37,7 @@ pub(super) struct Start {
 
 /// Starts a task, or finds the one that does the same.
 pub(super) async fn start(State(server): Lab, Json(start): Json<Start>) -> Result<Json<Value>, Refusal> {
-    let id = aside(move || Ok(server.tasks.add(start.request, start.first))).await?;
+    let id = aside(&server, move |server| Ok(server.tasks.add(start.request, start.first))).await?;
     Ok(Json(json!({ "id": id })))
 }
 
@@ -85,10 +85,7 @@ pub(super) async fn rows(
 /// All rows of a batch as a table to take away.
 pub(super) async fn rows_csv(State(server): Lab, Path(id): Path<u64>) -> Result<Response, Refusal> {
     let tests = server.tasks.rows(id, 0).ok_or_else(|| Refusal::unknown("task"))?;
-    let names: Vec<String> = tests
-        .iter()
-        .find_map(|test| test.rows.first())
-        .map_or_else(Vec::new, |row| row.keys().cloned().collect());
+    let names = BatchedTest::columns();
     let mut table = Table::new("holds", "Holds");
     for name in &names {
         table = table.column(name, name, "");
@@ -123,7 +120,7 @@ pub(super) async fn map(
     Query(of): Query<Quantity>,
 ) -> Result<Json<Value>, Refusal> {
     let made = made(&server.tasks, id)?;
-    let html = aside(move || {
+    let html = aside(&server, move |_| {
         let map = made.map().ok_or_else(|| JobError::option("no curve has a position", ""))?;
         let block = Block::figure(&map.figure(&of.quantity, "map")?).map_err(StudyError::from)?;
         Ok(fragment(&[block]))
@@ -138,20 +135,19 @@ pub(super) async fn pictures(
     Query(choice): Query<PictureChoice>,
 ) -> Result<Response, Refusal> {
     let made = made(&server.tasks, id)?;
-    let pictures = aside(move || {
+    let pictures = aside(&server, move |_| {
         let files = made.pictures(choice)?;
         zipped(&files)
     });
     let bytes = pictures.await?;
-    let format = choice.format.ending();
-    Ok(attached(&format!("figures-{format}.zip"), bytes))
+    Ok(attached("figures.zip", bytes))
 }
 
 /// A file that a task made; a figure of an analysed test in the format of its ending.
 pub(super) async fn file(State(server): Lab, Path((id, path)): Path<(u64, String)>) -> Result<Response, Refusal> {
     let made = made(&server.tasks, id)?;
     let name = path.rsplit('/').next().unwrap_or_default().to_owned();
-    let bytes = aside(move || {
+    let bytes = aside(&server, move |_| {
         if let Some(bytes) = made.file(&path) {
             return Ok(Some(bytes.to_vec()));
         }
@@ -178,7 +174,7 @@ fn made(tasks: &crate::tasks::Tasks, id: u64) -> Result<Arc<Made>, Refusal> {
         .ok_or_else(|| Refusal::unknown("result: its record may have changed, or newer results have taken its place"))
 }
 
-/// A file to be saved, never shown: what stands in it is no part of the page.
+/// A file to be saved, never shown: what stands in it is no part of the page. Its link on the page names it after the record.
 fn attached(name: &str, bytes: Vec<u8>) -> Response {
     let kind = match name.rsplit('.').next() {
         Some("csv") => "text/csv; charset=utf-8",
@@ -188,14 +184,10 @@ fn attached(name: &str, bytes: Vec<u8>) -> Response {
         Some("xlsx") => "application/vnd.openxmlformats-officedocument.spreadsheetml.sheet",
         _ => "application/octet-stream",
     };
-    let plain: String = name
-        .chars()
-        .map(|letter| if letter.is_ascii_alphanumeric() || "._-".contains(letter) { letter } else { '_' })
-        .collect();
     let headers = [
-        (header::CONTENT_TYPE, kind.to_owned()),
-        (header::CONTENT_DISPOSITION, format!("attachment; filename=\"{plain}\"")),
-        (header::CONTENT_SECURITY_POLICY, "default-src 'none'; sandbox".to_owned()),
+        (header::CONTENT_TYPE, kind),
+        (header::CONTENT_DISPOSITION, "attachment"),
+        (header::CONTENT_SECURITY_POLICY, "default-src 'none'; sandbox"),
     ];
     (headers, bytes).into_response()
 }
@@ -206,7 +198,7 @@ pub(super) async fn try_squeeze(
     Path(material): Path<String>,
     Json(options): Json<PlanGrip>,
 ) -> Result<Json<Value>, Refusal> {
-    let answer = aside(move || {
+    let answer = aside(&server, move |server| {
         let tried = options.try_squeeze(&material_of(&server.folder, &material)?, &mut Unwatched)?;
         let block = Block::figure(&tried_figure(&tried)).map_err(StudyError::from)?;
         let mut answer = serde_json::to_value(&tried).map_err(|error| JobError::new(ErrorKind::Report, error, None))?;

@@ -42,6 +42,9 @@ impl Request {
     }
 }
 
+/// What a map shows first.
+const MAPPED: [&str; 3] = ["loading_modulus_pa", "relative_rate_per_s", "exponent"];
+
 /// Files without figures: those are made when they are wanted.
 fn without_figures() -> FileOptions {
     FileOptions {
@@ -111,13 +114,19 @@ fn batch(
 ) -> Result<Made, JobError> {
     let described = folder.described(subject)?;
     let opened = OpenedFile::open(&folder.file(&subject.file)?, &described)?;
-    let map = options.each_test(&opened, watch, take)?;
+    let batched = options.each_test(&opened, watch, take)?;
     let stated = folder.stated(subject)?.name;
+    let quantities: Vec<&str> = batched.map.quantities().collect();
+    // Of those that have one unit for all curves, whatever law is recommended.
+    let shown = MAPPED.into_iter().find(|name| quantities.contains(name)).or(quantities.first().copied());
     let answer = json!({
-        "quantities": map.quantities().collect::<Vec<_>>(),
-        "lines": lines::of_batch(subject, stated.as_deref(), !map.is_empty()),
+        "first": fragment(&batched.answer.blocks()),
+        "refused": batched.failures.len(),
+        "quantities": quantities,
+        "shown": shown,
+        "lines": lines::of_batch(subject, stated.as_deref(), shown),
     });
-    Ok(Made::new(answer, Bundle::default()).of_map(map))
+    Ok(Made::new(answer, Bundle::default()).of_map(batched.map))
 }
 
 /// Several tests: each analysed, with the index of their reports.
@@ -169,11 +178,11 @@ fn calibrate(
     }) else {
         return Err(JobError::option("expected a record to calibrate, found none", "choose one"));
     };
-    let (material, text, figure, document, notes) = if measured.len() == 1 {
+    let (material, text, remarks, figure, document, notes) = if measured.len() == 1 {
         let outcome = options.run(measured.remove(0), watch)?;
         let made = outcome.result;
         let document = serde_json::to_value(made.document())?;
-        (made.material(), made.text(), Some(made.figure()), document, outcome.notes)
+        (made.material(), made.text(), made.record.remarks(), Some(made.figure()), document, outcome.notes)
     } else {
         let several = CalibrateSeveral {
             law: options.law,
@@ -186,12 +195,13 @@ fn calibrate(
         let outcome = several.run(measured, watch)?;
         let made = outcome.result;
         let document = serde_json::to_value(made.document())?;
-        (made.material(), made.text(), made.figure(), document, outcome.notes)
+        (made.material(), made.text(), made.batch.remarks(), made.figure(), document, outcome.notes)
     };
     let written = material.map(|material| folder.keep_material(&name, &material)).transpose()?;
     let answer = json!({
         "material": written,
         "text": text,
+        "remarks": remarks,
         "figure": figure.as_ref().map(shown).transpose()?,
         "notes": notes.iter().map(|note| with_flags(note)).collect::<Vec<_>>(),
         "lines": lines::of_calibration(subjects, &stated, written.as_deref()),

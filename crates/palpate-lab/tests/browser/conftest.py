@@ -11,7 +11,7 @@ import os
 import signal
 import subprocess
 import time
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -43,8 +43,9 @@ class Lab:
         self.process.wait(10)
 
 
-def started(folder: Path | None, *options: str) -> Lab:
-    words = [os.environ["PALPATE"], "lab", *([str(folder)] if folder else []), "--no-open", *options]
+def started(folder: Path | None, *options: str, under: Sequence[str] = ()) -> Lab:
+    """A lab, started by the command `under` where that is given."""
+    words = [*under, os.environ["PALPATE"], "lab", *([str(folder)] if folder else []), "--no-open", *options]
     process = subprocess.Popen(words, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
     assert process.stdout is not None
     address = process.stdout.readline().strip()
@@ -116,7 +117,7 @@ class Opened:
     def picture(self, name: str, selector: str | None = None) -> None:
         if folder := os.environ.get("LAB_PICTURES"):
             path = str(Path(folder) / f"lab-{name}.png")
-            self.page.evaluate("document.querySelector('#place').textContent = 'measurements'")
+            self.page.evaluate("document.querySelector('#place').textContent = 'measurements'; document.activeElement.blur()")
             self.page.wait_for_timeout(300)
             if selector:
                 self.page.locator(selector).screenshot(path=path)

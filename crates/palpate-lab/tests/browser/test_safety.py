@@ -126,6 +126,7 @@ class Elsewhere(BaseHTTPRequestHandler):
 def test_a_page_in_another_tab_reaches_nothing(browser: Browser, lab: Lab) -> None:
     """Even with the address, which it cannot know."""
     assert lab.folder is not None
+    (lab.folder / "ball.csv").write_bytes((EXAMPLES / "ball.csv").read_bytes())
     site = ThreadingHTTPServer(("127.0.0.1", 0), Elsewhere)
     threading.Thread(target=site.serve_forever, daemon=True).start()
     page = browser.new_context().new_page()
@@ -145,6 +146,24 @@ def test_a_page_in_another_tab_reaches_nothing(browser: Browser, lab: Lab) -> No
                 const frame = Object.assign(document.createElement("iframe"), { src: address, onload: () => { try { resolve(frame.contentDocument.title); } catch { resolve("closed"); } } });
                 document.body.append(frame);
             }));
+            await attempt("form", () => new Promise((resolve) => {
+                const frame = Object.assign(document.createElement("iframe"), { name: "target" });
+                const form = Object.assign(document.createElement("form"), { action: address + "api/edit", method: "post", enctype: "text/plain", target: "target" });
+                form.append(Object.assign(document.createElement("input"), { name: '{"subject":{"file":"ball.csv"},"edits":[{"key":["about","title"],"value":"', value: 'evil"}]}' }));
+                document.body.append(frame, form);
+                frame.onload = () => { try { resolve(frame.contentDocument.body.textContent); } catch { resolve("closed"); } };
+                form.submit();
+            }));
+            await attempt("socket", () => new Promise((resolve, reject) => {
+                const socket = new WebSocket(address.replace("http", "ws") + "api/changes?revision=0");
+                socket.onopen = () => resolve("open");
+                socket.onerror = reject;
+            }));
+            await attempt("events", () => new Promise((resolve, reject) => {
+                const events = new EventSource(address + "api/changes?revision=0");
+                events.onmessage = () => resolve("heard");
+                events.onerror = reject;
+            }));
             await attempt("window", async () => {
                 const opened = window.open(address);
                 await new Promise((resolve) => setTimeout(resolve, 500));
@@ -156,7 +175,8 @@ def test_a_page_in_another_tab_reaches_nothing(browser: Browser, lab: Lab) -> No
     )
     assert tried["read"] == "refused" and tried["script"] == "refused" and tried["post"] in {"opaque", "refused"}, tried
     assert tried["frame"] in {"closed", "", None} and tried["window"] == "severed", tried
-    assert list(lab.folder.iterdir()) == []
+    assert tried["form"] == "closed" and tried["socket"] == "refused" and tried["events"] == "refused", tried
+    assert [entry.name for entry in lab.folder.iterdir()] == ["ball.csv"]
     # The name of another site that leads to this machine (DNS rebinding), and foreign origins.
     base = urlsplit(lab.address).path
     assert answer(lab, base + "api/folder", host="evil.example")[0] == 403
@@ -247,21 +267,100 @@ def test_two_tabs_show_one_state_and_a_kill_is_stated(browser: Browser, tmp_path
     head = f"PUT {base}api/files/half.csv HTTP/1.1\r\nHost: 127.0.0.1:{port}\r\nContent-Length: 1000000\r\n\r\n"
     half.sendall(head.encode() + b"1,2\n" * 1000)
     time.sleep(0.3)
+    one.page.get_by_role("button", name="Remove hold 4").click()
     lab.kill()
     half.close()
     one.wait("#lost:visible")
     assert "Start it again" in one.page.inner_text("#lost")
-    before = sorted(entry.name for entry in folder.iterdir() if not entry.name.startswith("."))
-    assert before == ["ball.csv", "ball.csv.test.toml"]
-    # What lies in the folder is the state: the next lab goes on with it, and removes what the kill left.
-    lab = started(folder)
+    left = sorted(entry.name for entry in folder.iterdir() if not entry.name.startswith("."))
+    assert left == ["ball.csv", "ball.csv.test.toml"]
+    # What lies in the folder is the state: the next lab goes on with it, and removes what the kill left. At the same port it has another
+    # address, and the page still says so.
+    lab = started(folder, "--port", str(port))
+    assert lab.address.startswith(f"http://127.0.0.1:{port}/") and urlsplit(lab.address).path != base
+    one.page.wait_for_timeout(4500)
+    shown = one.page.evaluate("""async () => {
+        const box = document.querySelector("#lost");
+        let changes = 0;
+        new MutationObserver(() => (changes += 1)).observe(box, { attributes: true, childList: true, characterData: true, subtree: true });
+        await new Promise((resolve) => setTimeout(resolve, 4500));
+        return [box.hidden, box.textContent, changes];
+    }""")
+    assert shown[0] is False and "open the address that it prints" in shown[1] and shown[2] == 0, shown
+    one.page.get_by_role("button", name="Remove hold 1").click()
     again = opened(browser, lab.address)
     again.wait("caption:has-text('Holds as stated')")
-    assert again.page.locator("#holds tbody tr").count() == 4
+    # The last correction before the kill is whole or was not made; the one after it, by the old address, was not.
+    assert again.page.locator("#holds tbody tr").count() in {3, 4}
+    assert again.page.get_by_label("Start of hold 1, in seconds").input_value() == one.page.get_by_label("Start of hold 1, in seconds").input_value()
     again.drop(write(tmp_path / "next.csv", steps([3.0], 8.0, 12.0, 5)))
     again.wait("h2:has-text('next.csv')")
     again.settle()
     assert not [entry.name for entry in folder.iterdir() if entry.name.startswith(".palpate-")]
     for tab in (one, other, again):
         tab.context.close()
+    lab.end()
+
+
+FULL = "ERROR {}: cannot write: no storage space\n\nWhat helps: free some space; nothing was written"
+
+
+def test_a_full_disk_is_stated_and_leaves_nothing_half(browser: Browser, tmp_path: Path) -> None:
+    """The folder on a file system of 2 MB of its own, which other processes do not see."""
+    folder = tmp_path / "small"
+    folder.mkdir()
+    mount = ["unshare", "--user", "--map-root-user", "--mount", "sh", "-c", 'mount -t tmpfs -o size=2m none "$0" && exec "$@"', str(folder)]
+    allowed = subprocess.run([*mount, "true"], capture_output=True)
+    if allowed.returncode and os.environ.get("CI") != "true":
+        pytest.skip(f"no file system of its own: {allowed.stderr.decode().strip()}")
+    lab = started(folder, under=mount)
+    inside = Path(f"/proc/{lab.process.pid}/root{folder}")
+    names = lambda: sorted(entry.name for entry in inside.iterdir())
+    found = opened(browser, lab.address)
+    page = found.page
+
+    # A file that does not fit, then one that does.
+    large = write(tmp_path / "large.csv", steps([3.0, 1.0], 600.0, 100.0, 6))
+    assert large.stat().st_size > 2e6
+    found.drop(large)
+    found.wait("#uploads .finding")
+    assert page.inner_text("#uploads .finding") == FULL.format("large.csv")
+    assert names() == []
+    page.get_by_role("button", name="Dismiss").click()
+    found.drop(EXAMPLES / "ball.csv")
+    found.wait("#laws .lede")
+    found.settle()
+    page.select_option("#shape", "ball")
+    page.fill("#size-radius", "35 mm")
+    page.press("#size-radius", "Tab")
+    found.wait("#laws .formulas:has-text('ε(t)')")
+    found.settle()
+
+    # The rest of it is taken by something else: what is stated stays as it was, and so does the page.
+    before = (inside / "ball.csv.test.toml").read_text()
+    with (inside / "filler").open("wb", buffering=0) as filler, pytest.raises(OSError, match="No space"):
+        while True:
+            filler.write(bytes(4096))
+    page.get_by_role("button", name="Remove hold 5").click()
+    found.wait("#record .finding")
+    assert page.inner_text("#record .finding") == FULL.format("ball.csv.test.toml")
+    page.get_by_role("button", name="Calibrate on the whole record").click()
+    found.wait("#grip .finding")
+    assert page.inner_text("#grip .finding") == FULL.format("ball.material.toml")
+    assert names() == ["ball.csv", "ball.csv.test.toml", "filler"]
+    assert (inside / "ball.csv.test.toml").read_text() == before and page.locator("#holds tbody tr").count() == 5
+    # A report needs no disk.
+    with page.expect_download() as download:
+        page.get_by_role("link", name="Report", exact=True).click()
+    assert "<title>ball</title>" in Path(download.value.path()).read_text()
+
+    (inside / "filler").unlink()
+    page.get_by_role("button", name="Remove hold 5").click()
+    found.wait("caption:has-text('Holds as stated')")
+    found.settle()
+    assert page.locator("#holds tbody tr").count() == 4 and page.locator("#record .finding").count() == 0
+    page.get_by_role("button", name="Calibrate on the whole record").click()
+    found.wait(".grip-panel figure")
+    assert names() == ["ball.csv", "ball.csv.test.toml", "ball.material.toml"]
+    found.context.close()
     lab.end()

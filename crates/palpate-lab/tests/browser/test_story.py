@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+import csv
 import json
 import os
 import re
 import subprocess
+import sys
+import tomllib
 import zipfile
 from pathlib import Path
 
@@ -13,7 +16,7 @@ import numpy as np
 import pytest
 from conftest import EXAMPLES, Lab, Opened, opened
 from playwright.sync_api import Browser
-from records import steps, write
+from records import steps, write, write_mcap
 
 WIDTHS = [1280, 420]
 
@@ -201,31 +204,60 @@ def test_many_tests_of_one_file_grow_into_a_table(browser: Browser, lab: Lab, tm
         for number in range(60):
             curve = write(tmp_path / f"curve {number:02d}.csv", steps([2.0 + 0.05 * ((7 * number) % 60)], 8.0, 25.0, number))
             packed.write(curve, curve.name)
+        # A force that falls faster and faster: no law of relaxation, and a rate at its bound.
+        bent = steps([3.0], 8.0, 25.0, 60)
+        held = bent[:, 0] - 1.0
+        bent[:, 2] = np.where(held < 0.0, 3.6 * bent[:, 0], 3.6 - 0.01 * held**2) + 0.004 * np.random.default_rng(60).standard_normal(len(bent))
+        packed.write(write(tmp_path / "bent.csv", bent), "bent.csv")
         packed.writestr("broken.csv", "Time (s),Force (N)\n0,1\n1,x\n")
     found = opened(browser, lab.address)
     page = found.page
     found.drop(archive)
-    found.wait("#tests tbody tr")
+    found.wait("#each tbody tr")
     found.settle()
-    rows = page.locator("#tests tbody tr")
+    rows = page.locator("#each tbody tr")
     assert rows.count() >= 60
     # Sorted by a parameter, falling.
     head = page.get_by_role("button", name="Force at start")
     head.click()
     head.click()
     column = page.evaluate("""() => {
-        const at = [...document.querySelectorAll("#tests thead th")].findIndex((one) => one.textContent.startsWith("Force at start"));
-        return [...document.querySelectorAll("#tests tbody tr")].map((row) => row.cells[at]?.textContent ?? "").filter((text) => text && text !== "–").map((text) => Number(text.replace("−", "-")));
+        const at = [...document.querySelectorAll("#each thead th")].findIndex((one) => one.textContent.startsWith("Force at start"));
+        return [...document.querySelectorAll("#each tbody tr")].map((row) => row.cells[at]?.textContent ?? "").filter((text) => text && text !== "–").map((text) => Number(text.replace("−", "-")));
     }""")
-    assert len(column) == 60 and column == sorted(column, reverse=True)
+    assert len(column) == 61 and column == sorted(column, reverse=True)
+    assert "at bound" in page.locator("#each tr", has_text="bent.csv").inner_text()
+    assert "at bound" not in page.locator("#each tr", has_text="curve 05").inner_text()
+    # The answer over all of them, and what could not be read.
+    assert re.match(r"Law recommended most often: latency:5, on \d+ of 61 holds\.", page.inner_text(".headline"))
+    assert "Of 62 tests 1 could not be analysed" in page.inner_text("#tests")
     assert found.accessible()
+    # By the keyboard a heading keeps the focus.
+    page.get_by_role("button", name="Force at start").focus()
+    page.keyboard.press("Enter")
+    assert page.evaluate("document.activeElement.textContent") == "Force at start"
+    assert page.locator("#each th[aria-sort=ascending]").inner_text().startswith("Force at start")
     page.get_by_role("button", name="curve 05").click()
     found.wait("#record figure")
     found.settle()
     assert page.locator("#holds tbody tr").count() == 1
     page.get_by_role("button", name="‹ curves.zip").click()
-    found.wait("#tests tbody tr")
+    found.wait("#each tbody tr")
     assert found.messages == [] and found.foreign == []
+    found.context.close()
+
+
+def test_a_log_of_a_robot_needs_two_units(browser: Browser, lab: Lab, tmp_path: Path) -> None:
+    found = opened(browser, lab.address)
+    page = found.page
+    found.drop(write_mcap(tmp_path / "press.mcap", steps([3.0, 1.0], 12.0, 12.0, 1)))
+    found.wait("#record .finding")
+    assert "expected a unit for column 2 (/press.displacement), column 3 (/press.force)" in page.inner_text("#record .finding")
+    for number, unit in [(2, "mm"), (3, "N")]:
+        page.get_by_label(f"Unit of column {number}").select_option(unit)
+        found.settle()
+    found.wait("#laws .lede")
+    assert page.locator("#holds tbody tr").count() == 2
     found.context.close()
 
 
@@ -248,6 +280,38 @@ def test_records_stand_beside_each_other_and_make_one_material(browser: Browser,
     page.get_by_role("button", name="Calibrate 2 records together").click()
     found.wait("#material .finding")
     assert "specimen" in page.inner_text("#material .finding")
+    found.context.close()
+
+
+def test_a_record_that_cannot_be_calibrated_is_named_and_left_out(browser: Browser, lab: Lab) -> None:
+    assert lab.folder is not None
+    for number in (1, 2, 3, 4):
+        write(lab.folder / f"pad {number}.csv", steps([3.0, 1.0], 12.0, 12.0, number))
+        if number != 2:
+            (lab.folder / f"pad {number}.toml").write_text('[specimen]\nshape = "ball"\nradius = "35 mm"\n')
+    found = opened(browser, lab.address)
+    page = found.page
+    for number in (1, 2, 3, 4):
+        page.get_by_label(f"Choose pad {number}.csv").check()
+    page.get_by_role("button", name="Compare 4 records").click()
+    page.get_by_role("button", name="Calibrate 4 records together").click()
+    found.wait("#material .finding")
+    assert "pad 2.csv" in page.inner_text("#material .finding") and "pad 1.csv" not in page.inner_text("#material .finding")
+    assert "here under “Body”" in page.inner_text("#material .finding") and "--" not in page.inner_text("#material .finding")
+    assert "leave it out" in page.inner_text("#material .note-line")
+    assert found.accessible()
+    page.get_by_role("checkbox", name="pad 2.csv", exact=True).uncheck()
+    page.get_by_role("button", name="Calibrate 3 records together").click()
+    found.wait("#material .grip-panel figure", 60.0)
+    found.settle()
+    assert "3 specimens" in page.inner_text("#material .remarks")
+    found.click("#material .lines > summary >> nth=0")
+    assert "pad 4.csv" in page.inner_text("#material .lines >> nth=0") and "pad 2.csv" not in page.inner_text("#material .lines >> nth=0")
+    # Of two records there is none, and the page says why.
+    page.get_by_role("checkbox", name="pad 4.csv", exact=True).uncheck()
+    page.get_by_role("button", name="Calibrate 2 records together").click()
+    found.wait("#material .finding", 60.0)
+    assert "needs 3 records or more" in page.inner_text("#material .remarks")
     found.context.close()
 
 
@@ -389,4 +453,89 @@ def test_a_material_that_is_gone_is_made_again_and_none_is_overwritten(browser: 
         assert own.is_file()
         own.unlink()
     assert (lab.folder / "ball.material.toml").read_bytes() == other
+    found.context.close()
+
+
+def test_the_lines_of_python_do_the_same(browser: Browser, lab: Lab, tmp_path: Path) -> None:
+    """What the page shows to be copied is run as it stands, in the folder of the records."""
+    assert lab.folder is not None
+    for name in ("ball.csv", "ball.toml"):
+        (lab.folder / name).write_bytes((EXAMPLES / name).read_bytes())
+    pads = [write(lab.folder / f"pad {number}.csv", steps([3.0, 1.0], 12.0, 12.0, number)) for number in (1, 2)]
+    with zipfile.ZipFile(lab.folder / "curves.zip", "w") as packed:
+        for pad in pads:
+            packed.write(pad, pad.name)
+    found = opened(browser, lab.address)
+    page = found.page
+
+    def saved(box: str, name: str) -> str:
+        with page.expect_download() as download:
+            page.locator(box).get_by_role("link", name=name, exact=True).click()
+        return Path(download.value.path()).read_text()
+
+    def run(box: str) -> str:
+        found.click(f"{box} .lines > summary >> nth=0")
+        folded = page.locator(f"{box} .lines").first
+        lines = folded.locator(".copied code").last.inner_text()
+        assert lines.startswith("import palpate\n")
+        done = subprocess.run([sys.executable, "-c", lines], cwd=lab.folder, capture_output=True, text=True)
+        assert done.returncode == 0, (lines, done.stderr)
+        return done.stdout
+
+    # A record.
+    page.get_by_role("button", name="ball.csv", exact=True).click()
+    found.wait("#laws .lede")
+    found.settle()
+    on_page = json.loads(saved("#laws", "JSON"))
+    run("#laws")
+    assert json.loads((lab.folder / "ball-report/analysis.json").read_text())["holds"] == on_page["holds"]
+    assert len(on_page["holds"]) == 5
+
+    # Its material.
+    page.get_by_role("button", name="Calibrate on the whole record").click()
+    found.wait(".grip-panel figure")
+    found.settle()
+    material = lab.folder / "ball.material.toml"
+    of_page = tomllib.loads(material.read_text())
+    material.unlink()
+    run("#grip")
+    written = tomllib.loads(material.read_text())
+    assert written.keys() == of_page.keys() and written["calibration"]["record"] == of_page["calibration"]["record"]
+    assert {**written, "calibration": 0} == {**of_page, "calibration": 0}
+
+    # A grip of it.
+    page.get_by_label("Mass, g").fill("185")
+    page.get_by_label("Mass, g").press("Tab")
+    page.get_by_label("Squeeze, mm").fill("5")
+    page.get_by_label("Squeeze, mm").press("Tab")
+    page.get_by_label("Hold, s").fill("10")
+    page.get_by_label("Hold, s").press("Tab")
+    found.wait(".verdict.yes:has-text('for 10.0 s')")
+    page.get_by_role("button", name="Whole answer for this squeeze").click()
+    found.wait(".grip-panel .takeaway")
+    verdict = page.inner_text(".grip-panel p > b")
+    assert verdict.startswith("Yes") and verdict in " ".join(run(".grip-panel").split())
+
+    # Records beside each other.
+    for pad in pads:
+        page.get_by_label(f"Choose {pad.name}").check()
+    page.get_by_role("button", name="Compare 2 records").click()
+    found.wait("#compared iframe")
+    run("#compared")
+    compared = [json.loads(text) for text in ((lab.folder / "comparison/specimens.json").read_text(), saved("#compared", "JSON"))]
+    # Where the reports lie, and by which build they were made, is a matter of each.
+    for record in compared[0]["records"] + compared[1]["records"]:
+        assert record.pop("report").endswith("report.html") and record["input"].pop("depends_on_sha256")
+    assert compared[0] == compared[1] and len(compared[0]["records"]) == 2
+
+    # A file of several tests.
+    page.get_by_role("button", name="curves.zip", exact=True).click()
+    found.wait("#tests .lines")
+    run("#tests")
+    tables = [saved("#tests", "Table, CSV"), (lab.folder / "curves-holds.csv").read_text()]
+    of_page, of_python = ([*csv.DictReader(line for line in table.splitlines() if not line.startswith("#"))] for table in tables)
+    assert len(of_page) == len(of_python) >= 4 and list(of_page[0]) == list(of_python[0])
+    for one, other in zip(of_page, of_python):
+        assert [one[name] for name in ("part", "hold", "law", "findings")] == [other[name] for name in ("part", "hold", "law", "findings")]
+        assert float(one["force_end_n"]) == pytest.approx(float(other["force_end_n"]), rel=1e-5)
     found.context.close()
