@@ -264,5 +264,5 @@ fn write_parquet(
             columns: columns.iter().map(|(_, values)| numbers(values)).collect(),
         })?;
     }
-    writer.finish(&[(MARK, &origin.to_string())]).map(drop)
+    writer.finish(&[(MARK, &origin.to_string())])
 }

@@ -15,8 +15,8 @@ use palpate_files::faults::{Operation, before};
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 
-use crate::JobError;
 use crate::output::{sha256, unwritten};
+use crate::{ErrorKind, JobError};
 
 const PIECES: &str = "pieces";
 const LOCK: &str = "lock";
@@ -207,9 +207,10 @@ fn locked(path: &Path, work: &str) -> Result<File, JobError> {
     let file = File::create(path).map_err(|error| unwritten(path, &error))?;
     match file.try_lock() {
         Ok(()) => Ok(file),
-        Err(TryLockError::WouldBlock) => Err(JobError::option(
+        Err(TryLockError::WouldBlock) => Err(JobError::new(
+            ErrorKind::File(io::ErrorKind::WouldBlock),
             format!("expected no other running {work} here, found one"),
-            "wait for it, or name another table with ⟨out⟩",
+            "wait for it, or choose another ⟨out⟩".to_owned(),
         )
         .of(path.display())),
         // A file system without locks: better without than not at all.

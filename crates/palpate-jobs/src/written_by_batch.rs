@@ -30,8 +30,21 @@ fn is_table(path: &Path) -> bool {
     marked().unwrap_or(false)
 }
 
+/// Whether a folder has manifests of shards.
+fn has_manifests(folder: &Path) -> bool {
+    let is_manifest = |path: &Path| {
+        let numbers = path.file_stem().and_then(|stem| stem.to_str()?.split_once("-of-"));
+        path.extension().is_some_and(|ending| ending == "json")
+            && numbers.is_some_and(|(number, of)| [number, of].iter().all(|text| text.parse::<u32>().is_ok()))
+    };
+    folder.file_name().is_some_and(|name| name == "shards")
+        && folder
+            .read_dir()
+            .is_ok_and(|mut entries| entries.any(|entry| entry.is_ok_and(|entry| is_manifest(&entry.path()))))
+}
+
 /// Whether a path is a table of a batch, or the folder of what is done.
 pub(crate) fn is_written_by_batch(path: &Path) -> bool {
     let is_journal = |folder: &Path| folder.extension().is_some_and(|ending| ending == "journal") && is_store(folder);
-    if path.is_dir() { is_journal(path) } else { is_table(path) }
+    if path.is_dir() { is_journal(path) || has_manifests(path) } else { is_table(path) }
 }

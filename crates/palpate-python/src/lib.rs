@@ -46,7 +46,9 @@ mod _palpate {
     #[pymodule_init]
     fn init(module: &Bound<'_, PyModule>) -> PyResult<()> {
         module.add("__version__", env!("CARGO_PKG_VERSION"))?;
-        module.add("_BUILD", palpate_jobs::BUILD)?;
+        // Both stand in tables: the sources that computed a row, and the commit that they are called by.
+        let software = palpate_report::document::Software::this();
+        module.add("_BUILD", format!("{} {software}", palpate_jobs::BUILD))?;
         module.add("_SI_ENDINGS", crate::mappings::UNITS.into_py_dict(module.py())?)
     }
 
@@ -77,7 +79,7 @@ mod _palpate {
         records::read::{read, read_all},
         records::record::Record,
         records::several::{SeveralCalibrations, calibrate},
-        shards::{_found, _run_slice, _sliced, merge},
+        shards::{_checked, _found, _run_slice, _sliced, merge},
         table::Table,
     };
 }

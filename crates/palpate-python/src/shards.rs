@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use palpate_jobs::input::{NamedFile, NamedRecords};
+use palpate_jobs::input::{Described, NamedFile, NamedRecords};
 use palpate_jobs::{Batch, Merge, Merged, Shard, Slice};
 use pyo3::IntoPyObjectExt;
 use pyo3::prelude::*;
@@ -87,7 +87,37 @@ pub(crate) fn _sliced(py: Python<'_>, files: Vec<FileOfPython>, of: u32) -> PyRe
     Ok(slices.into_iter().map(stated).collect())
 }
 
-/// Analyses a slice into the folder of all; its rows, its tests, and how many of them failed.
+/// A batch without its files, and the description of them.
+fn question(
+    test: Given<'_, '_>,
+    columns: Given<'_, '_>,
+    laws: Option<Vec<String>>,
+    intervals: Option<&str>,
+    fit_until_s: Option<f64>,
+) -> PyResult<(Batch, Described)> {
+    let question = Batch {
+        laws: laws.map(|laws| all_laws(&laws)).transpose()?,
+        intervals: intervals.map(fit::intervals).transpose()?,
+        fit_until_s,
+        ..Batch::default()
+    };
+    Ok((question, described_with(test, None, columns)?))
+}
+
+/// Refuses what no slice could be analysed with.
+#[pyfunction]
+#[pyo3(signature = (*, test=None, columns=None, laws=None, intervals=None, fit_until_s=None))]
+pub(crate) fn _checked(
+    test: Given<'_, '_>,
+    columns: Given<'_, '_>,
+    laws: Option<Vec<String>>,
+    intervals: Option<&str>,
+    fit_until_s: Option<f64>,
+) -> PyResult<()> {
+    question(test, columns, laws, intervals, fit_until_s).map(drop)
+}
+
+/// Analyses a slice into the folder of all.
 #[pyfunction]
 #[pyo3(signature = (slice, files, out, *, test=None, columns=None, laws=None, intervals=None, fit_until_s=None, restart=false, threads=1))]
 #[expect(clippy::too_many_arguments, reason = "keywords of Python")]
@@ -103,7 +133,7 @@ pub(crate) fn _run_slice(
     fit_until_s: Option<f64>,
     restart: bool,
     threads: usize,
-) -> PyResult<(usize, usize, usize)> {
+) -> PyResult<()> {
     let (number, of, plan_sha256, total, first, _, start, end) = slice;
     let slice = Slice {
         shard: shard(Some(&format!("{number}/{of}")))?.ok_or_else(|| OptionError::new_err("expected a shard"))?,
@@ -114,15 +144,11 @@ pub(crate) fn _run_slice(
         start,
         end,
     };
-    let described = described_with(test, None, columns)?;
+    let (question, described) = question(test, columns, laws, intervals, fit_until_s)?;
     let question = Batch {
-        laws: laws.map(|laws| all_laws(&laws)).transpose()?,
-        intervals: intervals.map(fit::intervals).transpose()?,
-        fit_until_s,
         restart,
         threads: threads.try_into().ok(),
-        ..Batch::default()
+        ..question
     };
-    let done = writing_job(py, move |watch| question.run_slice(&slice, &described, &out, watch))?.result;
-    Ok((done.rows, done.tests, done.failures.len()))
+    writing_job(py, move |watch| question.run_slice(&slice, &described, &out, watch)).map(drop)
 }

@@ -144,7 +144,12 @@ fn a_merge_says_what_is_missing_doubled_other_or_damaged() {
     fs::write(&table, bytes).unwrap();
     refusal(
         &["holds"],
-        &["4-of-4.parquet: expected the table that shard 4/4 wrote, found another or a damaged one"],
+        &["4-of-4.parquet: expected the table that shard 4/4 wrote, found none, another or a damaged one"],
+    );
+    fs::remove_file(&table).unwrap();
+    refusal(
+        &["holds"],
+        &["4-of-4.parquet: expected the table that shard 4/4 wrote, found none", "run shard 4/4 again"],
     );
     fs::write(path("shards/4-of-4.json"), "{").unwrap();
     refusal(&["holds"], &["4-of-4.json: expected the manifest of a shard"]);
@@ -188,10 +193,38 @@ fn options_that_shards_cannot_have_are_refused() {
             .contains("expected a folder for shards, found the name of a table")
     );
     assert!(batch(&["--out", "holds", "--shard", "1/4", "--map", "E"]).contains("expected no map of a shard"));
+    assert!(
+        batch(&["--out", "holds", "--shard", "1/4", "--csv-locale", "de"])
+            .contains("expected no --csv-locale of a shard")
+    );
     assert!(batch(&["--out", "curves/c0.csv/holds", "--shard", "1/4"]).contains("c0.csv"));
     assert!(!folder.join("holds").exists());
     let error = refused(folder, &["batch", "-", "--out", "holds", "--shard", "1/4"]);
     assert!(error.contains("expected files, found standard input"), "{error}");
+}
+
+/// The manifests once were records without numbers, and a later shard had other files than an earlier one.
+#[test]
+fn shards_beside_the_records_are_no_records() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    curves(folder);
+    shards(folder, "curves/holds", 3);
+    merged(folder, "curves/holds", "merged.parquet");
+}
+
+#[test]
+fn shards_of_a_batch_do_not_replace_those_of_a_sweep() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    curves(folder);
+    fs::copy(crate::common::root().join("examples/protocols/sweep.toml"), folder.join("sweep.toml")).unwrap();
+    done(folder, &["sweep", "sweep.toml", "--out", "out", "--shard", "1/2"]);
+    let error = refused(folder, &["batch", "curves", "--out", "out", "--shard", "1/2"]);
+    assert!(error.contains("expected a folder for shards of a batch, found those of a sweep"), "{error}");
+    done(folder, &["batch", "curves", "--out", "holds", "--shard", "1/2"]);
+    let error = refused(folder, &["sweep", "sweep.toml", "--out", "holds", "--shard", "1/2"]);
+    assert!(error.contains("expected a folder for shards of a sweep, found those of a batch"), "{error}");
 }
 
 /// Killed at any time, a shard goes on where it stood; no test is lost or doubled.

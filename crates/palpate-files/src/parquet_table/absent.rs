@@ -20,7 +20,7 @@ impl<W: Write + Send> TableWriter<W> {
         match self.0 {}
     }
 
-    pub fn finish(self, _: &[(&str, &str)]) -> Result<W, TableError> {
+    pub fn finish(self, _: &[(&str, &str)]) -> Result<(), TableError> {
         match self.0 {}
     }
 }

@@ -77,11 +77,11 @@ impl<W: Write + Send> TableWriter<W> {
         Ok(self.writer.write(&batch)?)
     }
 
-    /// Writes what is left and closes the table, with texts that say what it is; returns what it was written to.
+    /// Writes what is left and closes the table, with texts that say what it is.
     ///
     /// # Errors
     /// [`TableError`] where the file cannot be written.
-    pub fn finish(mut self, marks: &[(&str, &str)]) -> Result<W, TableError> {
+    pub fn finish(mut self, marks: &[(&str, &str)]) -> Result<(), TableError> {
         let rest = self.held.split_off(0);
         if !rest.is_empty() {
             self.encode(rest)?;
@@ -90,8 +90,9 @@ impl<W: Write + Send> TableWriter<W> {
             let mark = KeyValue::new((*key).to_owned(), (*value).to_owned());
             self.writer.append_key_value_metadata(mark);
         }
-        let mut out = self.writer.into_inner()?;
-        out.flush()?;
-        Ok(out)
+        // Not `into_inner`, which makes a text of an error of the disk.
+        self.writer.finish()?;
+        self.writer.inner_mut().flush()?;
+        Ok(())
     }
 }

@@ -6,6 +6,7 @@ use std::thread::sleep;
 use std::time::{Duration, Instant};
 
 use palpate::watch::{Progress, Watch};
+use palpate_report::table::CsvLocale;
 use sha2::{Digest, Sha256};
 
 use super::begun::Begun;
@@ -36,7 +37,12 @@ impl Batch {
             let message = "expected no map of a shard: a map shows the curves of all";
             return Err(JobError::option(message, "ask `palpate merge` for it: ⟨map⟩"));
         }
+        if self.csv_locale != CsvLocale::default() {
+            let message = "expected no ⟨csv_locale⟩ of a shard: its tables are Parquet";
+            return Err(JobError::option(message, "ask `palpate merge` for it"));
+        }
         let places = Places::new(out, slice.shard)?;
+        places.check_job("batch")?;
         let options = self.options(described);
         let settings = settings(&options, described)?;
         let depends = format!("{settings} {} {}", slice.plan_sha256, slice.shard);
@@ -49,6 +55,8 @@ impl Batch {
             total: slice.total as u64,
             inputs_sha256: None,
             tests: 0,
+            rows: 0,
+            failed: 0,
             compared: options.compare.is_some(),
             is_lasting: true,
             start: None,

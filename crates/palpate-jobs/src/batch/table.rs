@@ -12,7 +12,7 @@ use super::answer::Tally;
 use super::rows::{self, table_rows};
 use super::{Batched, Entry, failures, parameters};
 use crate::JobError;
-use crate::output::{Stage, StagedFile, check_ending, check_no_folder, unwritten, unwritten_table};
+use crate::output::{Stage, StagedFile, check_ending, check_no_folder, unwritten_table};
 use crate::shard::{Manifest, Places, ShardTable};
 use crate::written_by_batch::MARK;
 
@@ -43,6 +43,9 @@ pub(super) enum Out<'a> {
     Nowhere,
 }
 
+/// The tables of a slice, in the order in which they are written.
+const KINDS: [ShardTable; 3] = [ShardTable::Parameters, ShardTable::Rows, ShardTable::Failures];
+
 /// How entries are handed over: to a function, one after the other.
 pub(super) type Taken<'a> = &'a mut dyn FnMut(Entry) -> Result<(), JobError>;
 
@@ -54,19 +57,18 @@ pub(super) fn write(
     each: impl FnOnce(Taken<'_>) -> Result<(), JobError>,
 ) -> Result<Batched, JobError> {
     let (mut batched, mut tally, mut stage) = (Batched::default(), Tally::new(), Stage::default());
-    let parquet = (Format::Parquet, CsvLocale::default());
-    let mut open = |path: &Path, how, fields| Written::open(&mut stage, path, how, fields, settings);
-    let mut tables = match &out {
-        Out::Tables(path, how) => {
-            vec![open(&of_parameters(path), *how, parameters::fields())?, open(path, *how, rows::fields())?]
-        }
-        Out::Slice(places, _) => vec![
-            open(&places.table(ShardTable::Parameters), parquet, parameters::fields())?,
-            open(&places.table(ShardTable::Rows), parquet, rows::fields())?,
-            open(&places.table(ShardTable::Failures), parquet, failures::fields())?,
-        ],
+    let paths = match &out {
+        Out::Tables(path, _) => vec![of_parameters(path), path.to_path_buf()],
+        Out::Slice(places, _) => KINDS.map(|kind| places.table(kind)).into(),
         Out::Nowhere => Vec::new(),
     };
+    let how = if let Out::Tables(_, how) = &out { *how } else { (Format::Parquet, CsvLocale::default()) };
+    let mut files = paths.iter().map(|path| stage.open(path)).collect::<Result<Vec<_>, _>>()?;
+    let fields = [parameters::fields(), rows::fields(), failures::fields()];
+    let opened = files.iter_mut().zip(&paths).zip(fields);
+    let mut tables = opened
+        .map(|((file, path), fields)| Written::new(file, path, how, fields, settings))
+        .collect::<Result<Vec<_>, JobError>>()?;
     each(&mut |entry| {
         tally.add(&entry);
         batched.map.add(&entry);
@@ -78,57 +80,49 @@ pub(super) fn write(
         batched.failures.extend(entry.failures);
         Ok(())
     })?;
-    let mut finished = Vec::new();
-    for table in tables {
-        finished.push(table.finish(settings)?);
-    }
+    tables.into_iter().try_for_each(|table| table.finish(settings))?;
     if let Out::Slice(places, mut manifest) = out {
-        let kinds = [ShardTable::Parameters, ShardTable::Rows, ShardTable::Failures];
-        for (kind, file) in kinds.into_iter().zip(&finished) {
+        for (kind, file) in KINDS.into_iter().zip(&files) {
             manifest.tables.insert(kind, file.sha256()?);
         }
-        manifest.tests = batched.tests;
-        // The table is the last to appear.
-        finished.swap(1, 2);
+        (manifest.tests, manifest.rows, manifest.failed) = (batched.tests, batched.rows, batched.failures.len());
         stage.bytes(&places.manifest(), &serde_json::to_vec_pretty(&*manifest)?)?;
+        // The table is the last to appear.
+        files.swap(1, 2);
     }
-    for file in finished {
-        stage.take(file)?;
-    }
+    files.into_iter().try_for_each(|file| stage.take(file))?;
     stage.commit()?;
     batched.answer = tally.answer(compared);
     Ok(batched)
 }
 
 /// A table that is being written.
-struct Written {
-    path: PathBuf,
-    sink: Sink<BufWriter<StagedFile>>,
+struct Written<'a> {
+    path: &'a Path,
+    sink: Sink<BufWriter<&'a mut StagedFile>>,
 }
 
-impl Written {
-    fn open(
-        stage: &mut Stage,
-        path: &Path,
+impl<'a> Written<'a> {
+    fn new(
+        file: &'a mut StagedFile,
+        path: &'a Path,
         how: (Format, CsvLocale),
         fields: Vec<Field>,
         settings: &str,
     ) -> Result<Self, JobError> {
-        let file = BufWriter::new(stage.open(path)?);
+        let sink = Sink::new(how, BufWriter::new(file), fields, settings);
         Ok(Self {
-            path: path.to_owned(),
-            sink: Sink::new(how, file, fields, settings).map_err(|error| unwritten_table(path, &error))?,
+            path,
+            sink: sink.map_err(|error| unwritten_table(path, &error))?,
         })
     }
 
     fn write(&mut self, lines: &[Vec<Value>]) -> Result<(), JobError> {
-        self.sink.write(lines).map_err(|error| unwritten_table(&self.path, &error))
+        self.sink.write(lines).map_err(|error| unwritten_table(self.path, &error))
     }
 
-    fn finish(self, settings: &str) -> Result<StagedFile, JobError> {
-        let Self { path, sink } = self;
-        let file = sink.finish(settings).map_err(|error| unwritten_table(&path, &error))?;
-        file.into_inner().map_err(|error| unwritten(&path, error.error()))
+    fn finish(self, settings: &str) -> Result<(), JobError> {
+        self.sink.finish(settings).map_err(|error| unwritten_table(self.path, &error))
     }
 }
 
@@ -178,15 +172,12 @@ impl<W: Write + Send> Sink<W> {
         Ok(())
     }
 
-    /// What it was written to.
-    fn finish(self, settings: &str) -> Result<W, TableError> {
+    fn finish(self, settings: &str) -> Result<(), TableError> {
         match self {
-            Self::Csv(mut writer, _) => {
-                writer.flush()?;
-                Ok(writer.into_inner().map_err(|error| io::Error::from(error.error().kind()))?)
-            }
-            Self::Parquet(writer, _) => writer.finish(&[(MARK, settings)]),
+            Self::Csv(mut writer, _) => writer.flush()?,
+            Self::Parquet(writer, _) => writer.finish(&[(MARK, settings)])?,
         }
+        Ok(())
     }
 }
 

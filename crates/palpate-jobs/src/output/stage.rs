@@ -64,6 +64,14 @@ impl Write for StagedFile {
 }
 
 impl StagedFile {
+    /// What was written, to be read.
+    ///
+    /// # Errors
+    /// Where it cannot be opened again.
+    pub fn read(&self) -> io::Result<File> {
+        File::open(&self.staged.written)
+    }
+
     /// SHA-256 of what was written, hexadecimal.
     ///
     /// # Errors

@@ -2,13 +2,14 @@
 
 use std::collections::BTreeMap;
 use std::fs;
+use std::io;
 use std::path::{Path, PathBuf};
 
 use serde::{Deserialize, Serialize};
 
 use super::{Places, Shard};
-use crate::JobError;
 use crate::output::file_sha256;
+use crate::{ErrorKind, JobError};
 
 /// A table of a slice.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
@@ -60,6 +61,10 @@ pub(crate) struct Manifest {
     pub(crate) inputs_sha256: Option<String>,
     /// Tests of the slice; runs of a sweep.
     pub(crate) tests: usize,
+    /// Rows of its table.
+    pub(crate) rows: usize,
+    /// Tests without rows; runs that were refused.
+    pub(crate) failed: usize,
     /// Whether laws were compared.
     pub(crate) compared: bool,
     /// Whether every failure would stay one if the slice were computed again.
@@ -86,14 +91,29 @@ impl Manifest {
     pub(crate) fn check_tables(&self, places: Places<'_>) -> Result<(), JobError> {
         for (table, sha256) in &self.tables {
             let path = places.table(*table);
-            if &file_sha256(&path)? != sha256 {
+            let found = file_sha256(&path);
+            let is_missing = |error: &JobError| error.kind == ErrorKind::File(io::ErrorKind::NotFound);
+            if found.as_ref().is_err_and(is_missing) || &found? != sha256 {
                 let message =
-                    format!("expected the table that shard {} wrote, found another or a damaged one", self.shard);
+                    format!("expected the table that shard {} wrote, found none, another or a damaged one", self.shard);
                 let hint = format!("run shard {} again: it is computed anew", self.shard);
                 return Err(JobError::option(message, &hint).of(path.display()));
             }
         }
         Ok(())
+    }
+}
+
+impl Places<'_> {
+    /// Refuses the place of a finished slice of other work.
+    pub(crate) fn check_job(&self, job: &str) -> Result<(), JobError> {
+        match Manifest::read(&self.manifest()) {
+            Ok(found) if found.job != job => {
+                let message = format!("expected a folder for shards of a {job}, found those of a {}", found.job);
+                Err(JobError::option(message, "choose another folder with ⟨out⟩").of(self.folder.display()))
+            }
+            _ => Ok(()),
+        }
     }
 }
 

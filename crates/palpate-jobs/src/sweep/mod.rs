@@ -229,18 +229,21 @@ impl Parts<'_> {
         marks: &[(&str, &str)],
     ) -> Result<StagedFile, JobError> {
         let refused = |error: TableError| unwritten_table(out, &error);
-        let mut writer = TableWriter::new(stage.open(out)?, &sweep_fields(self.sweep)).map_err(refused)?;
+        let mut file = stage.open(out)?;
+        let mut writer = TableWriter::new(&mut file, &sweep_fields(self.sweep)).map_err(refused)?;
         for place in places {
             unpacked(&self.store.read(place)?, |rows| writer.write(rows)).map_err(refused)?;
         }
-        writer.finish(marks).map_err(refused)
+        writer.finish(marks).map_err(refused)?;
+        Ok(file)
     }
 }
 
 impl Swept {
     /// The table at `out`, with what to know of it.
     fn of(out: PathBuf, runs: u64, computed_before: u64, started: Instant) -> Result<Outcome<Self>, JobError> {
-        let (refused, first) = refused(&out).map_err(|error| unwritten_table(&out, &error))?;
+        let counted = File::open(&out).map_err(TableError::from).and_then(refused);
+        let (refused, first) = counted.map_err(|error| unwritten_table(&out, &error))?;
         let first = first.map(|(run, reason)| format!("{refused} of {runs} runs refused, first run {run}: {reason}"));
         let before = match computed_before {
             0 => String::new(),
@@ -301,8 +304,8 @@ fn is_complete(out: &Path, digest: &str, runs: u64) -> bool {
 }
 
 /// How many runs of a table were refused, and the number and reason of the first that was.
-fn refused(table: &Path) -> Result<(u64, Option<(i64, String)>), TableError> {
-    let table = TableReader::new(File::open(table)?)?;
+fn refused(table: File) -> Result<(u64, Option<(i64, String)>), TableError> {
+    let table = TableReader::new(table)?;
     let (mut count, mut first) = (0, None);
     for group in 0..table.groups() {
         let reasons = table.values(group, table.fields().len() - 1)?;

@@ -2,14 +2,14 @@
 
 use std::collections::BTreeMap;
 use std::fs::File;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use palpate::watch::{Progress, Watch};
 use palpate_files::description::Sweep as SweptProtocol;
 use palpate_files::parquet_table::{TableError, TableReader, TableWriter};
 
-use super::{MARK, Parts, Sweep, Swept, digest, table_of};
+use super::{MARK, Parts, Sweep, Swept, digest, refused, table_of};
 use crate::output::{Stage, unwritten_table};
 use crate::shard::{Manifest, Places, Shard, ShardTable, finished};
 use crate::store::Store;
@@ -50,6 +50,7 @@ impl Sweep {
         };
         let own = shard.range(parts.count());
         let runs = own.clone().map(|part| parts.runs(part)).map(|runs| runs.end - runs.start).sum();
+        places.check_job("sweep")?;
         let mut manifest = Manifest {
             job: "sweep".to_owned(),
             shard,
@@ -58,6 +59,8 @@ impl Sweep {
             total: sweep.runs,
             inputs_sha256: None,
             tests: usize::try_from(runs).unwrap_or(usize::MAX),
+            rows: usize::try_from(runs).unwrap_or(usize::MAX),
+            failed: 0,
             compared: false,
             is_lasting: true,
             start: None,
@@ -76,6 +79,9 @@ impl Sweep {
         let mut stage = Stage::default();
         let written = parts.written(&mut stage, &table, &computed, &[])?;
         manifest.tables.insert(ShardTable::Rows, written.sha256()?);
+        let refused = written.read().map_err(TableError::from).and_then(refused);
+        manifest.failed =
+            usize::try_from(refused.map_err(|error| unwritten_table(&table, &error))?.0).unwrap_or(usize::MAX);
         stage.bytes(&places.manifest(), &serde_json::to_vec_pretty(&manifest)?)?;
         stage.take(written)?;
         stage.commit()?;
@@ -94,29 +100,31 @@ pub(crate) fn merge(
     let started = Instant::now();
     let out = table_of(out, Some(out))?;
     let refused = |error: TableError| unwritten_table(&out, &error);
-    let mut stage = Stage::default();
-    let mut writer = None;
-    let (mut runs, mut settings) = (0, "");
-    for (index, (places, manifest)) in parts.iter().enumerate() {
-        watch.report(Progress::counted("merging", index, parts.len()))?;
+    let open = |places: &Places<'_>| -> Result<(PathBuf, TableReader), JobError> {
         let path = places.table(ShardTable::Rows);
-        let unread = |error: TableError| unwritten_table(&path, &error);
         let file = File::open(&path).map_err(|error| JobError::unread(&path, &error))?;
-        let table = TableReader::new(file).map_err(unread)?;
-        let writer = match &mut writer {
-            Some(writer) => writer,
-            none => none.insert(TableWriter::new(stage.open(&out)?, table.fields()).map_err(refused)?),
-        };
-        for group in 0..table.groups() {
-            writer.write(table.read(group).map_err(unread)?).map_err(refused)?;
-        }
-        runs += table.rows();
-        settings = &manifest.settings;
-    }
-    let Some(writer) = writer else {
+        let table = TableReader::new(file).map_err(|error| unwritten_table(&path, &error))?;
+        Ok((path, table))
+    };
+    let Some((places, first)) = parts.first() else {
         return Err(JobError::option("expected shards, found none", "name the folder of the shards"));
     };
-    stage.take(writer.finish(&[(MARK, settings)]).map_err(refused)?)?;
+    let fields = open(places)?.1.fields().to_vec();
+    let mut stage = Stage::default();
+    let mut file = stage.open(&out)?;
+    let mut writer = TableWriter::new(&mut file, &fields).map_err(refused)?;
+    let mut runs = 0;
+    for (index, (places, _)) in parts.iter().enumerate() {
+        watch.report(Progress::counted("merging", index, parts.len()))?;
+        let (path, table) = open(places)?;
+        for group in 0..table.groups() {
+            let rows = table.read(group).map_err(|error| unwritten_table(&path, &error))?;
+            writer.write(rows).map_err(refused)?;
+        }
+        runs += table.rows();
+    }
+    writer.finish(&[(MARK, &first.settings)]).map_err(refused)?;
+    stage.take(file)?;
     stage.commit()?;
     Swept::of(out, runs, 0, started)
 }

@@ -19,6 +19,7 @@ __all__ = [
     "__version__",
     "_BUILD",
     "_SI_ENDINGS",
+    "_checked",
     "_found",
     "_run_slice",
     "_sliced",
@@ -2256,6 +2257,14 @@ def batch(
 _Slice: TypeAlias = tuple[int, int, str, int, int, int, float, float]
 _SlicedFile: TypeAlias = tuple[_Path, bytes | None] | tuple[_Path, int, Callable[[], bytes]]
 
+def _checked(
+    *,
+    test: _Described | None = None,
+    columns: _Columns | None = None,
+    laws: Sequence[LawName] | None = None,
+    intervals: Intervals | None = None,
+    fit_until_s: float | None = None,
+) -> None: ...
 def _found(paths: Sequence[_Path]) -> list[Path]: ...
 def _sliced(files: Sequence[_SlicedFile], of: int) -> list[_Slice]: ...
 def _run_slice(
@@ -2270,7 +2279,7 @@ def _run_slice(
     fit_until_s: float | None = None,
     restart: bool = False,
     threads: int = 1,
-) -> tuple[int, int, int]: ...
+) -> None: ...
 def merge(
     folders: Sequence[_Path], out: _Path, *, map: Sequence[str] | None = None, csv_locale: str | None = None
 ) -> BatchResult | tuple[int, int]:

@@ -9,19 +9,21 @@ Needs ``dask`` and ``distributed``: ``pip install palpate[dask]``.
 
 from __future__ import annotations
 
+import json
 import os
+import time
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeAlias
 
 import palpate
 from palpate import _progress
 from palpate._fits import fit_many as _fit_many
 from palpate._options import Intervals, LawName
-from palpate._palpate import _BUILD, BatchResult, OptionError, PalpateError, _found, _run_slice, _sliced
+from palpate._palpate import _BUILD, BatchResult, OptionError, PalpateError, _checked, _found, _run_slice, _sliced
 
 if TYPE_CHECKING:
     import dask.dataframe as dd
@@ -30,10 +32,18 @@ if TYPE_CHECKING:
 
     from palpate._palpate import _Slice, _SlicedFile
 
+#: A shard by its text, and what runs it.
+_Task: TypeAlias = tuple[str, Callable[[], None]]
+
 __all__ = ["Shards", "batch", "fit_many", "sweep"]
 
 #: How often a shard is tried whose worker ended, beside the tries of the scheduler.
 _TRIES = 4
+#: How often tasks are looked at, and workers; how long a shard waits that another client is at, and a manifest may be late, s.
+_POLL_S, _LOOK_S, _LOCKED_S, _LATE_S = 0.02, 2.0, 2.0, 30.0
+#: How long a cluster of this machine may be without a worker, s.
+_WITHOUT_WORKERS_S = 30.0
+_AGAIN = "hint: what is finished stays; another call goes on with the rest"
 #: Shards of a sweep, if nothing else is stated.
 _SWEEP_SHARDS = 64
 #: Bytes of a shard in a large batch.
@@ -133,13 +143,18 @@ def batch(
     ...     done = palpate.dask.batch(["curves"], "holds", client, test="cell.toml")
     >>> done.merge("holds.parquet")  # doctest: +SKIP
     """
-    listed = list(_files([files] if isinstance(files, (str, os.PathLike)) else files, dict(storage_options or {})))
-    folder = Path(out).resolve()
-    count = shards or _count_of(folder) or _count_for(listed)
+    folder = _folder(out, shards)
     options = {"test": test, "columns": columns, "laws": laws, "intervals": intervals, "fit_until_s": fit_until_s, "restart": restart}
-    here = os.getcwd() if any(not isinstance(file[1], int) and not os.path.isabs(file[0]) for file in listed) else None
+    # What is wrong is refused once, before anything is submitted.
+    _checked(**{name: value for name, value in options.items() if name != "restart"})
+    listed = list(_files([files] if isinstance(files, (str, os.PathLike)) else files, dict(storage_options or {})))
+    if not listed:
+        raise OptionError("files: expected files, found none")
+    count = shards or _count_of(folder) or _count_for(listed)
+    names = [file[0] for file in listed if not isinstance(file[1], int)] + ([test] if isinstance(test, (str, os.PathLike)) else [])
+    here = os.getcwd() if any(not os.path.isabs(name) for name in names) else None
 
-    def tasks() -> Iterator[tuple[str, Callable[[], tuple[int, int, int]]]]:
+    def tasks() -> Iterator[_Task]:
         for one in _sliced(listed, count):
             own = listed[one[4] : one[4] + one[5]]
             yield f"{one[0]}/{one[1]}", partial(_batch_shard, _BUILD, here, one, own, folder, options)
@@ -177,11 +192,11 @@ def sweep(
     OptionError, PalpateError
         As for `batch`; a protocol without a sweep.
     """
-    folder = Path(out).resolve()
+    folder = _folder(out, shards)
     count = shards or _count_of(folder) or _SWEEP_SHARDS
     stated = protocol if isinstance(protocol, Mapping) else Path(protocol).resolve()
 
-    def tasks() -> Iterator[tuple[str, Callable[[], tuple[int, int, int]]]]:
+    def tasks() -> Iterator[_Task]:
         for number in range(1, count + 1):
             yield f"{number}/{count}", partial(_sweep_shard, _BUILD, stated, folder, f"{number}/{count}", restart)
 
@@ -319,6 +334,16 @@ def _fetched(system: Any, path: str) -> bytes:
     return bytes(system.cat_file(path))
 
 
+def _folder(out: str | os.PathLike[str], shards: int | None) -> Path:
+    """The folder of the shards, where it can be one and their number is one."""
+    folder = Path(out).resolve()
+    if folder.suffix in (".parquet", ".csv") or folder.is_file():
+        raise OptionError(f"{folder}: expected a folder for shards, found the name of a file\nhint: name a folder; merge() makes one table of it")
+    if shards is not None and not (isinstance(shards, int) and shards >= 1):
+        raise OptionError(f"shards: expected a whole number from 1 on, found {shards!r}")
+    return folder
+
+
 def _count_of(folder: Path) -> int | None:
     """How many shards a folder has, where it has shards of one division."""
     counts = {path.stem.partition("-of-")[2] for kind in ("shards/*.json", "*.journal") for path in folder.glob(kind)}
@@ -342,19 +367,18 @@ def _count_for(files: Sequence[_SlicedFile]) -> int:
 
 def _batch_shard(
     build: str, here: str | None, one: _Slice, files: Sequence[_SlicedFile], folder: Path, options: Mapping[str, Any]
-) -> tuple[int, int, int]:
+) -> None:
     _check_build(build)
     if here is not None and os.getcwd() != here:
         raise OptionError(
             f"files: expected workers in {here}, found one in {os.getcwd()}\nhint: name the files by absolute paths, or start the workers there"
         )
-    return _run_slice(one, files, folder, **options)
+    _run_slice(one, files, folder, **options)
 
 
-def _sweep_shard(build: str, protocol: Any, folder: Path, shard: str, restart: bool) -> tuple[int, int, int]:
+def _sweep_shard(build: str, protocol: Any, folder: Path, shard: str, restart: bool) -> None:
     _check_build(build)
-    runs, refused = palpate.sweep(protocol, folder, shard=shard, restart=restart, threads=1)
-    return runs, runs, refused
+    palpate.sweep(protocol, folder, shard=shard, restart=restart, threads=1)
 
 
 def _check_build(build: str) -> None:
@@ -410,54 +434,102 @@ def _listed(names: Sequence[str], most: int = 5) -> str:
     return ", ".join(names[:most]) + (f" and {len(names) - most} more" if len(names) > most else "")
 
 
-def _driven(
-    client: Client | None,
-    tasks: Iterator[tuple[str, Callable[[], tuple[int, int, int]]]],
-    count: int,
-    folder: Path,
-    progress: bool | None,
-) -> Shards:
-    """Runs all tasks, a bounded number of them with the scheduler at a time; one that fails stops no other."""
+def _driven(client: Client | None, tasks: Iterator[_Task], count: int, folder: Path, progress: bool | None) -> Shards:
+    """Runs all tasks, a bounded number of them with the scheduler at a time; one that fails stops no other.
+
+    Nothing is gathered from workers, which may end behind a finished task: the manifest of a shard says what came of it.
+    """
     with _connected(client) as client, _progress.bar(progress, count, "shard") as tell:
-        from distributed import KilledWorker, as_completed
+        from distributed import KilledWorker, LocalCluster
 
         _check_workers(client)
-        running: dict[Future, tuple[str, Callable[[], tuple[int, int, int]], int]] = {}
-        completed = as_completed()
-
-        def submit(shard: str, work: Callable[[], tuple[int, int, int]], tries: int) -> None:
-            future = client.submit(work, pure=False, key=f"palpate-{shard}-{os.urandom(4).hex()}")
-            running[future] = (shard, work, tries)
-            completed.add(future)
-
-        def fill() -> None:
-            threads: dict[str, int] = client.nthreads()  # pyright: ignore[reportAssignmentType]
-            window = 2 * max(1, sum(threads.values())) + 8
-            while len(running) < window and (task := next(tasks, None)) is not None:
-                submit(*task, 1)
-
-        rows = tests = failed = done = 0
+        running: dict[Future, _Try] = {}
+        waiting: list[_Try] = []
         refused: list[str] = []
+        found: list[Mapping[str, Any]] = []
+        # A cluster of this machine starts no worker anew once its nannies have ended; others may have workers that wait in a queue.
+        limit_s = _WITHOUT_WORKERS_S if isinstance(client.cluster, LocalCluster) else float("inf")
+        looked = with_workers = time.monotonic()
+        window = _window(client)
         try:
-            fill()
-            for future in completed:
-                shard, work, tries = running.pop(future)
-                error = future.exception() if future.status != "cancelled" else PalpateError("the scheduler gave it up")
-                if isinstance(error, KilledWorker) and tries < _TRIES:
-                    submit(shard, work, tries + 1)
-                    continue
-                if error is not None:
-                    refused.append(f"{shard}: {str(error) or type(error).__name__}")
-                else:
-                    own = future.result()
-                    rows, tests, failed = rows + own[0], tests + own[1], failed + own[2]
-                done += 1
+            while len(found) + len(refused) < count:
+                now = time.monotonic()
+                if now - looked > _LOOK_S:
+                    looked, window = now, _window(client)
+                    with_workers = now if window else with_workers
+                    if now - with_workers > limit_s:
+                        shards = ", ".join(sorted(one.shard for one in running.values()))
+                        raise PalpateError(f"expected workers, found none for {limit_s:.0f} s; shards that were running: {shards}\n{_AGAIN}")
+                ready = [one for one in waiting if one.not_before <= now]
+                waiting = [one for one in waiting if one.not_before > now]
+                while len(running) + len(ready) < max(window, 1) and (task := next(tasks, None)) is not None:
+                    ready.append(_Try(*task))
+                for one in ready:
+                    running[client.submit(one.work, pure=False, key=f"palpate-{one.shard}-{os.urandom(4).hex()}")] = one
+                ended = [future for future in running if future.status != "pending"]
+                if not ended:
+                    time.sleep(_POLL_S)
+                for future in ended:
+                    one = running.pop(future)
+                    error = _error(future)
+                    if isinstance(error, KilledWorker) and one.tries < _TRIES:
+                        waiting.append(replace(one, tries=one.tries + 1))
+                    elif isinstance(error, BlockingIOError):
+                        # Another client is at it; once it has finished there is nothing left to do.
+                        waiting.append(replace(one, not_before=now + _LOCKED_S))
+                    elif isinstance(error, KilledWorker):
+                        refused.append(f"{one.shard}: every worker that ran it ended, at last {error.last_worker}")
+                    elif error is not None:
+                        refused.append(f"{one.shard}: {str(error) or type(error).__name__}")
+                    else:
+                        found.append(_manifest(folder, one.shard))
                 if tell is not None:
-                    tell(done)
-                fill()
+                    tell(len(found) + len(refused))
         finally:
-            client.cancel(list(running))
+            if client.status == "running":
+                client.cancel(list(running))
     if refused:
         reasons = "\n".join(f"  {reason}" for reason in refused[:10]) + (f"\n  and {len(refused) - 10} more" if len(refused) > 10 else "")
-        raise PalpateError(f"{len(refused)} of {count} shards could not be finished:\n{reasons}\nhint: the others are; another call goes on with these")
+        raise PalpateError(f"{len(refused)} of {count} shards could not be finished:\n{reasons}\n{_AGAIN}")
+    rows, tests, failed = (sum(int(one[name]) for one in found) for name in ("rows", "tests", "failed"))
     return Shards(folder, count, rows, tests, failed)
+
+
+@dataclass(frozen=True)
+class _Try:
+    """A shard that is to be run, and how often it was."""
+
+    shard: str
+    work: Callable[[], None]
+    tries: int = 1
+    #: Of the clock that only rises, s.
+    not_before: float = 0.0
+
+
+def _window(client: Client) -> int:
+    """How many shards are with the scheduler at a time; none where there is no worker."""
+    if client.status != "running":
+        raise PalpateError(f"expected a connection to the scheduler, found it {client.status}\n{_AGAIN}")
+    threads: dict[str, int] = client.nthreads()  # pyright: ignore[reportAssignmentType]
+    return 2 * sum(threads.values()) + 8 if threads else 0
+
+
+def _error(future: Future) -> BaseException | None:
+    """Why a task that ended has no result."""
+    if future.status == "finished":
+        return None
+    if future.status == "error":
+        error: BaseException | None = future.exception()  # pyright: ignore[reportAssignmentType]
+        return error
+    return PalpateError("the scheduler gave it up")
+
+
+def _manifest(folder: Path, shard: str) -> Mapping[str, Any]:
+    """What a finished shard says of itself, which a file system of a network may show some seconds late."""
+    path = folder / "shards" / f"{shard.replace('/', '-of-')}.json"
+    end = time.monotonic() + _LATE_S
+    while not path.exists() and time.monotonic() < end:
+        time.sleep(_POLL_S)
+    if not path.exists():
+        raise PalpateError(f"{path}: expected the manifest of a finished shard, found none\nhint: all workers need the same folder under this name")
+    return dict(json.loads(path.read_text()))

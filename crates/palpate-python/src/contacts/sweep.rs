@@ -58,6 +58,7 @@ use crate::work::writing_job;
 /// (6, 0)
 #[pyfunction]
 #[pyo3(signature = (protocol, out, *, figure=None, show=None, restart=false, shard=None, threads=None))]
+#[expect(clippy::too_many_arguments, reason = "keywords of Python")]
 pub(crate) fn sweep(
     py: Python<'_>,
     protocol: &Bound<'_, PyAny>,

@@ -14,7 +14,7 @@ import numpy as np
 import pandas
 import palpate.dask
 import pytest
-from distributed import Client, LocalCluster
+from distributed import Client, LocalCluster, WorkerPlugin
 from palpate._palpate import OptionError, PalpateError
 
 pytestmark = pytest.mark.filterwarnings("default")
@@ -138,16 +138,59 @@ def test_workers_of_another_build_and_two_clients_are_refused(client: Client, cu
         palpate.dask.batch([curves], tmp_path / "holds", client)
     assert not (tmp_path / "holds").exists()
     monkeypatch.undo()
-    # Another client is at work in the same folder.
+    # Another client is at work in the same folder for a second.
     import fcntl
+    from threading import Timer
 
     journal = tmp_path / "holds" / "1-of-2.journal"
     journal.mkdir(parents=True)
     with (journal / "lock").open("w") as lock:
         fcntl.flock(lock, fcntl.LOCK_EX)
-        with pytest.raises(PalpateError, match=r"1 of 2 shards could not be finished:\n  1/2: .*expected no other running batch here"):
-            palpate.dask.batch([curves], tmp_path / "holds", client, shards=2)
-    assert palpate.dask.batch([curves], tmp_path / "holds", client).tests == 14
+        Timer(1.0, fcntl.flock, (lock, fcntl.LOCK_UN)).start()
+        assert palpate.dask.batch([curves], tmp_path / "holds", client, shards=2).tests == 14
+
+
+def test_what_is_wrong_is_refused_once_before_anything_runs(client: Client, curves: Path, tmp_path: Path) -> None:
+    wrong: list[tuple[dict[str, object], str]] = [
+        ({"shards": 0}, "shards: expected a whole number from 1 on, found 0"),
+        ({"laws": ["newton"]}, "newton"),
+        ({"test": {"specimen": {"shape": "cube"}}}, "shape"),
+        ({"out": tmp_path / "holds.parquet"}, "expected a folder for shards"),
+        ({"files": []}, "files: expected files, found none"),
+        ({"files": [tmp_path / "none.csv"]}, "no such file"),
+    ]
+    for given, expected in wrong:
+        arguments: dict[str, object] = {"files": [curves], "out": tmp_path / "holds", **given}
+        with pytest.raises((OptionError, OSError), match=expected):
+            palpate.dask.batch(client=client, **arguments)  # type: ignore[arg-type]
+    assert not (tmp_path / "holds").exists()
+
+
+class _EndsWorkers(WorkerPlugin):  # type: ignore[misc]
+    """Ends the process of a worker whenever it runs shard 2."""
+
+    def setup(self, worker: object) -> None:
+        from palpate import dask as own
+
+        run = vars(own)["_run_slice"]
+
+        def poisoned(one: tuple[int, ...], *arguments: object, **options: object) -> None:
+            if one[0] == 2:
+                os.kill(os.getpid(), signal.SIGKILL)
+            run(one, *arguments, **options)
+
+        own.__dict__["_run_slice"] = poisoned
+
+
+def test_a_shard_that_ends_every_worker_is_named_and_the_call_comes_back(curves: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """It once hung where all workers were gone, or blamed another shard whose worker had ended behind it."""
+    monkeypatch.setattr("palpate.dask._TRIES", 1)
+    monkeypatch.setattr("palpate.dask._WITHOUT_WORKERS_S", 5.0)
+    with LocalCluster(n_workers=2, threads_per_worker=1, dashboard_address=":0") as cluster, Client(cluster) as client:
+        client.register_plugin(_EndsWorkers())
+        with pytest.raises(PalpateError, match="2/4"):
+            palpate.dask.batch([curves], tmp_path / "holds", client, shards=4)
+    assert not (tmp_path / "holds/shards/2-of-4.json").exists()
 
 
 def test_collections_are_fitted_by_partitions(client: Client) -> None:

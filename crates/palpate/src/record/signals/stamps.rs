@@ -129,13 +129,19 @@ pub(in crate::record) fn gap_rows(time: &[f64]) -> Vec<usize> {
 fn long_steps(rising: &[(usize, f64)]) -> impl Iterator<Item = (usize, f64)> {
     rising.iter().enumerate().filter_map(|(place, &(row, step))| {
         let around = place.saturating_sub(2)..(place + 3).min(rising.len());
-        let mut others: Vec<f64> = around.filter(|other| *other != place).map(|other| rising[other].1).collect();
-        if others.len() < 2 {
+        let (mut others, mut count) = ([0.0; 4], 0);
+        for other in around.filter(|other| *other != place) {
+            others[count] = rising[other].1;
+            count += 1;
+        }
+        let others = &mut others[..count];
+        // Most steps are no longer than any around them, and millions of rows are examined.
+        if count < 2 || others.iter().all(|other| step <= GAP * other) {
             return None;
         }
         others.sort_by(f64::total_cmp);
         // The upper of the middle ones: at a change of rate two of four neighbours have the new one.
-        (step > GAP * others[others.len() / 2]).then_some((row, step))
+        (step > GAP * others[count / 2]).then_some((row, step))
     })
 }
 
