@@ -134,7 +134,7 @@ impl Lines {
                 && *index < rows.len()
             {
                 *index += 1;
-                return Ok(Some(rows.columns.iter().map(|column| value(column, *index - 1)).collect()));
+                return Ok(Some(rows.columns.iter_mut().map(|column| taken(column, *index - 1)).collect()));
             }
             if self.group == self.table.groups() {
                 return Ok(None);
@@ -145,11 +145,12 @@ impl Lines {
     }
 }
 
-fn value(column: &Values, row: usize) -> Value {
+/// A value out of a column, which is read once.
+fn taken(column: &mut Values, row: usize) -> Value {
     match column {
         Values::Count(column) => column[row].into(),
         Values::OptionalCount(column) => column[row].into(),
         Values::Number(column) => column[row].into(),
-        Values::Text(column) => column[row].clone().into(),
+        Values::Text(column) => column[row].take().into(),
     }
 }

@@ -260,18 +260,21 @@ fn ending(law: &LawDocument) -> Value {
 }
 
 /// Rows as columns of a table with these fields; `None` where they belong to another one.
-pub(super) fn table_rows(fields: &[Field], lines: &[Vec<Value>]) -> Option<Rows> {
-    let column = |index: usize| lines.iter().map(move |line| line.get(index));
+pub(super) fn table_rows(fields: &[Field], mut lines: Vec<Vec<Value>>) -> Option<Rows> {
     let columns = fields.iter().enumerate().map(|(index, field)| {
+        let column = lines.iter_mut().map(move |line| line.get_mut(index));
         Some(match field.kind {
-            Kind::Count => Values::Count(column(index).map(|value| value?.as_i64()).collect::<Option<_>>()?),
+            Kind::Count => Values::Count(column.map(|value| value?.as_i64()).collect::<Option<_>>()?),
             Kind::OptionalCount => {
-                Values::OptionalCount(column(index).map(|value| Some(value?.as_i64())).collect::<Option<_>>()?)
+                Values::OptionalCount(column.map(|value| Some(value?.as_i64())).collect::<Option<_>>()?)
             }
-            Kind::Number => Values::Number(column(index).map(|value| Some(value?.as_f64())).collect::<Option<_>>()?),
+            Kind::Number => Values::Number(column.map(|value| Some(value?.as_f64())).collect::<Option<_>>()?),
             Kind::Text => {
-                let text = |value: Option<&Value>| Some(value?.as_str().map(str::to_owned));
-                Values::Text(column(index).map(text).collect::<Option<_>>()?)
+                let text = |value: Option<&mut Value>| match value?.take() {
+                    Value::String(text) => Some(Some(text)),
+                    _ => Some(None),
+                };
+                Values::Text(column.map(text).collect::<Option<_>>()?)
             }
         })
     });

@@ -3,6 +3,8 @@
 use std::ffi::OsStr;
 use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
+use std::sync::mpsc::{SyncSender, sync_channel};
+use std::thread::{Scope, ScopedJoinHandle};
 
 use palpate_files::parquet_table::{Field, TableError, TableWriter};
 use palpate_report::table::{CsvLocale, csv_writer, text_cell};
@@ -49,7 +51,8 @@ const KINDS: [ShardTable; 3] = [ShardTable::Parameters, ShardTable::Rows, ShardT
 /// How entries are handed over: to a function, one after the other.
 pub(super) type Taken<'a> = &'a mut dyn FnMut(Entry) -> Result<(), JobError>;
 
-/// Writes the entries that `each` hands over, one in memory at a time, with `settings` inside.
+/// Writes the entries that `each` hands over, a few in memory at a time, with `settings` inside. A thread encodes each table, so that all
+/// wait for the slowest alone.
 pub(super) fn write(
     out: Out<'_>,
     settings: &str,
@@ -65,22 +68,25 @@ pub(super) fn write(
     let how = if let Out::Tables(_, how) = &out { *how } else { (Format::Parquet, CsvLocale::default()) };
     let mut files = paths.iter().map(|path| stage.open(path)).collect::<Result<Vec<_>, _>>()?;
     let fields = [parameters::fields(), rows::fields(), failures::fields()];
-    let opened = files.iter_mut().zip(&paths).zip(fields);
-    let mut tables = opened
-        .map(|((file, path), fields)| Written::new(file, path, how, fields, settings))
-        .collect::<Result<Vec<_>, JobError>>()?;
-    each(&mut |entry| {
-        tally.add(&entry);
-        batched.map.add(&entry);
-        batched.rows += entry.rows.len();
-        batched.tests += entry.tests;
-        for (table, rows) in tables.iter_mut().zip([&entry.parameters, &entry.rows, &failures::rows(&entry.failures)]) {
-            table.write(rows)?;
-        }
-        batched.failures.extend(entry.failures);
-        Ok(())
+    std::thread::scope(|scope| {
+        let opened = files.iter_mut().zip(&paths).zip(fields);
+        let mut tables: Vec<Written<'_>> = opened
+            .map(|((file, path), fields)| Written::begin(scope, file, path, how, fields, settings))
+            .collect();
+        each(&mut |entry| {
+            tally.add(&entry);
+            batched.map.add(&entry);
+            batched.rows += entry.rows.len();
+            batched.tests += entry.tests;
+            let failed = failures::rows(&entry.failures);
+            for (table, rows) in tables.iter_mut().zip([entry.parameters, entry.rows, failed]) {
+                table.write(rows)?;
+            }
+            batched.failures.extend(entry.failures);
+            Ok(())
+        })?;
+        tables.iter_mut().try_for_each(Written::finish)
     })?;
-    tables.into_iter().try_for_each(|table| table.finish(settings))?;
     if let Out::Slice(places, mut manifest) = out {
         for (kind, file) in KINDS.into_iter().zip(&files) {
             manifest.tables.insert(kind, file.sha256()?);
@@ -96,33 +102,56 @@ pub(super) fn write(
     Ok(batched)
 }
 
-/// A table that is being written.
+/// Rows that wait for the thread that encodes them, in pieces.
+const WAITING: usize = 4;
+
+/// A table that a thread encodes and writes.
 struct Written<'a> {
     path: &'a Path,
-    sink: Sink<BufWriter<&'a mut StagedFile>>,
+    /// None once all rows are there.
+    rows: Option<SyncSender<Vec<Vec<Value>>>>,
+    /// None once it ended.
+    thread: Option<ScopedJoinHandle<'a, Result<(), TableError>>>,
 }
 
 impl<'a> Written<'a> {
-    fn new(
-        file: &'a mut StagedFile,
+    fn begin<'scope>(
+        scope: &'scope Scope<'scope, '_>,
+        file: &'scope mut StagedFile,
         path: &'a Path,
         how: (Format, CsvLocale),
         fields: Vec<Field>,
-        settings: &str,
-    ) -> Result<Self, JobError> {
-        let sink = Sink::new(how, BufWriter::new(file), fields, settings);
-        Ok(Self {
+        settings: &'scope str,
+    ) -> Self
+    where
+        'scope: 'a,
+    {
+        let (rows, encoded) = sync_channel::<Vec<Vec<Value>>>(WAITING);
+        let thread = scope.spawn(move || {
+            let mut sink = Sink::new(how, BufWriter::new(file), fields, settings)?;
+            encoded.into_iter().try_for_each(|rows| sink.write(rows))?;
+            sink.finish(settings)
+        });
+        Self {
             path,
-            sink: sink.map_err(|error| unwritten_table(path, &error))?,
-        })
+            rows: Some(rows),
+            thread: Some(thread),
+        }
     }
 
-    fn write(&mut self, lines: &[Vec<Value>]) -> Result<(), JobError> {
-        self.sink.write(lines).map_err(|error| unwritten_table(self.path, &error))
+    fn write(&mut self, rows: Vec<Vec<Value>>) -> Result<(), JobError> {
+        match &self.rows {
+            Some(sender) if !rows.is_empty() && sender.send(rows).is_err() => self.finish(),
+            _ => Ok(()),
+        }
     }
 
-    fn finish(self, settings: &str) -> Result<(), JobError> {
-        self.sink.finish(settings).map_err(|error| unwritten_table(self.path, &error))
+    /// Waits for the end of the thread.
+    fn finish(&mut self) -> Result<(), JobError> {
+        self.rows = None;
+        let ended = self.thread.take().map_or(Ok(Ok(())), ScopedJoinHandle::join);
+        let ended = ended.unwrap_or_else(|panic| std::panic::resume_unwind(panic));
+        ended.map_err(|error| unwritten_table(self.path, &error))
     }
 }
 
@@ -157,10 +186,10 @@ impl<W: Write + Send> Sink<W> {
         }
     }
 
-    fn write(&mut self, lines: &[Vec<Value>]) -> Result<(), TableError> {
+    fn write(&mut self, lines: Vec<Vec<Value>>) -> Result<(), TableError> {
         match self {
             Self::Csv(writer, locale) => {
-                for line in lines {
+                for line in &lines {
                     writer.write_record(line.iter().map(|value| cell(value, *locale))).map_err(io::Error::from)?;
                 }
             }
