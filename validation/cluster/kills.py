@@ -1,4 +1,4 @@
-"""Shards, merges, jobs of Slurm and processes of Dask killed at random times: what the next run makes of what they left.
+"""Shards, merges, jobs and nodes of Slurm and processes of Dask killed at random times: what the next run makes of what they left.
 
 Each kill is SIGKILL. Half of those of shards and merges come at any time, half while a temporary file is there. After some kills all is
 run again to the end, and the merged table is compared with that of the plain command.
@@ -7,6 +7,7 @@ run again to the end, and the merged table is compared with that of the plain co
 from __future__ import annotations
 
 import json
+import os
 import pathlib
 import random
 import shutil
@@ -24,10 +25,11 @@ SHARDS = 4
 TEMPORARY = ".palpate-"
 # The share of each kind among all kills.
 SHARES = {
-    "a shard": 0.4,
+    "a shard": 0.35,
     "a merge": 0.15,
     "a job of Slurm, by SIGKILL": 0.1,
     "a job of Slurm, by a requeue": 0.1,
+    "a node of Slurm": 0.05,
     "a worker of Dask": 0.1,
     "the client of Dask": 0.1,
     "the scheduler of Dask": 0.05,
@@ -49,6 +51,8 @@ class Kills:
     def __init__(self, job: Job, scratch: pathlib.Path, seed: int) -> None:
         self.job, self.scratch, self.chance = job, scratch, random.Random(seed)
         self.rounds = 0
+        # Daemons that stand in for killed ones.
+        self.daemons: list[subprocess.Popen[bytes]] = []
         self.counts = {name: Count() for name in SHARES}
         succeeded(job.batch("--out", str(job.plain)))
         self.shard_s = self._lasts(job.shard(self.fresh(), 1, SHARDS))
@@ -125,7 +129,7 @@ class Kills:
             succeeded(self.job.merge(out))
             self.compare(name, out)
 
-    def slurm(self, name: str, kills: int, kill: list[str]) -> None:
+    def slurm(self, name: str, kills: int, kill: Callable[[str], bool]) -> None:
         while self.counts[name].kills < kills:
             out = self.fresh()
             self._submit(out)
@@ -136,13 +140,32 @@ class Kills:
                     time.sleep(0.05)
                 time.sleep(self.chance.uniform(0, self.shard_s))
                 if running:
-                    self.counts[name].kills += run([*kill, self.chance.choice(running)]).returncode == 0
+                    self.counts[name].kills += kill(self.chance.choice(running))
             wait_for_slurm()
             if not out.with_name(f"{out.name}.parquet").exists():
                 # The merge has found a shard missing.
                 self._submit(out)
                 wait_for_slurm()
             self.compare(name, out)
+
+    def node(self, job: str) -> bool:
+        """Kills the node that a job runs on, all processes at once as a loss of power does, and starts it again after a while."""
+        node = run(["squeue", "--noheader", "--format=%N %A", f"--jobs={job}"]).stdout.split()
+        if len(node) != 2:
+            return False
+        conf = pathlib.Path(os.environ["SLURM_CONF"])
+        daemon = int((conf.parent / f"slurmd-{node[0]}.pid").read_text())
+        steps = run(["pgrep", "--full", rf"^slurmstepd: \[{node[1]}\."]).stdout.split()
+        pids = [daemon, *(pid for step in steps for pid in _descendants(int(step)))]
+        for pid in pids:
+            try:
+                os.kill(pid, signal.SIGKILL)
+            except ProcessLookupError:
+                continue
+        time.sleep(self.chance.uniform(0, 2))
+        log = (conf.parent / f"{node[0]}.out").open("ab")
+        self.daemons.append(subprocess.Popen(["slurmd", "-D", "-c", "-N", node[0]], stdout=log, stderr=log))
+        return bool(steps)
 
     def _submit(self, out: pathlib.Path) -> None:
         succeeded(self.job.submit(out, SHARDS), cwd=self.scratch, env=self.job.environment())
@@ -199,6 +222,12 @@ class Kills:
         return subprocess.Popen(command, stdout=log, stderr=log)
 
 
+def _descendants(pid: int) -> list[int]:
+    """A process and all below it."""
+    children = run(["pgrep", "--parent", str(pid)]).stdout.split()
+    return [pid, *(below for child in children for below in _descendants(int(child)))]
+
+
 def _temporary(folder: pathlib.Path) -> bool:
     """Whether a temporary file is in a folder or in one of its own."""
     for place in (folder, folder / "table", folder / "parameters", folder / "failures", folder / "shards"):
@@ -240,13 +269,22 @@ def page(job: Job, scratch: pathlib.Path, kills: int, seed: int, with_dask: bool
     parts: dict[str, Callable[[str, int], None]] = {
         "a shard": test.shards,
         "a merge": test.merges,
-        "a job of Slurm, by SIGKILL": lambda name, count: test.slurm(name, count, ["scancel", "--signal=KILL", "--full"]),
-        "a job of Slurm, by a requeue": lambda name, count: test.slurm(name, count, ["scontrol", "requeue"]),
+        "a job of Slurm, by SIGKILL": lambda name, count: test.slurm(
+            name, count, lambda job: run(["scancel", "--signal=KILL", "--full", job]).returncode == 0
+        ),
+        "a job of Slurm, by a requeue": lambda name, count: test.slurm(
+            name, count, lambda job: run(["scontrol", "requeue", job]).returncode == 0
+        ),
+        "a node of Slurm": lambda name, count: test.slurm(name, count, test.node),
         **({name: test.dask for name in SHARES if "Dask" in name} if with_dask else {}),
     }
     rows: list[tuple[object, ...]] = []
     for name, part in parts.items():
-        part(name, round(kills * SHARES[name]))
+        try:
+            part(name, round(kills * SHARES[name]))
+        finally:
+            while test.daemons:
+                test.daemons.pop().terminate()
         one = test.counts[name]
         rows.append((name, one.kills, one.writing or "", one.compared, one.differ, one.lost, one.doubled))
         print(rows[-1], file=sys.stderr, flush=True)

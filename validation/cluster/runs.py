@@ -52,11 +52,14 @@ def dask(job: Job, out: pathlib.Path, shards: int, workers: int) -> tuple[Cost, 
     return of_workers, of_client, start_s
 
 
-def page(job: Job, scratch: pathlib.Path, curves: int, shards: int, with_dask: bool) -> tuple[str, bool]:
-    """The tables of this part, in Markdown, and whether all merged tables are those of the plain command."""
+def page(
+    job: Job, scratch: pathlib.Path, curves: int, shards: int, workers: tuple[int, ...], with_dask: bool
+) -> tuple[str, bool]:
+    """The tables of this part, in Markdown, and whether all merged tables are those of the plain command; Dask has so many workers each time."""
     rows: list[tuple[object, ...]] = []
     memory: list[tuple[object, ...]] = []
-    one, two = plain(job, 1), plain(job, 2)
+    alone = {threads: plain(job, threads) for threads in workers}
+    two = alone[2]
     well = True
 
     def row(name: str, against: Cost | None, cost: Cost, out: pathlib.Path | None, cpu_s: float) -> None:
@@ -73,20 +76,20 @@ def page(job: Job, scratch: pathlib.Path, curves: int, shards: int, with_dask: b
         rows.append((name, f"{cost.wall_s:.1f}", f"{cpu_s:.1f}", *overhead, f"{100 * cost.others:.0f} %", *shown))
         print(rows[-1], file=sys.stderr, flush=True)
 
-    row("plain command, 1 thread", None, one, None, one.cpu_s)
-    row("plain command, 2 threads", None, two, None, two.cpu_s)
+    for threads, cost in alone.items():
+        row(f"plain command, {threads} thread{'s' * (threads > 1)}", None, cost, None, cost.cpu_s)
     memory.append(("plain command, 2 threads", f"{two.peak_bytes / MIB:.0f}", "", ""))
     out = scratch / "slurm"
     cost = slurm(job, out, shards)
     row(f"Slurm, 2 nodes, {shards} shards", two, cost, out, cost.cpu_s)
     memory.append(("Slurm, a job", f"{cost.peak_bytes / MIB:.0f}", "", ""))
-    for workers, against in ((1, one), (2, two)) if with_dask else ():
-        out = scratch / f"dask-{workers}"
-        of_workers, of_client, start_s = dask(job, out, shards, workers)
+    for count, against in alone.items() if with_dask else ():
+        out = scratch / f"dask-{count}"
+        of_workers, of_client, start_s = dask(job, out, shards, count)
         # The time of the client, which began first.
         of_client.others = max(of_client.others - of_workers.cpu_s / of_client.wall_s / (os.cpu_count() or 1), 0)
         row(
-            f"LocalCluster, {workers} worker{'s' * (workers > 1)}, {shards} shards",
+            f"LocalCluster, {count} worker{'s' * (count > 1)}, {shards} shards",
             against,
             of_client,
             out,
@@ -94,7 +97,7 @@ def page(job: Job, scratch: pathlib.Path, curves: int, shards: int, with_dask: b
         )
         memory.append(
             (
-                f"LocalCluster, {workers} worker{'s' * (workers > 1)}",
+                f"LocalCluster, {count} worker{'s' * (count > 1)}",
                 f"{of_workers.peak_bytes / MIB:.0f}",
                 f"{of_client.peak_bytes / MIB:.0f}",
                 f"{start_s:.1f}",
@@ -112,7 +115,7 @@ def page(job: Job, scratch: pathlib.Path, curves: int, shards: int, with_dask: b
         "rows doubled",
     )
     text = f"""{curves} curves of 256 samples, {shards} shards of about {two.cpu_s / shards:.0f} s of processor time. The time ends with the merged table. Slurm with two
-nodes and two workers stand against two threads of the plain command, one worker against one thread. *Others' load* is the share of both
+nodes and two workers stand against two threads of the plain command{', one worker against one thread' * (1 in workers)}. *Others' load* is the share of both
 processors that processes outside the measurement took meanwhile; where it is large, times say little. Rows are compared with those of the plain table by DuckDB.
 
 {table(head, rows)}
