@@ -86,7 +86,8 @@ class Measured:
         while True:
             for pid in self.pids or _pids_of(self.executable):
                 try:
-                    self._found[pid] = _cpu_and_peak(pid)
+                    cpu, peak = _cpu_and_peak(pid)
+                    self._found[pid] = cpu, max(peak, self._found.get(pid, (0.0, 0))[1])
                 except (OSError, ValueError, IndexError):
                     # It has ended: what was read last stands.
                     continue
@@ -111,7 +112,8 @@ def _pids_of(executable: pathlib.Path | None) -> list[int]:
 def _cpu_and_peak(pid: int) -> tuple[float, int]:
     fields = pathlib.Path(f"/proc/{pid}/stat").read_text().rsplit(")", 1)[1].split()
     status = pathlib.Path(f"/proc/{pid}/status").read_text()
-    peak = next(int(line.split()[1]) * 1024 for line in status.splitlines() if line.startswith("VmHWM"))
+    # One that has just ended has none.
+    peak = max((int(line.split()[1]) * 1024 for line in status.splitlines() if line.startswith("VmHWM")), default=0)
     return (int(fields[11]) + int(fields[12])) / TICKS_PER_S, peak
 
 

@@ -14,6 +14,7 @@ import os
 import pathlib
 import time
 
+import dask.config
 import dask.distributed
 
 import palpate.dask
@@ -31,7 +32,8 @@ def main() -> None:
     cluster = None
     if wanted.scheduler_file is None:
         # Each worker is a process of one thread; no page, no port of its own.
-        cluster = dask.distributed.LocalCluster(n_workers=wanted.workers, threads_per_worker=1, dashboard_address=None)
+        with dask.config.set(palpate.dask.SETTINGS):
+            cluster = dask.distributed.LocalCluster(n_workers=wanted.workers, threads_per_worker=1, dashboard_address=None)
         client = dask.distributed.Client(cluster)
     else:
         client = dask.distributed.Client(scheduler_file=wanted.scheduler_file)

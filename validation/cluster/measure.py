@@ -1,7 +1,7 @@
 """The measurements of docs/validation/cluster.md, with one command; as root, for Slurm:
 
-    python validation/cluster/measure.py PALPATE [--million 1000000] [--million-shards 18] [--curves 90000] [--shards 2] [--kills 100]
-        [--workers 1000] [--only million,runs,kills,scaling]
+    python validation/cluster/measure.py PALPATE [--million 1000000] [--million-shards 18] [--paired 200000] [--rounds 5]
+        [--curves 90000] [--shards 2] [--kills 100] [--workers 1000] [--only million,pairs,runs,kills,scaling]
         [--seed 1] [--write]
 
 PALPATE is the command, called `palpate`. Python needs `validation/cluster/requirements.txt`, and the package palpate for the parts on
@@ -21,13 +21,14 @@ import tempfile
 
 import curves
 import kills
+import pairs
 import runs
 import scaling
 from _cluster import PROCESSORS, ROOT, Job, succeeded
 
 PAGE = ROOT / "docs" / "validation" / "cluster.md"
 # The parts with the titles of their sections.
-PARTS = {"million": "A million curves", "runs": "One worker and two", "kills": "Kills", "scaling": "Scaling"}
+PARTS = {"million": "A million curves", "pairs": "Overhead", "runs": "One worker and two", "kills": "Kills", "scaling": "Scaling"}
 HEAD = """# Clusters
 
 A batch on a cluster against the plain command, by `validation/cluster/measure.py`; Slurm has two nodes of one processor each on this host.
@@ -38,11 +39,13 @@ How to run a batch on a cluster: [Clusters](../guides/cluster.md).
 def measured(part: str, wanted: argparse.Namespace, scratch: pathlib.Path, with_dask: bool) -> tuple[str, bool]:
     """The text of one part, and whether all is well."""
     folder = scratch / part
-    count = {"million": wanted.million, "runs": wanted.curves, "kills": 1000, "scaling": 5000}[part]
+    count = {"million": wanted.million, "pairs": wanted.paired, "runs": wanted.curves, "kills": 1000, "scaling": 5000}[part]
     curves.write(folder, count, min(1000, count // 10), seed=wanted.seed)
     job = Job(wanted.palpate, folder)
     if part == "million":
         return runs.page(job, scratch, count, wanted.million_shards, (2,), with_dask)
+    if part == "pairs":
+        return pairs.page(job, scratch, count, wanted.paired_shards, wanted.rounds, with_dask)
     if part == "runs":
         return runs.page(job, scratch, count, wanted.shards, (1, 2), with_dask)
     if part == "kills":
@@ -65,6 +68,9 @@ def main() -> int:
     parser.add_argument("palpate", type=pathlib.Path)
     parser.add_argument("--million", type=int, default=1_000_000, help="curves of the longest runs, on both processors")
     parser.add_argument("--million-shards", type=int, default=18, help="their shards; about a minute each is good")
+    parser.add_argument("--paired", type=int, default=200_000, help="curves of the runs that take turns")
+    parser.add_argument("--paired-shards", type=int, default=4, help="their shards")
+    parser.add_argument("--rounds", type=int, default=5, help="how often each of them has its turn")
     parser.add_argument("--curves", type=int, default=90_000, help="curves of the runs on one processor and on two")
     parser.add_argument("--shards", type=int, default=2, help="their shards")
     parser.add_argument("--kills", type=int, default=100)

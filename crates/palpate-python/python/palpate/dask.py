@@ -35,12 +35,22 @@ if TYPE_CHECKING:
 #: A shard by its text, and what runs it.
 _Task: TypeAlias = tuple[str, Callable[[], None]]
 
-__all__ = ["Shards", "batch", "fit_many", "sweep"]
+__all__ = ["SETTINGS", "Shards", "batch", "fit_many", "sweep"]
+
+#: Settings of Dask for a cluster whose tasks are shards: processes that compute for a minute need not look at themselves 100 times a second.
+#: `dask.config.set(palpate.dask.SETTINGS)` before the cluster is made; the cluster that is made here without a client has them.
+SETTINGS = {
+    "distributed.worker.profile.enabled": False,
+    "distributed.worker.memory.monitor-interval": "1s",
+    "distributed.admin.system-monitor.interval": "5s",
+    "distributed.admin.tick.interval": "500ms",
+}
 
 #: How often a shard is tried whose worker ended, beside the tries of the scheduler.
 _TRIES = 4
-#: How often tasks are looked at, and workers; how long a shard waits that another client is at, and a manifest may be late, s.
-_POLL_S, _LOOK_S, _LOCKED_S, _LATE_S = 0.02, 2.0, 2.0, 30.0
+#: How often tasks are looked at, at first and while none ends; how often workers; how long a shard waits that another client is at, and a
+#: manifest may be late, s.
+_POLL_S, _POLL_AT_MOST_S, _LOOK_S, _LOCKED_S, _LATE_S = 0.02, 0.25, 2.0, 2.0, 30.0
 #: How long a cluster of this machine may be without a worker, s.
 _WITHOUT_WORKERS_S = 30.0
 _AGAIN = "hint: what is finished stays; another call goes on with the rest"
@@ -390,6 +400,7 @@ def _check_build(build: str) -> None:
 def _connected(client: Client | None) -> Iterator[Client]:
     """The client, that at hand, or one of a cluster of this machine."""
     try:
+        import dask.config
         import distributed
     except ImportError:
         raise OptionError("expected distributed, found none\nhint: pip install palpate[dask]") from None
@@ -398,7 +409,8 @@ def _connected(client: Client | None) -> Iterator[Client]:
             client = distributed.default_client()
         except ValueError:
             processors = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
-            cluster = distributed.LocalCluster(n_workers=processors, threads_per_worker=1, dashboard_address=":0")
+            with dask.config.set(SETTINGS):
+                cluster = distributed.LocalCluster(n_workers=processors, threads_per_worker=1, dashboard_address=":0")
             with cluster, distributed.Client(cluster) as own:
                 yield own
             return
@@ -450,7 +462,7 @@ def _driven(client: Client | None, tasks: Iterator[_Task], count: int, folder: P
         # A cluster of this machine starts no worker anew once its nannies have ended; others may have workers that wait in a queue.
         limit_s = _WITHOUT_WORKERS_S if isinstance(client.cluster, LocalCluster) else float("inf")
         looked = with_workers = time.monotonic()
-        window = _window(client)
+        window, poll_s = _window(client), _POLL_S
         try:
             while len(found) + len(refused) < count:
                 now = time.monotonic()
@@ -468,7 +480,8 @@ def _driven(client: Client | None, tasks: Iterator[_Task], count: int, folder: P
                     running[client.submit(one.work, pure=False, key=f"palpate-{one.shard}-{os.urandom(4).hex()}")] = one
                 ended = [future for future in running if future.status != "pending"]
                 if not ended:
-                    time.sleep(_POLL_S)
+                    time.sleep(poll_s)
+                poll_s = _POLL_S if ended else min(1.2 * poll_s, _POLL_AT_MOST_S)
                 for future in ended:
                     one = running.pop(future)
                     error = _error(future)
