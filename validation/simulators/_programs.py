@@ -84,6 +84,21 @@ def stacked(numbers):
     return type(numbers[0])(*(np.array(values) for values in zip(*numbers)))
 
 
+def load_program(parameters, steps, seed):
+    """Lengths of steps, s, and forces on every contact, N: of either sign, none, and some that no displacement carries."""
+    rng = np.random.default_rng(seed)
+    shape = steps, len(parameters.depth_m)
+    section = np.where(parameters.radius_m > 0, 0.3 * np.pi * parameters.radius_m**2, parameters.area_m2)
+    loads = parameters.modulus_pa * section * rng.uniform(-0.1, 0.5, shape) * (rng.uniform(size=shape) < 0.8)
+    loads[9::10] *= 20
+    return np.exp(rng.uniform(np.log(1e-4), np.log(0.3), steps)), loads
+
+
+def state_of(contact):
+    """Share of the displacement of the jaw and displacement of the node behind the layer, m, of a `palpate.ContactState`."""
+    return struct.unpack("<8xdd", contact.__reduce__()[1][1])
+
+
 def of_rust(descriptions, dt, displacements):
     """Forces, N, and states (jaw, behind), m, of `palpate.ContactState` after every step."""
     import palpate
@@ -93,8 +108,24 @@ def of_rust(descriptions, dt, displacements):
     for step, (length, to) in enumerate(zip(dt, displacements)):
         for index, contact in enumerate(contacts):
             forces[step, index] = contact.step(length, to[index])
-            states[step, index] = struct.unpack("<8xdd", contact.__reduce__()[1][1])
+            states[step, index] = state_of(contact)
     return forces, states
+
+
+def of_rust_loads(descriptions, dt, loads):
+    """States (jaw, behind), m, after every step by a force, and how many steps were refused."""
+    import palpate
+
+    contacts = [palpate.ContactState(description) for description in descriptions]
+    states, refused = np.empty((*loads.shape, 2)), 0
+    for step, (length, to) in enumerate(zip(dt, loads)):
+        for index, contact in enumerate(contacts):
+            try:
+                contact.step_force(length, to[index])
+            except palpate.ModelError:
+                refused += 1
+            states[step, index] = state_of(contact)
+    return states, refused
 
 
 def reference(seed=1, steps=200):

@@ -77,8 +77,28 @@ def programs():
     ]
     for body in next(iter(found.values())):
         lines.append(f"| {body} | {' | '.join(f'{max(by_body[body]):.1e}' for by_body in found.values())} |")
-    lines += ["", one_step(stored)]
-    return lines
+    return [*lines, "", one_step(stored), "", loads()]
+
+
+def loads():
+    """Steps by a force, in double precision."""
+    import jax
+    import jax.numpy as jnp
+    import palpate.jax as twin
+    from palpate._twin_parameters import contact_numbers
+
+    described = _programs.models()
+    parameters = _programs.stacked([contact_numbers(one) for one in described])
+    dt, forces = _programs.load_program(parameters, 200, 5)
+    expected, refused = _programs.of_rust_loads(described, dt, forces)
+    exact, step = twin.contact_parameters(parameters, jnp.float64), jax.jit(twin.contact_step_force)
+    state, worst = twin.contact_state(exact), 0.0
+    for index, (length, to) in enumerate(zip(dt, forces)):
+        state, _ = step(exact, state, length, to)
+        found = np.stack([state.jaw_m, state.behind_m], axis=-1)
+        worst = max(worst, float((np.abs(found - expected[index]) / parameters.depth_m[:, None]).max()))
+    within(worst, 1e-12, "JAX, steps by a force")
+    return f"{forces.size} steps by a force in JAX, {refused} of which no displacement carries: {worst:.1e} of the depth at most."
 
 
 def numpy_runs(stored):

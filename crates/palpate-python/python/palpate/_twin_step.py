@@ -57,36 +57,34 @@ class ContactArrays(NamedTuple):
     excess: Any
 
 
-#: A function of the share of a step, and of what else it depends on, whose sign changes once.
-Crossed = Callable[..., Any]
-
-
 class Library(NamedTuple):
     """A library of arrays, and what it does in its own way."""
 
     #: numpy, or jax.numpy.
     xp: Any
-    #: ``branch(any, crossing, otherwise)`` calls one of two functions without arguments.
+    #: ``branch(which, one, other)`` calls one of two functions without arguments.
     branch: Callable[[Any, Callable[[], Any], Callable[[], Any]], Any]
-    #: ``crossing(function, arguments, like)``: where in 0…1 ``function(share, *arguments)`` falls through zero.
-    crossing: Callable[[Crossed, tuple[Any, ...], Any], Any]
+    #: ``repeat(count, function, start)`` calls a function of one argument on its own results.
+    repeat: Callable[[int, Callable[[Any], Any], Any], Any]
+    #: A tree of arrays that is taken as constant in derivatives.
+    constant: Callable[[Any], Any]
+    #: ``root(function, at, arguments)``: the root at which ``function(at, *arguments)`` is zero, with its derivatives in the arguments.
+    root: Callable[[Callable[..., Any], Any, tuple[Any, ...]], Any]
 
 
-def bisected(xp: Any, function: Callable[[Any], Any], above: Any, below: Any) -> tuple[Any, Any]:
-    """One bisection of the interval between a share with a value above zero and one without."""
-    middle = 0.5 * (above + below)
-    is_above = function(middle) > 0.0
-    return xp.where(is_above, middle, above), xp.where(is_above, below, middle)
+def _repeated(count: int, function: Callable[[Any], Any], start: Any) -> Any:
+    for _ in range(count):
+        start = function(start)
+    return start
 
 
-def _numpy_crossing(function: Crossed, arguments: tuple[Any, ...], like: Any) -> Any:
-    above, below = np.zeros_like(like), np.ones_like(like)
-    for _ in range(BISECTIONS):
-        above, below = bisected(np, lambda share: function(share, *arguments), above, below)
-    return above
-
-
-NUMPY = Library(np, lambda any_crosses, crossing, otherwise: crossing() if any_crosses else otherwise(), _numpy_crossing)
+NUMPY = Library(
+    xp=np,
+    branch=lambda which, one, other: one() if which else other(),
+    repeat=_repeated,
+    constant=lambda tree: tree,
+    root=lambda function, at, arguments: at,
+)
 
 
 def state_of(parameters: ContactParameters, jaw_m: Any, behind_m: Any) -> ContactArrays:
@@ -112,7 +110,7 @@ def force(library: Library, parameters: ContactParameters, state: ContactArrays)
     """Contact force F = E ε A(u), N; 0 while the jaw is off."""
     xp, p = library.xp, parameters
     strain = state.excess + state.jaw_m / p.depth_m
-    value = p.modulus_pa * strain * _area(xp, p, state.jaw_m)
+    value = p.modulus_pa * strain * area(xp, p, state.jaw_m)
     return xp.where(xp.logical_or(p.bonded > 0.0, strain > 0.0), value, xp.zeros_like(value))
 
 
@@ -121,7 +119,7 @@ def stiffness(library: Library, parameters: ContactParameters, state: ContactArr
     xp, p = library.xp, parameters
     strain = state.excess + state.jaw_m / p.depth_m
     growth = xp.where((p.radius_m > 0.0) & (state.jaw_m >= 0.0), 2.0 * np.pi * (p.radius_m - state.jaw_m), 0.0)
-    value = p.share * p.modulus_pa * (_area(xp, p, state.jaw_m) * p.layers / p.depth_m + strain * growth)
+    value = p.share * p.modulus_pa * (area(xp, p, state.jaw_m) * p.layers / p.depth_m + strain * growth)
     return xp.where(_touches(xp, p, state), value, xp.zeros_like(value))
 
 
@@ -142,20 +140,20 @@ def step(
     pressed, free = _pressed(xp, p, state, dt, to), _free(xp, p, state, dt, to)
     leaves = touching & xp.logical_not(_touches(xp, p, pressed))
     meets = xp.logical_not(touching) & (free.behind_m <= free.jaw_m)
-    same = _chosen(xp, touching, pressed, free)
+    same = chosen(xp, touching, pressed, free)
 
     def crossing() -> ContactArrays:
-        share = library.crossing(lambda *a: _apart(xp, *a), (p, state, dt, to, touching), same.jaw_m)
+        share = _crossing(library, same.jaw_m, p, state, dt, to, touching)
         at, after = state.jaw_m + share * (to - state.jaw_m), (1.0 - share) * dt
         leaving = _pressed(xp, p, state, share * dt, at)
         surface = leaving._replace(behind_m=xp.maximum(leaving.jaw_m, leaving.behind_m))
         left = _free(xp, p, surface, after, to)
         meeting = _free(xp, p, state, share * dt, at)
         met = _pressed(xp, p, state_of(p, meeting.behind_m, meeting.behind_m), after, to)
-        return _chosen(xp, leaves, left, _chosen(xp, meets, met, same))
+        return chosen(xp, leaves, left, chosen(xp, meets, met, same))
 
     moved = library.branch(xp.any(leaves | meets), crossing, lambda: same)
-    moved = _chosen(xp, good, moved, state)
+    moved = chosen(xp, good, moved, state)
     return moved, force(library, p, moved)
 
 
@@ -165,7 +163,7 @@ def numpy_step(parameters: ContactParameters, state: ContactArrays, dt_s: Any, d
         return step(NUMPY, parameters, state, dt_s, displacement_m)
 
 
-def _chosen(xp: Any, which: Any, one: ContactArrays, other: ContactArrays) -> ContactArrays:
+def chosen(xp: Any, which: Any, one: ContactArrays, other: ContactArrays) -> ContactArrays:
     return ContactArrays(*(xp.where(which, a, b) for a, b in zip(one, other, strict=True)))
 
 
@@ -173,9 +171,23 @@ def _touches(xp: Any, p: ContactParameters, state: ContactArrays) -> Any:
     return xp.logical_or(p.bonded > 0.0, state.jaw_m >= state.behind_m)
 
 
-def _area(xp: Any, p: ContactParameters, u: Any) -> Any:
+def area(xp: Any, p: ContactParameters, u: Any) -> Any:
     inside = xp.maximum(u, 0.0)
     return xp.where(p.radius_m > 0.0, np.pi * inside * (2.0 * p.radius_m - inside), p.area_m2)
+
+
+def _crossing(library: Library, like: Any, *arguments: Any) -> Any:
+    """Where in 0…1 of the step the jaw leaves or meets the body."""
+    xp, fixed = library.xp, library.constant(arguments)
+
+    def halved(bracket: tuple[Any, Any]) -> tuple[Any, Any]:
+        above, below = bracket
+        middle = 0.5 * (above + below)
+        is_apart = _apart(xp, middle, *fixed) > 0.0
+        return xp.where(is_apart, middle, above), xp.where(is_apart, below, middle)
+
+    above, _ = library.repeat(BISECTIONS, halved, (xp.zeros_like(like), xp.ones_like(like)))
+    return library.root(lambda share, *arguments: _apart(xp, share, *arguments), above, arguments)
 
 
 def _apart(xp: Any, share: Any, p: ContactParameters, state: ContactArrays, dt: Any, to: Any, touching: Any) -> Any:
@@ -188,17 +200,17 @@ def _apart(xp: Any, share: Any, p: ContactParameters, state: ContactArrays, dt: 
 def _pressed(xp: Any, p: ContactParameters, state: ContactArrays, dt: Any, to: Any) -> ContactArrays:
     """In contact all along."""
     kick = 0.5 * (to - state.jaw_m) * (p.layers - 1.0) / p.depth_m
-    excess = _relaxed(xp, p, state.excess + kick, dt) + kick
+    excess = relaxed(xp, p, state.excess + kick, dt) + kick
     return ContactArrays(to, to - p.depth_m / p.layers * (excess + to / p.depth_m), excess)
 
 
 def _free(xp: Any, p: ContactParameters, state: ContactArrays, dt: Any, to: Any) -> ContactArrays:
     """The surface on its own: the law itself in a time that is slower by the number of layers."""
-    left = _relaxed(xp, p, state.behind_m / p.depth_m, dt / p.layers)
+    left = relaxed(xp, p, state.behind_m / p.depth_m, dt / p.layers)
     return state_of(p, to, p.depth_m * left)
 
 
-def _relaxed(xp: Any, p: ContactParameters, excess: Any, elapsed: Any) -> Any:
+def relaxed(xp: Any, p: ContactParameters, excess: Any, elapsed: Any) -> Any:
     """Excess strain after some time at constant equilibrium strain: x₀ [1 + (n − 1) λ t]^(−1/(n − 1)) with λ = v |x₀|ⁿ⁻¹.
 
     The branches of ``where`` that are not taken have finite derivatives, too.

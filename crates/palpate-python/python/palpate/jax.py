@@ -23,10 +23,11 @@ Gradients are those of the closed form, and where a jaw leaves or meets its body
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Any
 
-from palpate import _twin_step
-from palpate._twin_step import ContactArrays, ContactParameters, Crossed, Library
+from palpate import _twin_force, _twin_step
+from palpate._twin_step import ContactArrays, ContactParameters, Library
 
 try:
     import jax
@@ -42,28 +43,30 @@ __all__ = [
     "contact_parameters",
     "contact_state",
     "contact_step",
+    "contact_step_force",
     "contact_stiffness",
 ]
 
 
-def _crossing(function: Crossed, arguments: tuple[Any, ...], like: Any) -> Any:
-    """Where in 0…1 a function of the share falls through zero, with the derivative of that place.
-
-    The bisections have none of their own. Of f(s, θ) = 0 follows ds/dθ = −(∂f/∂θ)/(∂f/∂s), which is added to a place that stays the same.
-    """
-    frozen = jax.tree.map(jax.lax.stop_gradient, arguments)
-
-    def once(_: int, bracket: tuple[Any, Any]) -> tuple[Any, Any]:
-        return _twin_step.bisected(jnp, lambda share: function(share, *frozen), *bracket)
-
-    bracket = jnp.zeros_like(like), jnp.ones_like(like)
-    share = jax.lax.stop_gradient(jax.lax.fori_loop(0, _twin_step.BISECTIONS, once, bracket)[0])
-    slope = jax.jvp(lambda s: function(s, *frozen), (share,), (jnp.ones_like(share),))[1]
-    moved = -function(share, *arguments) / jnp.where(slope == 0.0, 1.0, slope)
-    return share + (moved - jax.lax.stop_gradient(moved))
+def _constant(tree: Any) -> Any:
+    return jax.tree.map(jax.lax.stop_gradient, tree)
 
 
-_JAX = Library(jnp, lambda any_crosses, crossing, otherwise: jax.lax.cond(any_crosses, crossing, otherwise), _crossing)
+def _root(function: Callable[..., Any], at: Any, arguments: tuple[Any, ...]) -> Any:
+    """A root with the derivatives of the place: of f(s, θ) = 0 follows ds/dθ = −(∂f/∂θ)/(∂f/∂s). Its value stays the same."""
+    at, fixed = _constant(at), _constant(arguments)
+    slope = jax.jvp(lambda s: function(s, *fixed), (at,), (jnp.ones_like(at),))[1]
+    moved = -function(at, *arguments) / jnp.where(slope == 0.0, 1.0, slope)
+    return at + (moved - jax.lax.stop_gradient(moved))
+
+
+_JAX = Library(
+    xp=jnp,
+    branch=lambda which, one, other: jax.lax.cond(which, one, other),
+    repeat=lambda count, function, start: jax.lax.fori_loop(0, count, lambda _, value: function(value), start),
+    constant=_constant,
+    root=_root,
+)
 
 
 def contact_parameters(model: Any, dtype: Any = None) -> ContactParameters:
@@ -154,6 +157,31 @@ def contact_step(parameters: ContactParameters, state: ContactArrays, dt_s: Any,
     """
     kind = jnp.result_type(state.jaw_m)
     return _twin_step.step(_JAX, parameters, state, jnp.asarray(dt_s, kind), jnp.asarray(displacement_m, kind))
+
+
+def contact_step_force(parameters: ContactParameters, state: ContactArrays, dt_s: Any, force_n: Any) -> tuple[ContactArrays, Any]:
+    """Applies forces within a time step, as `ContactState.step_force` does.
+
+    The layer takes half the change at once, creeps for ``dt_s``, and takes the other half: second order in ``dt_s``, stable at any.
+
+    Parameters
+    ----------
+    parameters, state
+        Of one contact or many.
+    dt_s : array_like
+        Length of the step, s; 0 or more.
+    force_n : array_like
+        The force at the end of the step, N; at 0 N the jaw follows the surface.
+
+    Returns
+    -------
+    state : ContactArrays
+    displacement_m : array
+        Displacement of the jaw at the end of the step, m. A step that cannot be made, of a force that no displacement carries or that
+        pulls where nothing can be pulled, leaves the state as it is.
+    """
+    kind = jnp.result_type(state.jaw_m)
+    return _twin_force.step_force(_JAX, parameters, state, jnp.asarray(dt_s, kind), jnp.asarray(force_n, kind))
 
 
 def contact_accepts(parameters: ContactParameters, dt_s: Any, displacement_m: Any) -> Any:

@@ -15,7 +15,7 @@ from typing import Any
 import numpy as np
 import palpate
 import pytest
-from palpate import _twin_step
+from palpate import _twin_force, _twin_step
 from palpate._twin_parameters import SHAPES, UNITS, contact_numbers
 from palpate._twin_step import NUMPY
 
@@ -58,6 +58,21 @@ def test_the_formula_over_arrays_is_the_step_of_rust(programs: Any, stored: Any)
         state, forces[step] = _twin_step.numpy_step(parameters, state, dt, to)
         states[step] = np.stack([state.jaw_m, state.behind_m], axis=-1)
     assert largest(programs, stored, forces, states) < 1e-12
+
+
+def test_a_step_by_a_force_is_that_of_rust(programs: Any) -> None:
+    described = programs.models()
+    parameters = programs.stacked([contact_numbers(one) for one in described])
+    dt, loads = programs.load_program(parameters, 60, 5)
+    expected, refused = programs.of_rust_loads(described, dt, loads)
+    assert 100 < refused < loads.size / 2
+    at_rest = np.zeros(len(described))
+    state = _twin_step.state_of(parameters, at_rest, at_rest)
+    for index, (length, to) in enumerate(zip(dt, loads, strict=True)):
+        state, displacements = _twin_force.step_force(NUMPY, parameters, state, length, to)
+        found = np.stack([state.jaw_m, state.behind_m], axis=-1)
+        assert np.abs(found - expected[index]).max() < 1e-12 * parameters.depth_m.min()
+        assert (displacements == state.jaw_m / parameters.share).all()
 
 
 @pytest.mark.parametrize("contact", [{}, {"separation": False}])
