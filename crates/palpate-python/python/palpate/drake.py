@@ -88,7 +88,7 @@ class ContactSystem(LeafSystem):
         self._count, self._warned = count, False
         self._state = self.DeclareDiscreteState(2 * count)
         #: Time of the last update, s.
-        self._last = self.DeclareDiscreteState([-1.0])
+        self._last = self.DeclareDiscreteState(np.array([-1.0]))
         self._declare_input()
         self.DeclarePeriodicDiscreteUpdateEvent(period_sec=period_s, offset_sec=0.0, update=self._update)
         for name, value in (("force_n", self._forces), ("stiffness_n_per_m", self._stiffnesses), ("surface_m", self._surfaces)):
@@ -105,7 +105,7 @@ class ContactSystem(LeafSystem):
     def reset(self, context: Any) -> None:
         """Puts the contacts of a context back to first touch and rest."""
         context.get_mutable_discrete_state(self._state).SetFromVector(np.zeros(2 * self._count))
-        context.get_mutable_discrete_state(self._last).SetFromVector([-1.0])
+        context.get_mutable_discrete_state(self._last).SetFromVector(np.array([-1.0]))
 
     def _stepped(self, context: Any) -> tuple[ContactArrays, _Doubles]:
         """State and forces now: a step from the last update."""
@@ -131,7 +131,7 @@ class ContactSystem(LeafSystem):
     def _update(self, context: Any, discrete_state: Any) -> None:
         state, _ = self._stepped(context)
         discrete_state.get_mutable_vector(self._state).SetFromVector(np.concatenate([state.jaw_m, state.behind_m]))
-        discrete_state.get_mutable_vector(self._last).SetFromVector([context.get_time()])
+        discrete_state.get_mutable_vector(self._last).SetFromVector(np.array([context.get_time()]))
 
     def _forces(self, context: Any) -> _Doubles:
         return self._stepped(context)[1]
