@@ -219,7 +219,8 @@ GRIPPER = """
     </body>
     <body pos="0 0.3 0.3">
       <freejoint/><geom type="box" size="0.03 0.03 0.03" mass="0.2"/>
-      <body pos="0 0 0.05"><joint type="hinge" axis="1 0 0" damping="0.01"/><geom type="capsule" fromto="0 0 0 0 0 0.1" size="0.01" mass="0.05"/>
+      <body pos="0 0 0.05">
+        <joint type="hinge" axis="1 0 0" damping="0.01"/><geom type="capsule" fromto="0 0 0 0 0 0.1" size="0.01" mass="0.05"/>
       </body>
     </body>
   </worldbody>

@@ -24,6 +24,7 @@ Gradients are those of the closed form, and where a jaw leaves or meets its body
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import partial
 from typing import Any
 
 from palpate import _twin_force, _twin_step
@@ -67,6 +68,9 @@ _JAX = Library(
     constant=_constant,
     root=_root,
 )
+# Compiled once for a shape, where a caller compiles nothing.
+_stepped: Callable[..., tuple[ContactArrays, Any]] = jax.jit(partial(_twin_step.step, _JAX))
+_stepped_by_force: Callable[..., tuple[ContactArrays, Any]] = jax.jit(partial(_twin_force.step_force, _JAX))
 
 
 def contact_parameters(model: Any, dtype: Any = None) -> ContactParameters:
@@ -156,7 +160,7 @@ def contact_step(parameters: ContactParameters, state: ContactArrays, dt_s: Any,
         and its gradient with respect to the step is zero.
     """
     kind = jnp.result_type(state.jaw_m)
-    return _twin_step.step(_JAX, parameters, state, jnp.asarray(dt_s, kind), jnp.asarray(displacement_m, kind))
+    return _stepped(parameters, state, jnp.asarray(dt_s, kind), jnp.asarray(displacement_m, kind))
 
 
 def contact_step_force(parameters: ContactParameters, state: ContactArrays, dt_s: Any, force_n: Any) -> tuple[ContactArrays, Any]:
@@ -181,7 +185,7 @@ def contact_step_force(parameters: ContactParameters, state: ContactArrays, dt_s
         pulls where nothing can be pulled, leaves the state as it is.
     """
     kind = jnp.result_type(state.jaw_m)
-    return _twin_force.step_force(_JAX, parameters, state, jnp.asarray(dt_s, kind), jnp.asarray(force_n, kind))
+    return _stepped_by_force(parameters, state, jnp.asarray(dt_s, kind), jnp.asarray(force_n, kind))
 
 
 def contact_accepts(parameters: ContactParameters, dt_s: Any, displacement_m: Any) -> Any:
