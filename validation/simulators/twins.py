@@ -316,7 +316,7 @@ def newton_run():
     import palpate.warp
     import warp as wp
 
-    builder = newton.ModelBuilder(gravity=0.0)
+    builder = newton.ModelBuilder(gravity=(0.0, 0.0, 0.0))
     finger = builder.add_link(mass=0.2, inertia=wp.mat33(np.eye(3) * 1e-4), xform=wp.transform((-0.06, 0.0, 0.0), wp.quat_identity()))
     joint = builder.add_joint_prismatic(
         parent=-1, child=finger, parent_xform=wp.transform((-0.06, 0.0, 0.0), wp.quat_identity()), axis=newton.Axis.X
