@@ -138,9 +138,9 @@ def page(stored=None, device="cuda:0", most=1e7):
     ]
     runs = [
         ("Warp, double", lambda: warp_runs(stored, wp.float64, device), 1e-12),
-        ("Warp, single", lambda: warp_runs(stored, wp.float32, device), 1e-4),
+        ("Warp, single", lambda: warp_runs(stored, wp.float32, device), 1e-6),
         ("JAX, double", lambda: jax_runs(stored, jnp.float64, on), 1e-12),
-        ("JAX, single", lambda: jax_runs(stored, jnp.float32, on), 1e-4),
+        ("JAX, single", lambda: jax_runs(stored, jnp.float32, on), 1e-6),
     ]
     wrong = []
     for title, run, limit in runs:

@@ -135,7 +135,8 @@ def step(
     state = ContactArrays(*(xp.broadcast_to(value, shape) for value in state))
     good = accepts(library, p, dt_s, displacement_m)
     dt = xp.where(good, dt_s, xp.zeros_like(state.jaw_m))
-    to = xp.where(good, p.share * displacement_m, state.jaw_m)
+    # A product with NaN has derivatives of NaN, also where another is chosen.
+    to = xp.where(good, p.share * xp.where(good, displacement_m, 0.0), state.jaw_m)
     touching = _touches(xp, p, state)
     pressed, free = _pressed(xp, p, state, dt, to), _free(xp, p, state, dt, to)
     leaves = touching & xp.logical_not(_touches(xp, p, pressed))
@@ -194,7 +195,9 @@ def _apart(xp: Any, share: Any, p: ContactParameters, state: ContactArrays, dt: 
     """Above zero while a jaw that touches still does, and while one that is off still is."""
     at = state.jaw_m + share * (to - state.jaw_m)
     pressed, free = _pressed(xp, p, state, share * dt, at), _free(xp, p, state, share * dt, at)
-    return xp.where(touching, pressed.jaw_m - pressed.behind_m, free.behind_m - free.jaw_m)
+    # The strain rather than jaw − behind, of which single precision has fewer digits.
+    strained = p.depth_m / p.layers * (pressed.excess + at / p.depth_m)
+    return xp.where(touching, strained, free.behind_m - free.jaw_m)
 
 
 def _pressed(xp: Any, p: ContactParameters, state: ContactArrays, dt: Any, to: Any) -> ContactArrays:
@@ -216,9 +219,9 @@ def relaxed(xp: Any, p: ContactParameters, excess: Any, elapsed: Any) -> Any:
     The branches of ``where`` that are not taken have finite derivatives, too.
     """
     over = p.exponent - 1.0
-    at_rest = (excess == 0.0) & (over != 0.0)
-    scaled = p.rate_coefficient_per_s * xp.where(at_rest, 1.0, xp.abs(excess)) ** over * elapsed
-    scaled = xp.where(at_rest, xp.zeros_like(scaled), scaled)
+    is_zero = excess == 0.0
+    scaled = p.rate_coefficient_per_s * xp.where(is_zero, 1.0, xp.abs(excess)) ** over * elapsed
+    scaled = xp.where(is_zero & (over != 0.0), xp.zeros_like(scaled), scaled)
     scaled = xp.minimum(scaled, xp.finfo(scaled.dtype).max)
     z = over * scaled
     # Near n = 1 and for short times ln(1 + z)/(n − 1) by its series: smooth in n.

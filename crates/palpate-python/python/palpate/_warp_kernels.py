@@ -152,8 +152,8 @@ def contact_accepts(p: Any, dt: Any, displacement: Any):
 def apart(p: Any, jaw: Any, behind: Any, excess: Any, dt: Any, to: Any, touching: bool):
     """Above zero while a jaw that touches still does, and while one that is off still is."""
     if touching:
-        after, strained = pressed(p, jaw, excess, dt, to)
-        return to - after
+        node, after = pressed(p, jaw, excess, dt, to)
+        return after + to / p.depth_m
     return free(p, behind, dt) - to
 
 

@@ -90,7 +90,9 @@ class ContactSystem(LeafSystem):
         #: Time of the last update, s.
         self._last = self.DeclareDiscreteState(np.array([-1.0]))
         self._declare_input()
-        self.DeclarePeriodicDiscreteUpdateEvent(period_sec=period_s, offset_sec=0.0, update=self._update)
+        # A discrete plant updates itself by an unrestricted event, which Drake handles before discrete ones: as one of these, this update
+        # would find the plant a step ahead.
+        self.DeclarePeriodicUnrestrictedUpdateEvent(period_sec=period_s, offset_sec=0.0, update=self._update)
         for name, value in (("force_n", self._forces), ("stiffness_n_per_m", self._stiffnesses), ("surface_m", self._surfaces)):
             self.DeclareVectorOutputPort(name, count, _calculation(value))
 
@@ -128,10 +130,11 @@ class ContactSystem(LeafSystem):
             )
         return _twin_step.numpy_step(self.parameters, state, elapsed, to)
 
-    def _update(self, context: Any, discrete_state: Any) -> None:
-        state, _ = self._stepped(context)
-        discrete_state.get_mutable_vector(self._state).SetFromVector(np.concatenate([state.jaw_m, state.behind_m]))
-        discrete_state.get_mutable_vector(self._last).SetFromVector(np.array([context.get_time()]))
+    def _update(self, context: Any, state: Any) -> None:
+        contacts, _ = self._stepped(context)
+        discrete = state.get_mutable_discrete_state()
+        discrete.get_mutable_vector(self._state).SetFromVector(np.concatenate([contacts.jaw_m, contacts.behind_m]))
+        discrete.get_mutable_vector(self._last).SetFromVector(np.array([context.get_time()]))
 
     def _forces(self, context: Any) -> _Doubles:
         return self._stepped(context)[1]

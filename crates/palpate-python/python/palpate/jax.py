@@ -57,7 +57,9 @@ def _root(function: Callable[..., Any], at: Any, arguments: tuple[Any, ...]) -> 
     """A root with the derivatives of the place: of f(s, θ) = 0 follows ds/dθ = −(∂f/∂θ)/(∂f/∂s). Its value stays the same."""
     at, fixed = _constant(at), _constant(arguments)
     slope = jax.jvp(lambda s: function(s, *fixed), (at,), (jnp.ones_like(at),))[1]
-    moved = -function(at, *arguments) / jnp.where(slope == 0.0, 1.0, slope)
+    # No slope where nothing crosses, and none that is a number where the law has none at x = 0.
+    is_steep = jnp.isfinite(slope) & (jnp.abs(slope) > jnp.finfo(slope.dtype).tiny)
+    moved = jnp.where(is_steep, -function(at, *arguments) / jnp.where(is_steep, slope, 1.0), 0.0)
     return at + (moved - jax.lax.stop_gradient(moved))
 
 

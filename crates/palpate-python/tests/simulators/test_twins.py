@@ -193,15 +193,17 @@ def test_drake_takes_the_step() -> None:
     pytest.importorskip("pydrake", reason="drake is not installed")
     from palpate import drake as twin
 
+    from pydrake.systems.analysis import Simulator  # pyright: ignore[reportMissingImports]
+
     contact, rust = twin.ContactSystem(MODEL, 1e-3), palpate.ContactState(MODEL)
-    context = contact.CreateDefaultContext()
+    simulator = Simulator(contact)
+    context = simulator.get_mutable_context()
+    contact.GetInputPort("displacement_m").FixValue(context, [0.0])
     for step, to in enumerate((0.0, 1e-3, 3e-3, 1e-3, -1e-3, 2e-3)):
-        context.SetTime(1e-3 * step)
+        simulator.AdvanceTo(1e-3 * step)
         contact.GetInputPort("displacement_m").FixValue(context, [to])
         force = rust.step(1e-3 if step else 0.0, to)
         assert contact.GetOutputPort("force_n").Eval(context)[0] == pytest.approx(force, rel=1e-11, abs=1e-12)
-        after = contact.EvalUniquePeriodicDiscreteUpdate(context)
-        context.SetDiscreteState(after)
     contact.GetInputPort("displacement_m").FixValue(context, [math.nan])
     with pytest.warns(palpate.PalpateWarning, match="expected a displacement within the body"):
         assert contact.GetOutputPort("force_n").Eval(context)[0] == pytest.approx(rust.force_n, rel=1e-11)
