@@ -120,7 +120,7 @@ def page(stored=None, device="cuda:0", most=1e7):
     import warp as wp
 
     jax.config.update("jax_enable_x64", True)
-    wp.config.quiet = True
+    wp.config.log_level = wp.LOG_WARNING
     stored = stored or _programs.reference()
     on = jax.devices("cpu" if device == "cpu" else "gpu")[0]
     name = wp.get_device(device).name

@@ -5,10 +5,12 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-import warp as wp  # pyright: ignore[reportMissingImports]
 
+from palpate._frameworks import framework
 from palpate._twin_step import ContactParameters
 from palpate._warp_kernels import kernels
+
+wp = framework("warp", "warp-lang", "palpate.warp")
 
 
 def contact_parameters(model: Any, dtype: Any = wp.float64, device: Any = None) -> Any:
@@ -42,7 +44,7 @@ def contact_parameters(model: Any, dtype: Any = wp.float64, device: Any = None) 
         rows.append(np.broadcast_arrays(*(np.atleast_1d(np.asarray(value, dtype=np.float64)) for value in one)))
     kind = kernels(dtype).parameters_type
     values = np.concatenate([np.stack(columns, axis=-1) for columns in rows])
-    made = np.zeros(len(values), dtype=kind.numpy_dtype())
+    made: Any = np.zeros(len(values), dtype=kind.numpy_dtype())
     for index, name in enumerate(ContactParameters._fields):
         made[name] = values[:, index]
     return wp.array(made, dtype=kind, device=device)

@@ -1,6 +1,7 @@
 # What Warp compiles: its annotations are types of Warp, and functions for any type of number have none.
 # mypy: ignore-errors
 # pyright: reportInvalidTypeForm=false, reportGeneralTypeIssues=false, reportAttributeAccessIssue=false, reportOperatorIssue=false
+# pyright: reportArgumentType=false, reportAssignmentType=false, reportCallIssue=false, reportIndexIssue=false
 """The step of a contact as functions and kernels of Warp.
 
 The functions take any of the two structs of parameters, and numbers of its type. They are those of
@@ -11,8 +12,9 @@ import functools
 import types
 from typing import Any
 
-import warp as wp
+from palpate._frameworks import framework
 
+wp = framework("warp", "warp-lang", "palpate.warp")
 wp.set_module_options({"enable_backward": False})
 
 

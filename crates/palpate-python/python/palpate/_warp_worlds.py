@@ -6,9 +6,11 @@ from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
-import warp as wp  # pyright: ignore[reportMissingImports]
 
+from palpate._frameworks import framework
 from palpate._warp_contacts import Contacts
+
+wp = framework("warp", "warp-lang", "palpate.warp")
 
 
 class _MujocoContacts(Contacts):

@@ -8,10 +8,11 @@
 ... }, period_s=1e-3)
 >>> simulator = Simulator(contact)
 >>> context = simulator.get_mutable_context()
->>> displacement = contact.GetInputPort("displacement_m").FixValue(context, [0.0])
+>>> displacement = contact.GetInputPort("displacement_m")
+>>> fixed = displacement.FixValue(context, [0.0])
 >>> for k in range(101):
 ...     status = simulator.AdvanceTo(1e-3 * k)
-...     displacement.GetMutableVectorData().SetFromVector([5e-5 * k])
+...     fixed = displacement.FixValue(context, [5e-5 * k])
 >>> round(float(contact.GetOutputPort("force_n").Eval(context)[0]), 3)
 3.886
 
@@ -39,7 +40,7 @@ from palpate._twin_step import NUMPY, ContactArrays, ContactParameters
 
 try:
     from pydrake.common.cpp_param import List  # pyright: ignore[reportMissingImports]
-    from pydrake.common.value import Value  # pyright: ignore[reportMissingImports]
+    from pydrake.common.value import Value  # pyright: ignore
     from pydrake.math import RigidTransform  # pyright: ignore[reportMissingImports]
     from pydrake.multibody.math import SpatialForce  # pyright: ignore[reportMissingImports]
     from pydrake.multibody.plant import ExternallyAppliedSpatialForce  # pyright: ignore[reportMissingImports]
@@ -99,10 +100,9 @@ class ContactSystem(LeafSystem):
     def _declare_input(self) -> None:
         self.DeclareVectorInputPort("displacement_m", self._count)
 
-    def _displacements(self, context: Any) -> _Doubles:
+    def _displacements(self, context: Any) -> Any:
         """Displacements of the jaws now, m."""
-        displacements: _Doubles = self.GetInputPort("displacement_m").Eval(context)
-        return displacements
+        return _input(self, "displacement_m", context)
 
     def reset(self, context: Any) -> None:
         """Puts the contacts of a context back to first touch and rest."""
@@ -143,7 +143,7 @@ class ContactSystem(LeafSystem):
         slopes: _Doubles = _twin_step.stiffness(NUMPY, self.parameters, self._stepped(context)[0])
         return slopes
 
-    def _surfaces(self, context: Any) -> _Doubles:
+    def _surfaces(self, context: Any) -> Any:
         state, _ = self._stepped(context)
         return np.where(self.parameters.bonded > 0.0, state.jaw_m, np.maximum(state.jaw_m, state.behind_m))
 
@@ -191,10 +191,9 @@ class JointContactSystem(ContactSystem):
     def _declare_input(self) -> None:
         self.DeclareVectorInputPort("plant_state", self._plant_states)
 
-    def _displacements(self, context: Any) -> _Doubles:
-        positions = self.GetInputPort("plant_state").Eval(context)[self._positions_at]
-        displacements: _Doubles = self._direction * (positions - self._touch)
-        return displacements
+    def _displacements(self, context: Any) -> Any:
+        positions = _input(self, "plant_state", context)[self._positions_at]
+        return self._direction * (positions - self._touch)
 
     def _generalized(self, context: Any) -> _Doubles:
         forces = np.zeros(self._velocities)
@@ -244,15 +243,14 @@ class BodyContactSystem(ContactSystem):
 
     def _lines(self, context: Any) -> _Doubles:
         """From the first point of each pair to the second, in the axes of the world, m."""
-        poses = self.GetInputPort("body_poses").Eval(context)
+        poses = _input(self, "body_poses", context)
         pairs = zip(self._pairs, self._points, strict=True)
         ends = [[poses[int(body)].multiply(point) for body, point in zip(pair, points, strict=True)] for pair, points in pairs]
         ends_m: _Doubles = np.asarray(ends)
         return ends_m[:, 1] - ends_m[:, 0]
 
-    def _displacements(self, context: Any) -> _Doubles:
-        approach: _Doubles = self._touch - np.linalg.norm(self._lines(context), axis=1)
-        return approach / self.parameters.share
+    def _displacements(self, context: Any) -> Any:
+        return (self._touch - np.linalg.norm(self._lines(context), axis=1)) / self.parameters.share
 
     def _spatial(self, context: Any, output: Any) -> None:
         applied = []
@@ -264,6 +262,10 @@ class BodyContactSystem(ContactSystem):
                 one.F_Bq_W = SpatialForce(tau=np.zeros(3), f=sign * push)
                 applied.append(one)
         output.set_value(applied)
+
+
+def _input(system: Any, name: str, context: Any) -> Any:
+    return system.GetInputPort(name).Eval(context)
 
 
 def _calculation(value: Any) -> Any:

@@ -28,13 +28,11 @@ from functools import partial
 from typing import Any
 
 from palpate import _twin_force, _twin_step
+from palpate._frameworks import framework
 from palpate._twin_step import ContactArrays, ContactParameters, Library
 
-try:
-    import jax
-    import jax.numpy as jnp
-except ImportError as error:
-    raise ImportError(f"palpate.jax needs jax, which is not installed: {error}") from None
+jax = framework("jax", "jax", "palpate.jax")
+jnp = framework("jax.numpy", "jax", "palpate.jax")
 
 __all__ = [
     "ContactArrays",

@@ -22,12 +22,6 @@ the state by less than single precision can tell. Copy `state` and `last` to sav
 from __future__ import annotations
 
 from palpate._twin_step import ContactParameters
-
-try:
-    import warp as _warp  # noqa: F401 # pyright: ignore[reportMissingImports]
-except ImportError as error:
-    raise ImportError(f"palpate.warp needs warp-lang, which is not installed: {error}") from None
-
 from palpate._warp_contacts import Contacts, contact_parameters
 from palpate._warp_kernels import (
     ContactParameters32,
