@@ -278,13 +278,55 @@ def mujoco_warp():
         within(worst / peak, limit, f"MuJoCo Warp, force {title}")
         within(of_push / peak, 2e-5, f"MuJoCo Warp, force on the fingers {title}")
         rows.append(f"forces {title} {worst / peak:.1e} of their peak of {peak:.2f} N")
+    saved_and_reset()
     without, more, alone = step_times()
     within(more, 0.02, "MuJoCo Warp, additional time of a step")
     return [
         f"Largest difference from `ContactState` along 400 steps of 1 ms of a gripper that closes on a ball: {', '.join(rows)}. "
+        "Contacts that were restored, or reset with their worlds, repeat their forces to the last bit. "
         f"A step of 1,024 worlds on one core takes {without * 1e3:.1f} ms of processor time without contacts, and {100 * more:+.1f} % with two "
         f"contacts a world (median of 60 pairs); their callback alone takes {alone * 1e3:.2f} ms.",
     ]
+
+
+def saved_and_reset():
+    """Contacts of worlds that are saved, restored and reset."""
+    import mujoco
+    import mujoco_warp as mjw
+    import palpate.warp
+    import warp as wp
+
+    _, m, d, contacts = worlds(3)
+    contacts.attach(m)
+
+    def forces(steps):
+        found = []
+        for _ in range(steps):
+            mjw.step(m, d)
+            found.append(contacts.force_n.numpy().copy())
+        return np.array(found)
+
+    first = forces(200)
+    arrays = [d.qpos, d.qvel, d.time, d.qacc_warmstart, contacts.state, contacts.last]
+    saved = [wp.clone(array) for array in arrays]
+    on = forces(100)
+    for array, copy in zip(arrays, saved):
+        wp.copy(array, copy)
+    within(float(np.abs(forces(100) - on).max()), 0, "MuJoCo Warp, forces after contacts were restored")
+    mjw.reset_data(m, d)
+    d.ctrl.fill_(0.025)
+    within(float(np.abs(forces(200) - first).max()), 0, "MuJoCo Warp, forces after worlds were reset")
+    contacts.reset(wp.array([True, False, False], dtype=bool, device="cpu"))
+    state = np.abs(contacts.state.numpy()).sum(axis=1).reshape(3, 2)
+    within(float(state[0].max() != 0 or state[1:].min() == 0), 0, "MuJoCo Warp, reset by a mask of worlds")
+    rk4 = mujoco.MjModel.from_xml_string(GRIPPER.replace("implicitfast", "RK4"))
+    m, d = mjw.put_model(rk4), mjw.put_data(rk4, mujoco.MjData(rk4))
+    try:
+        palpate.warp.JointContacts(m, d, MODEL, [0])
+    except ValueError as error:
+        assert "RK4" in str(error)
+    else:
+        missed.append("MuJoCo Warp, RK4: no error")
 
 
 def step_times():
