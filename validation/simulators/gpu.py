@@ -1,16 +1,19 @@
 """The twins of the step on a CUDA device: contacts a second by number and precision, and agreement with the CPU.
 
     python validation/simulators/gpu.py --write-reference FILE   where palpate is installed: motions and forces of ContactState, < 200 kB
-    python validation/simulators/gpu.py --reference FILE          where numpy, warp-lang and jax[cuda12] are; prints Markdown
+    python validation/simulators/gpu.py --reference FILE          where numpy is, and warp-lang or jax for CUDA; prints Markdown
     python validation/simulators/gpu.py                           the same where palpate is installed, too
     python validation/simulators/gpu.py --device cpu --most 1e5   the same on the CPU
 """
 
 import argparse
+import importlib.util
 import os
 import platform
 import statistics
+import subprocess
 import time
+from functools import partial
 
 # Warp and JAX share the device.
 os.environ.setdefault("XLA_PYTHON_CLIENT_PREALLOCATE", "false")
@@ -113,38 +116,54 @@ def million(count, seconds):
     return f"{count / seconds / 1e6:.3g}"
 
 
+def twins(device):
+    """The twins that can run here: title, its program, its time for a step of a number of contacts, its limit."""
+    found, versions = [], []
+    if importlib.util.find_spec("warp"):
+        import warp as wp
+
+        wp.config.log_level = wp.LOG_WARNING
+        versions.append(f"Warp {wp.__version__}")
+        for title, real, limit in (("Warp, double", wp.float64, 1e-12), ("Warp, single", wp.float32, 1e-6)):
+            found.append((title, partial(warp_runs, real=real, device=device), partial(warp_time, real=real, device=device), limit))
+    if importlib.util.find_spec("jax"):
+        import jax
+        import jax.numpy as jnp
+
+        jax.config.update("jax_enable_x64", True)
+        versions.append(f"JAX {jax.__version__}")
+        on = jax.devices("cpu" if device == "cpu" else "gpu")[0]
+        for title, kind, limit in (("JAX, double", jnp.float64, 1e-12), ("JAX, single", jnp.float32, 1e-6)):
+            found.append((title, partial(jax_runs, kind=kind, device=on), partial(jax_time, kind=kind, device=on), limit))
+    return found, versions
+
+
+def name_of(device):
+    """What the device is called."""
+    if device == "cpu":
+        return "the CPU"
+    query = ["nvidia-smi", "--query-gpu=name,driver_version", "--format=csv,noheader"]
+    return subprocess.run(query, capture_output=True, text=True, check=True).stdout.splitlines()[0]
+
+
 def page(stored=None, device="cuda:0", most=1e7):
     """The section as Markdown."""
-    import jax
-    import jax.numpy as jnp
-    import warp as wp
-
-    jax.config.update("jax_enable_x64", True)
-    wp.config.log_level = wp.LOG_WARNING
     stored = stored or _programs.reference()
-    on = jax.devices("cpu" if device == "cpu" else "gpu")[0]
-    name = wp.get_device(device).name
-    versions = f"Warp {wp.__version__}, JAX {jax.__version__}, Python {platform.python_version()}"
+    found, versions = twins(device)
     left, met = _programs.crossings(stored)
     lines = [
-        f"## Twins of the step on {name}",
+        f"## Twins of the step on {name_of(device)}",
         "",
-        f"{versions}. Largest difference from `palpate.ContactState` on the CPU over {stored['force_n'].size} steps of "
-        f"{stored['force_n'].shape[1]} contacts, in which a jaw left its body {left} times and met it {met} times: of the node behind the "
-        "contact layer over the depth, and of the force over its peak.",
+        f"{', '.join(versions)}, Python {platform.python_version()}. Largest difference from `palpate.ContactState` on the CPU over "
+        f"{stored['force_n'].size} steps of {stored['force_n'].shape[1]} contacts, in which a jaw left its body {left} times and met it "
+        f"{met} times: of the node behind the contact layer over the depth, and of the force over its peak.",
         "",
         "| twin | node | force |",
         "|---|---:|---:|",
     ]
-    runs = [
-        ("Warp, double", lambda: warp_runs(stored, wp.float64, device), 1e-12),
-        ("Warp, single", lambda: warp_runs(stored, wp.float32, device), 1e-6),
-        ("JAX, double", lambda: jax_runs(stored, jnp.float64, on), 1e-12),
-        ("JAX, single", lambda: jax_runs(stored, jnp.float32, on), 1e-6),
-    ]
     wrong = []
-    for title, run, limit in runs:
-        worst = np.max(list(_programs.differences(stored, *run()).values()), axis=0)
+    for title, run, _, limit in found:
+        worst = np.max(list(_programs.differences(stored, *run(stored)).values()), axis=0)
         lines.append(f"| {title} | {worst[0]:.1e} | {worst[1]:.1e} |")
         if not worst.max() <= limit:
             wrong.append(title)
@@ -152,14 +171,12 @@ def page(stored=None, device="cuda:0", most=1e7):
         "",
         "Millions of contacts a second, a step of 1 ms of balls of n = 5 in contact, one launch a step:",
         "",
-        "| contacts | Warp, single | Warp, double | JAX, single | JAX, double |",
-        "|---:|---:|---:|---:|---:|",
+        f"| contacts | {' | '.join(title for title, *_ in found)} |",
+        f"|---:|{'---:|' * len(found)}",
     ]
     count = 1000
     while count <= most:
-        cells = [million(count, warp_time(stored, count, real, device)) for real in (wp.float32, wp.float64)]
-        cells += [million(count, jax_time(stored, count, kind, on)) for kind in (jnp.float32, jnp.float64)]
-        lines.append(f"| {count} | {' | '.join(cells)} |")
+        lines.append(f"| {count} | {' | '.join(million(count, seconds(stored, count)) for _, _, seconds, _ in found)} |")
         count *= 10
     if wrong:
         lines += ["", f"**Beyond the limits: {', '.join(wrong)}.**"]

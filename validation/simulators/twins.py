@@ -284,8 +284,8 @@ def mujoco_warp():
     return [
         f"Largest difference from `ContactState` along 400 steps of 1 ms of a gripper that closes on a ball: {', '.join(rows)}. "
         "Contacts that were restored, or reset with their worlds, repeat their forces to the last bit. "
-        f"A step of 1,024 worlds on one core takes {without * 1e3:.1f} ms of processor time without contacts, and {100 * more:+.1f} % with two "
-        f"contacts a world (median of 60 pairs); their callback alone takes {alone * 1e3:.2f} ms.",
+        f"A step of 1,024 worlds on one core takes {without * 1e3:.1f} ms of processor time without contacts, and "
+        f"{100 * more:+.1f} % with two contacts a world (median of 60 pairs); their callback alone takes {alone * 1e3:.2f} ms.",
     ]
 
 
@@ -471,6 +471,16 @@ def refused_by_drake(system):
             contact.GetInputPort("displacement_m").FixValue(context, [to])
             force = contact.GetOutputPort("force_n").Eval(context)[0]
             within(float(not np.isfinite(force)), 0, "Drake, a force that is no number")
+        contact.GetInputPort("displacement_m").FixValue(context, [1e-3])
+        context.get_mutable_discrete_state(0).SetFromVector([np.nan, np.nan])
+        force = contact.GetOutputPort("force_n").Eval(context)[0]
+        within(float(not np.isfinite(force)), 0, "Drake, a force of a state of NaN")
+        contact.reset(context)
+        force = contact.GetOutputPort("force_n").Eval(context)[0]
+        within(float(force != palpate.ContactState(MODEL).step(0.0, 1e-3)), 0, "Drake, a force after a reset")
+        context.get_mutable_discrete_state(0).SetFromVector([0.0, 0.0])
+        contact.GetInputPort("displacement_m").FixValue(context, [1.0])
+        force = contact.GetOutputPort("force_n").Eval(context)[0]
     assert [one.category for one in caught] == [palpate.PalpateWarning], caught
     return f"one warning, force {force:g} N"
 
