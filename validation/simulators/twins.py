@@ -77,7 +77,31 @@ def programs():
     ]
     for body in next(iter(found.values())):
         lines.append(f"| {body} | {' | '.join(f'{max(by_body[body]):.1e}' for by_body in found.values())} |")
+    own_kernel()
     return [*lines, "", one_step(stored), "", loads()]
+
+
+def own_kernel():
+    """The step in a kernel of a user."""
+    import warp as wp
+    from palpate.warp import ContactParameters32, Contacts, contact_step
+
+    @wp.kernel
+    def push(parameters: wp.array(dtype=ContactParameters32), to: float, state: wp.array2d(dtype=float), force: wp.array(dtype=float)):
+        i = wp.tid()
+        jaw, behind, excess, f = contact_step(parameters[i], state[i, 0], state[i, 1], state[i, 2], 1.0e-3, to)
+        state[i, 0] = jaw
+        state[i, 1] = behind
+        state[i, 2] = excess
+        force[i] = f
+
+    contacts = Contacts(MODEL, 1, dtype=wp.float32, device="cpu")
+    state, force = wp.zeros((1, 3), dtype=float, device="cpu"), wp.zeros(1, dtype=float, device="cpu")
+    for step in range(100):
+        to = 5e-5 * (step + 1)
+        wp.launch(push, dim=1, inputs=[contacts.parameters, to, state, force], device="cpu")
+        contacts.step(1e-3, wp.array([to], dtype=wp.float32, device="cpu"))
+    within(abs(float(force.numpy()[0] - contacts.force_n.numpy()[0])), 0, "Warp, a kernel of a user")
 
 
 def loads():
