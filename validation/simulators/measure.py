@@ -27,6 +27,7 @@ PARTS = {
     "mujoco_plugin": ("The plug-in in MuJoCo", ("mujoco",)),
     "contact_states": ("Many contacts", ("numba", "jax", "gymnasium")),
     "twins": ("JAX, Warp and Drake", ("jax", "warp", "mujoco_warp", "newton", "pydrake")),
+    "gpu": ("JAX and Warp on a GPU", ("jax", "warp")),
     "logs": ("Logs", ("rosbags",)),
 }
 HEAD = """# Simulators
@@ -60,6 +61,9 @@ def main() -> int:
         missing = [need for need in needs if importlib.util.find_spec(need) is None]
         if missing:
             print(f"{name}: left out, not installed: {', '.join(missing)}", file=sys.stderr)
+            continue
+        if name == "gpu" and not importlib.import_module("warp").get_cuda_device_count():
+            print("gpu: left out, no CUDA device", file=sys.stderr)
             continue
         text = importlib.import_module(name).page()
         machine = f"palpate {palpate.__version__}, {platform.system()} {platform.release()}, {os.cpu_count()} processors"
