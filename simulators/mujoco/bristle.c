@@ -1,12 +1,13 @@
 /* Friction that holds without creep.
  *
- * The bristle of Dupont, Hayward, Armstrong and Altpeter (IEEE Trans. Automat. Contr. 47, 2002) whose break-away is Coulomb's limit: below it
- * the deflection s is elastic, so that a load that stays has a position that stays; at the limit s follows the motion (LuGre creeps at any load).
+ * The bristle of Dupont, Hayward, Armstrong and Altpeter (IEEE Trans. Automat. Contr. 47, 2002) whose break-away is Coulomb's limit:
+ * below it the deflection s is elastic, so that a load that stays has a position that stays; at the limit s follows the motion. (LuGre's
+ * bristle creeps at any load.)
  *
  *   f = -(k s + c v),  s' = v,  but |k s| <= mu F
  *
- * with the moment about the normal by the same bristle at the radius torsion/mu, and the limit surface of a soft finger (Howe and Cutkosky, Int.
- * J. Robot. Res. 15, 1996): (T/(mu F))^2 + (M/(torsion F))^2 <= 1. */
+ * with the moment about the normal by the same bristle at the radius torsion/mu, and the limit surface of a soft finger (Howe and
+ * Cutkosky, Int. J. Robot. Res. 15, 1996): (T/(mu F))^2 + (M/(torsion F))^2 <= 1. */
 #include <math.h>
 
 #include "plugin.h"

@@ -4,8 +4,8 @@
     python simulators/mujoco/build.py [--out FILE] [--palpate-c libpalpate_c.a]
 
 Run it with the Python whose package `mujoco` is to load the plug-ins: its headers and its library are those that are used, and a library
-is for that version of MuJoCo alone. It prints the path of the library, for `mujoco.mj_loadPluginLibrary`. Without `--palpate-c` cargo builds
-the static library of `crates/palpate-c` first. It needs a C compiler (`CC`, or cc), and takes some seconds without cargo.
+is for that version of MuJoCo alone. It prints the path of the library, for `mujoco.mj_loadPluginLibrary`. Without `--palpate-c` cargo
+builds the static library of `crates/palpate-c` first. It needs a C compiler (`CC`, or cc), and takes some seconds without cargo.
 """
 
 import argparse

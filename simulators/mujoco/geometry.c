@@ -3,13 +3,23 @@
 
 #include "plugin.h"
 
+/* Jacobian of a point on a body: of its velocity, then of its rotation. */
+static void jacobian_of(const mjModel* m, const mjData* d, int geom, const mjtNum point[3], mjtNum* jacobian) {
+  const int body = m->geom_bodyid[geom], nv = m->nv;
+  if (m->body_weldid[body] == 0) {
+    mju_zero(jacobian, 6 * nv);
+  } else {
+    mj_jac(m, d, jacobian, jacobian + 3 * nv, point, body);
+  }
+}
+
 /* Jacobian of the body relative to the jaw at the point, and the motion that it gives. */
-static void relative_motion(const mjModel* m, mjData* d, contact* c, placement* at) {
+static void relative_motion(const mjModel* m, const mjData* d, const contact* c, placement* at) {
   const int nv = m->nv;
   const mjtNum* rotation = c->jacobian + 3 * nv;
   mjtNum spin[3], along;
-  mj_jac(m, d, c->jacobian, c->jacobian + 3 * nv, at->point, m->geom_bodyid[c->geom2]);
-  mj_jac(m, d, c->other, c->other + 3 * nv, at->point, m->geom_bodyid[c->geom1]);
+  jacobian_of(m, d, c->geom2, at->point, c->jacobian);
+  jacobian_of(m, d, c->geom1, at->point, c->other);
   mju_subFrom(c->jacobian, c->other, 6 * nv);
   mju_mulMatVec(at->velocity, c->jacobian, d->qvel, 3, nv);
   mju_mulMatVec(spin, rotation, d->qvel, 3, nv);

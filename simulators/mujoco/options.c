@@ -87,8 +87,8 @@ static int collide(const mjModel* m, int geom1, int geom2) {
   return (m->geom_contype[geom1] & m->geom_conaffinity[geom2]) || (m->geom_contype[geom2] & m->geom_conaffinity[geom1]);
 }
 
-/* Two thirds of the stiffness that the body has once it is squeezed by a tenth of its depth at once: Mindlin's ratio of tangential to normal
- * stiffness, 2 (1 - nu)/(2 - nu), of an incompressible body. Constant, so that a load that stays has a deflection that stays. */
+/* Two thirds of the stiffness that the body has once it is squeezed by a tenth of its depth at once: Mindlin's ratio of tangential to
+ * normal stiffness, 2 (1 - nu)/(2 - nu), of an incompressible body. Constant, so that a load that stays has a deflection that stays. */
 static double own_tangential_stiffness(const contact* c) {
   palpate_state state = {0, 0};
   double stiffness = 0, place = fmin(0.1 * c->depth * c->sides, 0.5 * c->deepest);

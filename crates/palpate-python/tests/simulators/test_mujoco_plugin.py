@@ -8,6 +8,7 @@ from __future__ import annotations
 import copy
 import os
 import re
+import threading
 from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
@@ -84,10 +85,11 @@ def gripper(gravity: str = "0 0 -9.81", option: str = "", body: str = "", descri
     sensors = "".join(
         f'<plugin name="{side}" plugin="palpate.sensor"><config key="contact" value="{side}"/></plugin>' for side in pairs
     )
-    finger = '<geom name="{0}" type="sphere" size="0.012" mass="0.2"/>' if is_tip else '<geom name="{0}" type="box" size="0.01 0.03 0.03" mass="0.2"/>'
+    shape = 'type="sphere" size="0.012"' if is_tip else 'type="box" size="0.01 0.03 0.03"'
     offset = 0.012 + 0.02 if is_tip else 0.045
     fingers = "".join(
-        f'<body name="{side}" pos="{sign * offset} 0 0"><joint name="{side}" type="slide" axis="{-sign} 0 0"/>{finger.format(side)}</body>'
+        f'<body name="{side}" pos="{sign * offset} 0 0"><joint name="{side}" type="slide" axis="{-sign} 0 0"/>'
+        f'<geom name="{side}" {shape} mass="0.2"/></body>'
         for side, sign in (("left", -1), ("right", 1))
     )
     body = body or '<geom name="body" type="sphere" size="0.035" mass="0.1"/>'
@@ -237,6 +239,31 @@ def test_two_fingertips_hold_a_box() -> None:
     mujoco.mj_step(m, d, nstep=20_000)
     assert np.abs(d.joint("body").qpos - before)[1:].max() < 1e-9
     assert d.sensor("left").data[2] > 0
+
+
+def test_what_is_held_off_its_centre_does_not_turn() -> None:
+    box = '<geom name="body" type="box" size="0.02 0.03 0.04" pos="0 0.004 0" mass="0.1"/>'
+    m = gripper(body=box, description=TIP)
+    d = held(m, squeeze=0.004, seconds=5)
+    before = d.joint("body").qpos.copy()
+    mujoco.mj_step(m, d, nstep=20_000)
+    assert np.abs(d.joint("body").qpos - before)[1:].max() < 1e-9
+    # The load is that of the weight and of its moment at the radius torsion/mu: 0.49 N and 0.1 g 4 mm/2 over 0.005 m/0.8.
+    weight = 0.1 * 9.81 / 2
+    assert abs(d.sensor("left").data[3] - np.hypot(weight, weight * 0.004 * 0.8 / 0.005)) < 1e-3
+
+
+def test_data_of_one_model_step_on_two_threads() -> None:
+    m = gripper()
+    start = held(m, seconds=0.1)
+    alone, twins = copy.copy(start), [copy.copy(start) for _ in range(2)]
+    mujoco.mj_step(m, alone, nstep=5000)
+    threads = [threading.Thread(target=mujoco.mj_step, args=(m, twin), kwargs={"nstep": 5000}) for twin in twins]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    assert all(np.array_equal(whole(m, twin), whole(m, alone)) for twin in twins)
 
 
 def test_what_is_held_too_weakly_slips_and_falls() -> None:
