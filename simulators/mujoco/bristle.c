@@ -1,0 +1,55 @@
+/* Friction that holds without creep.
+ *
+ * The bristle of Dupont, Hayward, Armstrong and Altpeter (IEEE Trans. Automat. Contr. 47, 2002) whose break-away is Coulomb's limit:
+ * below it the deflection s is elastic, so that a load that stays has a position that stays; at the limit s follows the motion. (LuGre's
+ * bristle creeps at any load.)
+ *
+ *   f = -(k s + c v),  s' = v,  but |k s| <= mu F
+ *
+ * with the moment about the normal by the same bristle at the radius torsion/mu, and the limit surface of a soft finger (Howe and
+ * Cutkosky, Int. J. Robot. Res. 15, 1996): (T/(mu F))^2 + (M/(torsion F))^2 <= 1. */
+#include <math.h>
+
+#include "plugin.h"
+
+/* The deflection of the start turned with the jaw into the world and across the present normal, as long as it was. */
+static void carried_along(const mjtNum jaw_frame[9], const mjtNum normal[3], const mjtNum* memory, mjtNum slip[3]) {
+  const mjtNum length = mju_norm3(memory + MEMORY_SLIP);
+  mjtNum across;
+  mju_mulMatVec3(slip, jaw_frame, memory + MEMORY_SLIP);
+  mju_addToScl3(slip, normal, -mju_dot3(slip, normal));
+  across = mju_norm3(slip);
+  if (across > 0) mju_scl3(slip, slip, length / across);
+}
+
+traction bristle(const contact* c, const placement* at, const mjtNum jaw_frame[9], double normal_force, double dt, mjtNum* memory) {
+  traction friction = {{0, 0, 0}, 0, 0, c->friction * normal_force};
+  const double radius = c->friction > 0 ? c->torsion / c->friction : 0;
+  mjtNum slip[3], twist, total;
+  if (!(friction.limit > 0)) {
+    mju_zero3(memory + MEMORY_SLIP);
+    memory[MEMORY_TWIST] = 0;
+    friction.limit = 0;
+    return friction;
+  }
+  carried_along(jaw_frame, at->normal, memory, slip);
+  mju_addToScl3(slip, at->velocity, dt);
+  twist = memory[MEMORY_TWIST] + at->spin * dt;
+  friction.load = c->tangential_stiffness * hypot(mju_norm3(slip), radius * twist);
+  if (friction.load > friction.limit) {
+    mju_scl3(slip, slip, friction.limit / friction.load);
+    twist *= friction.limit / friction.load;
+    friction.load = friction.limit;
+  }
+  mju_mulMatTVec3(memory + MEMORY_SLIP, jaw_frame, slip);
+  memory[MEMORY_TWIST] = twist;
+  mju_scl3(friction.force, slip, -c->tangential_stiffness);
+  mju_addToScl3(friction.force, at->velocity, -c->tangential_damping);
+  friction.moment = -radius * radius * (c->tangential_stiffness * twist + c->tangential_damping * at->spin);
+  total = hypot(mju_norm3(friction.force), radius > 0 ? friction.moment / radius : 0);
+  if (total > friction.limit) {
+    mju_scl3(friction.force, friction.force, friction.limit / total);
+    friction.moment *= friction.limit / total;
+  }
+  return friction;
+}

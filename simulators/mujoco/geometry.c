@@ -1,0 +1,63 @@
+/* Displacement, normal and relative motion at a contact of two geoms. */
+#include <math.h>
+
+#include "plugin.h"
+
+/* Jacobian of a point on a body: of its velocity, then of its rotation. */
+static void jacobian_of(const mjModel* m, const mjData* d, int geom, const mjtNum point[3], mjtNum* jacobian) {
+  const int body = m->geom_bodyid[geom], nv = m->nv;
+  if (m->body_weldid[body] == 0) {
+    mju_zero(jacobian, 6 * nv);
+  } else {
+    mj_jac(m, d, jacobian, jacobian + 3 * nv, point, body);
+  }
+}
+
+/* Jacobian of the body relative to the jaw at the point, and the motion that it gives. */
+static void relative_motion(const mjModel* m, const mjData* d, const contact* c, placement* at) {
+  const int nv = m->nv;
+  const mjtNum* rotation = c->jacobian + 3 * nv;
+  mjtNum spin[3], along;
+  jacobian_of(m, d, c->geom2, at->point, c->jacobian);
+  jacobian_of(m, d, c->geom1, at->point, c->other);
+  mju_subFrom(c->jacobian, c->other, 6 * nv);
+  mju_mulMatVec(at->velocity, c->jacobian, d->qvel, 3, nv);
+  mju_mulMatVec(spin, rotation, d->qvel, 3, nv);
+  along = mju_dot3(at->velocity, at->normal);
+  mju_addToScl3(at->velocity, at->normal, -along);
+  at->spin = mju_dot3(spin, at->normal);
+}
+
+void place_geoms(const mjModel* m, mjData* d, contact* c, placement* at) {
+  mjtNum ends[6], distance;
+  distance = mj_geomDistance(m, d, c->geom1, c->geom2, c->depth, ends);
+  at->displacement = -distance;
+  at->spin = 0;
+  mju_copy3(at->point, ends);
+  mju_zero3(at->velocity);
+  mju_sub3(at->normal, ends + 3, ends);
+  if (mju_normalize3(at->normal) < mjMINVAL || distance == 0) {
+    /* No segment: farther away than it was sought, or at first touch, where there is no force yet. */
+    mju_sub3(at->normal, d->geom_xpos + 3 * c->geom2, d->geom_xpos + 3 * c->geom1);
+    mju_normalize3(at->normal);
+  } else if (distance < 0) {
+    mju_scl3(at->normal, at->normal, -1);
+  }
+  /* Beyond reach there is no force, and nothing is needed of the motion. */
+  if (distance < c->depth) relative_motion(m, d, c, at);
+}
+
+void apply(const mjModel* m, const contact* c, const placement* at, double normal_force, const traction* friction, mjtNum* qfrc) {
+  const int nv = m->nv;
+  mjtNum force[3], moment[3];
+  int row, column;
+  mju_scl3(force, at->normal, normal_force);
+  mju_addTo3(force, friction->force);
+  mju_scl3(moment, at->normal, friction->moment);
+  for (row = 0; row < 3; row++) {
+    const mjtNum *translation = c->jacobian + row * nv, *rotation = c->jacobian + (3 + row) * nv;
+    for (column = 0; column < nv; column++) {
+      qfrc[column] += force[row] * translation[column] + moment[row] * rotation[column];
+    }
+  }
+}

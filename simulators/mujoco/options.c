@@ -1,0 +1,161 @@
+/* Configuration of a contact, from its keys in MJCF. */
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "plugin.h"
+
+static const char* name_of(const mjModel* m, int instance) {
+  const char* name = mj_id2name(m, mjOBJ_PLUGIN, instance);
+  return name ? name : "without a name";
+}
+
+static const char* text_of(const mjModel* m, int instance, const char* key) {
+  const char* text = mj_getPluginConfig(m, instance, key);
+  return text && text[0] ? text : NULL;
+}
+
+static double number_of(const mjModel* m, int instance, const char* key, double otherwise, double least) {
+  const char* text = text_of(m, instance, key);
+  char* end = NULL;
+  double number = otherwise;
+  if (text) {
+    number = strtod(text, &end);
+    while (*end == ' ') end++;
+    if (end == text || *end || !isfinite(number) || number < least) {
+      mju_error("%s \"%s\": %s: expected a number of %g or more, found \"%s\"", CONTACT_PLUGIN, name_of(m, instance), key,
+                least, text);
+    }
+  }
+  return number;
+}
+
+static int object_of(const mjModel* m, int instance, const char* key, int type, const char* kind) {
+  const char* text = text_of(m, instance, key);
+  int id = text ? mj_name2id(m, type, text) : -1;
+  if (text && id < 0) {
+    mju_error("%s \"%s\": %s: expected the name of a %s, found \"%s\"", CONTACT_PLUGIN, name_of(m, instance), key, kind, text);
+  }
+  return id;
+}
+
+static void read_model(const mjModel* m, int instance, contact* c) {
+  const char* path = text_of(m, instance, "material");
+  const char* text = text_of(m, instance, "description");
+  char message[600] = "";
+  palpate_status status;
+  int32_t sides = 1;
+  if (!path == !text) {
+    mju_error("%s \"%s\": expected one of the keys material (a file) and description (its text), found %s", CONTACT_PLUGIN,
+              name_of(m, instance), path ? "both" : "none");
+  }
+  status = path ? palpate_model_from_file(path, &c->model, message, sizeof message)
+                : palpate_model_from_text(text, "description", &c->model, message, sizeof message);
+  if (status != PALPATE_STATUS_OK) {
+    mju_error("%s \"%s\": %s", CONTACT_PLUGIN, name_of(m, instance), message[0] ? message : palpate_status_text(status));
+  }
+  palpate_model_sides(c->model, &sides);
+  palpate_model_depth_m(c->model, &c->depth);
+  palpate_model_deepest_m(c->model, &c->deepest);
+  palpate_model_calibrated_m(c->model, &c->calibrated);
+  c->sides = sides;
+}
+
+static void read_joint(const mjModel* m, int instance, contact* c) {
+  if (m->jnt_type[c->joint] != mjJNT_SLIDE) {
+    mju_error("%s \"%s\": joint: expected a slide joint, found another", CONTACT_PLUGIN, name_of(m, instance));
+  }
+  c->closing = number_of(m, instance, "closing", 1, -1);
+  if (fabs(c->closing) != 1) {
+    mju_error("%s \"%s\": closing: expected 1 or -1, found %g", CONTACT_PLUGIN, name_of(m, instance), c->closing);
+  }
+  c->touch = number_of(m, instance, "touch", 0, -mjMAXVAL);
+}
+
+/* Whether the engine computes a contact of its own between two geoms. */
+static int collide(const mjModel* m, int geom1, int geom2) {
+  int body1 = m->geom_bodyid[geom1], body2 = m->geom_bodyid[geom2], i;
+  int low = mjMIN(body1, body2), high = mjMAX(body1, body2);
+  for (i = 0; i < m->npair; i++) {
+    int a = m->pair_geom1[i], b = m->pair_geom2[i];
+    if ((a == geom1 && b == geom2) || (a == geom2 && b == geom1)) return 1;
+  }
+  for (i = 0; i < m->nexclude; i++) {
+    if (m->exclude_signature[i] == ((low << 16) + high)) return 0;
+  }
+  return (m->geom_contype[geom1] & m->geom_conaffinity[geom2]) || (m->geom_contype[geom2] & m->geom_conaffinity[geom1]);
+}
+
+/* Two thirds of the stiffness that the body has once it is squeezed by a tenth of its depth at once: Mindlin's ratio of tangential to
+ * normal stiffness, 2 (1 - nu)/(2 - nu), of an incompressible body. Constant, so that a load that stays has a deflection that stays. */
+static double own_tangential_stiffness(const contact* c) {
+  palpate_state state = {0, 0};
+  double stiffness = 0, place = fmin(0.1 * c->depth * c->sides, 0.5 * c->deepest);
+  palpate_step(c->model, &state, 0, place, NULL);
+  palpate_stiffness(c->model, &state, &stiffness);
+  return 2.0 / 3.0 * c->sides * stiffness;
+}
+
+/* Mass that a geom moves with: its body with all that is welded to it or hangs on it; none of what does not move. */
+static double moving_mass(const mjModel* m, int geom) {
+  const int body = m->body_weldid[m->geom_bodyid[geom]];
+  return body ? m->body_subtreemass[body] : 0;
+}
+
+/* Half of critical damping of the lighter of the two bodies on its bristle. */
+static double own_tangential_damping(const mjModel* m, const contact* c) {
+  const double mass1 = moving_mass(m, c->geom1), mass2 = moving_mass(m, c->geom2);
+  return sqrt(c->tangential_stiffness * (mass1 > 0 && mass2 > 0 ? fmin(mass1, mass2) : fmax(mass1, mass2)));
+}
+
+static void read_geoms(const mjModel* m, int instance, contact* c) {
+  const mjtNum *friction1, *friction2;
+  if (m->geom_bodyid[c->geom1] == m->geom_bodyid[c->geom2]) {
+    mju_error("%s \"%s\": expected geoms of two bodies, found two of one", CONTACT_PLUGIN, name_of(m, instance));
+  }
+  friction1 = m->geom_friction + 3 * c->geom1;
+  friction2 = m->geom_friction + 3 * c->geom2;
+  c->friction = number_of(m, instance, "friction", fmax(friction1[0], friction2[0]), 0);
+  c->torsion = number_of(m, instance, "torsional_friction", fmax(friction1[1], friction2[1]), 0);
+  c->tangential_stiffness = number_of(m, instance, "tangential_stiffness", own_tangential_stiffness(c), 0);
+  c->tangential_damping = number_of(m, instance, "tangential_damping", own_tangential_damping(m, c), 0);
+  if (collide(m, c->geom1, c->geom2)) {
+    mju_warning("%s \"%s\": MuJoCo computes a contact between the same geoms: add <exclude body1=... body2=...> to <contact>",
+                CONTACT_PLUGIN, name_of(m, instance));
+  }
+}
+
+contact* contact_of(const mjModel* m, int instance) {
+  contact* c = (contact*)calloc(1, sizeof *c);
+  double substeps;
+  if (!c) mju_error("%s: out of memory", CONTACT_PLUGIN);
+  c->geom1 = object_of(m, instance, "geom1", mjOBJ_GEOM, "geom");
+  c->geom2 = object_of(m, instance, "geom2", mjOBJ_GEOM, "geom");
+  c->joint = object_of(m, instance, "joint", mjOBJ_JOINT, "joint");
+  if (!((c->geom1 >= 0 && c->geom2 >= 0 && c->joint < 0) || (c->joint >= 0 && c->geom1 < 0 && c->geom2 < 0))) {
+    mju_error("%s \"%s\": expected the keys geom1 and geom2, or the key joint", CONTACT_PLUGIN, name_of(m, instance));
+  }
+  read_model(m, instance, c);
+  substeps = number_of(m, instance, "substeps", 1, 1);
+  if (substeps != floor(substeps) || substeps > 1000) {
+    mju_error("%s \"%s\": substeps: expected a whole number of 1 to 1000, found %g", CONTACT_PLUGIN, name_of(m, instance), substeps);
+  }
+  c->substeps = (int)substeps;
+  if (c->joint >= 0) {
+    read_joint(m, instance, c);
+  } else {
+    read_geoms(m, instance, c);
+  }
+  c->jacobian = (mjtNum*)calloc(12 * (size_t)mjMAX(1, m->nv), sizeof(mjtNum));
+  if (!c->jacobian) mju_error("%s: out of memory", CONTACT_PLUGIN);
+  c->other = c->jacobian + 6 * m->nv;
+  return c;
+}
+
+void contact_free(contact* c) {
+  if (!c) return;
+  palpate_model_free(c->model);
+  free(c->jacobian);
+  free(c);
+}
