@@ -1841,65 +1841,52 @@ class ContactState(_Moved):
 
 @final
 class ContactStates(_Moved):
-    """Contacts that are moved side by side, such as those of many grippers, or of one under many guesses.
-
-    Parameters
-    ----------
-    model : path or mapping, or a list of them
-        One model for ``count`` contacts, or one each.
-    count : int, optional
-        How many, of one model; none beside a list.
-
-    Examples
-    --------
-    >>> import numpy as np, palpate
-    >>> model = {
-    ...     "specimen": {"shape": "ball", "radius": "35 mm", "modulus": "28 kPa"},
-    ...     "law": {"name": "latency", "exponent": 5, "rate_coefficient": "2e4 /s"},
-    ... }
-    >>> contacts = palpate.ContactStates(model, 3)
-    >>> for k in range(100):
-    ...     forces = contacts.step(1e-3, (k + 1) * np.array([3e-5, 4e-5, 5e-5]))
-    >>> forces.round(2)
-    array([1.94, 2.86, 3.89])
-    """
     def __new__(
-        cls, model: _Described | Sequence[_Described], count: int | None = None
+        cls,
+        model: _Described | Sequence[_Described],
+        count: int | None = None,
+        *,
+        modulus_pa: float | ArrayLike | None = None,
+        radius_m: float | ArrayLike | None = None,
+        exponent: float | ArrayLike | None = None,
+        rate_coefficient_per_s: float | ArrayLike | None = None,
+        layer_thickness_m: float | ArrayLike | None = None,
     ) -> Self: ...
-    def step(self, dt_s: float | ArrayLike, displacement_m: float | ArrayLike) -> _Doubles:
-        """Moves every jaw to its displacement within a time step; all contacts, or none if one cannot.
-
-        Parameters
-        ----------
-        dt_s, displacement_m : float or array_like, shape (N,)
-            As for `ContactState.step`; one number stands for all contacts.
-
-        Returns
-        -------
-        ndarray, shape (N,)
-            Forces, N.
-
-        Raises
-        ------
-        ModelError
-            A step that one contact cannot make; the message says which.
-        """
-        ...
-    def step_force(self, dt_s: float | ArrayLike, force_n: float | ArrayLike) -> _Doubles:
-        """Applies a force to every contact within a time step, as `step` does a displacement.
-
-        Returns
-        -------
-        ndarray, shape (N,)
-            Displacements of the jaws, m.
-        """
-        ...
+    def step(
+        self,
+        dt_s: float | ArrayLike,
+        displacement_m: float | ArrayLike,
+        out: _Doubles | None = None,
+        substeps: int = 1,
+        errors: Literal["raise", "mask"] = "raise",
+    ) -> _Doubles: ...
+    def step_force(
+        self,
+        dt_s: float | ArrayLike,
+        force_n: float | ArrayLike,
+        out: _Doubles | None = None,
+        substeps: int = 1,
+        errors: Literal["raise", "mask"] = "raise",
+    ) -> _Doubles: ...
+    def reset(
+        self,
+        mask: ArrayLike | None = None,
+        *,
+        modulus_pa: float | ArrayLike | None = None,
+        radius_m: float | ArrayLike | None = None,
+        exponent: float | ArrayLike | None = None,
+        rate_coefficient_per_s: float | ArrayLike | None = None,
+        layer_thickness_m: float | ArrayLike | None = None,
+    ) -> None: ...
+    @property
+    def state(self) -> _Doubles: ...
+    @state.setter
+    def state(self, state: ArrayLike, /) -> None: ...
     force_n: Final[_Doubles]
-    """Forces now, N."""
+    stiffness_n_per_m: Final[_Doubles]
     surface_m: Final[_Doubles]
-    """Displacements of the surfaces at one contact each, m."""
     is_touching: Final[NDArray[np.bool_]]
-    """Whether the jaws touch their bodies."""
+    failed: Final[NDArray[np.bool_]]
     def __len__(self) -> int: ...
 
 def read(

@@ -16,7 +16,7 @@
 //! | `summary.rs` | what a whole simulation comes to, for sweeps |
 //! | `wave/` | all layers over time (the strain wave) |
 //! | `step.rs` | one step at a time, for controllers; with `model.rs` all that there is without std |
-//! | `states/` | many contacts, one step at a time |
+//! | `states/` | many contacts, one step at a time, in place |
 //! | `error.rs` | why one could not run |
 
 #[cfg(feature = "std")]
@@ -62,7 +62,10 @@ pub use {
     energy::{Energy, EnergySplit, energy, energy_watched},
     error::SimulateError,
     linear::{LinearContact, LinearLaw, LinearLawError, LinearTerm, Memory},
-    states::{ContactStates, NextStates, OneStepError},
+    states::{
+        ContactModels, ContactModelsError, ContactParameter, ContactQuantity, ContactStates, ContactsStep, Imposed, OneStepError,
+        Refusal, ValueProblem,
+    },
     summary::{RunSummary, Summary, summary},
     trajectory::{Sampling, Trajectory, simulate, simulate_force, simulate_watched},
     walk::{ContactEvent, ContactEventKind, StepEnd, step_ends},
