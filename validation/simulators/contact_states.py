@@ -3,7 +3,8 @@
     python validation/simulators/contact_states.py
 
 Every library takes steps of the same contacts, closed balls with n = 5 that may not pull: state and displacements as doubles, a new state and forces
-out. Contacts of palpate are also checked and may leave their bodies, which the others leave out. One core and two are two processes: the
+out. Contacts of palpate are also checked and may leave their bodies, which the others leave out; with errors="raise" all of them are checked before
+the first is moved. One core and two are two processes: the
 first is bound to one core. The rounds of all libraries go in turn, and the best of each counts.
 """
 
@@ -27,6 +28,7 @@ MODEL = {
 }
 DEPTH, THICKNESS, RATE, MODULUS = 0.035, 0.035 / 8, 2e4, 28e3
 DT = 1e-3
+OURS, OTHERS = ("palpate, raise", "palpate, mask"), ("NumPy", "numba", "JAX")
 
 
 def surrogate(xp):
@@ -79,6 +81,7 @@ def steppers(count):
     import jax.numpy as jnp
 
     contacts, out = palpate.ContactStates(MODEL, count), np.empty(count)
+    masked, masked_out = palpate.ContactStates(MODEL, count), np.empty(count)
     plain = surrogate(np)
     plain_state = [np.zeros(count), np.zeros(count)]
 
@@ -104,7 +107,11 @@ def steppers(count):
     def palpate_step(to):
         return contacts.step(DT, to, out=out)
 
-    return {"palpate": (palpate_step, np.asarray), "NumPy": (numpy_step, np.asarray), "numba": (numba_step, np.asarray), "JAX": (jax_step, jnp.asarray)}
+    def masked_step(to):
+        return masked.step(DT, to, out=masked_out, errors="mask")
+
+    steps = {"palpate, raise": palpate_step, "palpate, mask": masked_step, "NumPy": numpy_step, "numba": numba_step}
+    return {**{name: (step, np.asarray) for name, step in steps.items()}, "JAX": (jax_step, jnp.asarray)}
 
 
 def step_times():
@@ -120,7 +127,7 @@ def step_times():
         for k in range(6):
             forces = {name: np.asarray(step(tos[k % 2])).copy() for name, (step, tos) in there.items()}
         for name, force in forces.items():
-            assert np.allclose(force, forces["palpate"], rtol=1e-11), f"{name}: another model"
+            assert np.allclose(force, forces["palpate, raise"], rtol=1e-11), f"{name}: another model"
         best = dict.fromkeys(there, math.inf)
         repeats = {}
         for name, (step, tos) in there.items():
@@ -179,15 +186,17 @@ def shown(seconds):
 
 
 def table(times, cores):
+    names = [*OURS, *OTHERS]
     lines = [
-        f"| contacts, {cores} core{'s' if cores > 1 else ''} | palpate | NumPy | numba | JAX | a contact | fastest other / palpate |",
-        "|---:|---:|---:|---:|---:|---:|---:|",
+        f"| contacts, {cores} core{'s' if cores > 1 else ''} | {' | '.join(names)} | a contact, mask | fastest other / raise | fastest other / mask |",
+        "|---:" * (len(names) + 4) + "|",
     ]
     for count, best in times.items():
-        others = min(best[name] for name in ("NumPy", "numba", "JAX"))
-        cells = [shown(best[name]) for name in ("palpate", "NumPy", "numba", "JAX")]
-        each = best["palpate"] / int(count) * 1e9
-        lines.append(f"| {int(count):,} | {' | '.join(cells)} | {each:.3g} ns | {others / best['palpate']:.2f} |")
+        fastest = min(best[name] for name in OTHERS)
+        cells = [shown(best[name]) for name in names]
+        each = best[OURS[1]] / int(count) * 1e9
+        ratios = [f"{fastest / best[name]:.2f}" for name in OURS]
+        lines.append(f"| {int(count):,} | {' | '.join(cells)} | {each:.3g} ns | {' | '.join(ratios)} |")
     return "\n".join(lines)
 
 

@@ -203,7 +203,11 @@ impl ContactStates {
         for (index, some) in all.chunks_mut(AT_ONCE).enumerate() {
             py.check_signals()?;
             let show = || self.models.show((states, self.count), quantity, index * AT_ONCE, some);
-            if self.count > TINY { briefly(py, show)? } else { show() };
+            if self.count > TINY {
+                briefly(py, show)?
+            } else {
+                show()
+            };
         }
         Ok(PyArray1::from_vec(py, all))
     }

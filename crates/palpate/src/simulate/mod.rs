@@ -63,8 +63,8 @@ pub use {
     error::SimulateError,
     linear::{LinearContact, LinearLaw, LinearLawError, LinearTerm, Memory},
     states::{
-        ContactModels, ContactModelsError, ContactParameter, ContactQuantity, ContactStates, ContactsStep, Imposed, OneStepError,
-        Refusal, ValueProblem,
+        ContactModels, ContactModelsError, ContactParameter, ContactQuantity, ContactStates, ContactsStep, Imposed,
+        OneStepError, Refusal, ValueProblem,
     },
     summary::{RunSummary, Summary, summary},
     trajectory::{Sampling, Trajectory, simulate, simulate_force, simulate_watched},

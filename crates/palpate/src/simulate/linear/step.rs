@@ -101,13 +101,7 @@ impl LinearStepper {
     }
 
     /// Moves the jaw from contact displacement `from` to `to` (m) within `dt` (s); returns the force (N).
-    pub(in crate::simulate) fn step(
-        &self,
-        from: f64,
-        memory: &mut [f64],
-        dt: f64,
-        to: f64,
-    ) -> Result<f64, StepError> {
+    pub(in crate::simulate) fn step(&self, from: f64, memory: &mut [f64], dt: f64, to: f64) -> Result<f64, StepError> {
         check_step(dt, "displacement must be a finite number", to)?;
         self.contact.specimen.check_contact_displacement(to, self.contact.is_bonded())?;
         let jaw = |share: f64| if share == 1.0 { to } else { from + share * (to - from) };

@@ -102,13 +102,12 @@ impl Bodies {
             self.modulus = lanes(modulus, from);
         }
         if let Some(radius) = parameters.values(ContactParameter::Radius) {
-            let radius = lanes(radius, from);
-            for lane in 0..LANES {
-                self.diameter[lane] = 2.0 * radius[lane];
+            for (lane, radius) in lanes(radius, from).into_iter().enumerate() {
+                self.diameter[lane] = 2.0 * radius;
                 if self.is_ball[lane] {
-                    self.depth[lane] = radius[lane];
-                    self.per_depth[lane] = 1.0 / radius[lane];
-                    self.limit[lane] = if self.limit[lane] > 0.0 { radius[lane] } else { self.limit[lane] };
+                    self.depth[lane] = radius;
+                    self.per_depth[lane] = 1.0 / radius;
+                    self.limit[lane] = if self.limit[lane] > 0.0 { radius } else { self.limit[lane] };
                 }
             }
         }
@@ -196,9 +195,8 @@ impl Block {
             block.rate_coefficient = lanes(rate_coefficient, from);
         }
         if let Some(thickness) = parameters.values(ContactParameter::LayerThickness) {
-            let thickness = lanes(thickness, from);
-            for lane in 0..LANES {
-                block.layers[lane] = block.bodies.depth[lane] / thickness[lane];
+            for (lane, thickness) in lanes(thickness, from).into_iter().enumerate() {
+                block.layers[lane] = block.bodies.depth[lane] / thickness;
             }
         }
         for lane in 0..LANES {

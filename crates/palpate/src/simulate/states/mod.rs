@@ -6,22 +6,27 @@
 //! | `models.rs` | bodies and laws of the contacts; a step of states that lie in memory of the caller |
 //! | `parameters.rs` | parameters with a value for each contact |
 //! | `part.rs` | what a step imposes, its memory, and how it is spread over cores |
-//! | `latency.rs`, `block.rs` | contacts of the latency law, and eight of them in vectors |
-//! | `linear.rs` | contacts of linear laws |
+//! | `latency.rs`, `block.rs`, `alone.rs` | contacts of the latency law, eight of them in vectors, and one |
+//! | `linear.rs`, `linear_block.rs` | contacts of linear laws, and eight of them in vectors |
+//! | `quantity.rs` | what contacts show |
 
+mod alone;
 mod block;
 mod latency;
 mod linear;
+mod linear_block;
 mod models;
 mod parameters;
 mod part;
+mod quantity;
 #[cfg(test)]
 mod tests;
 
 use super::{ContactModel, ContactState};
-pub use models::{ContactModels, ContactQuantity};
+pub use models::ContactModels;
 pub use parameters::{ContactModelsError, ContactParameter, ValueProblem};
 pub use part::{ContactsStep, Imposed, OneStepError, Refusal};
+pub use quantity::ContactQuantity;
 
 /// The states of contacts that are moved together, such as those of many grippers, or of one with many values of its parameters.
 ///

@@ -131,7 +131,8 @@ fn shows_what_contacts_show(together: &ContactStates, models: &[ContactModel]) {
 fn substeps_are_steps_along_a_straight_line() {
     for exponents in [&[5.0][..], &[2.7, 1.0]] {
         let models = models(exponents, 21);
-        let (mut parts, mut one_by_one) = (ContactStates::of_each(models.clone()), ContactStates::of_each(models.clone()));
+        let (mut parts, mut one_by_one) =
+            (ContactStates::of_each(models.clone()), ContactStates::of_each(models.clone()));
         let (mut random, mut places, mut forces) = (Rng::new(8), vec![1e-4; 21], vec![0.0; 21]);
         for _ in 0..50 {
             let before = places.clone();
@@ -210,7 +211,10 @@ fn masked_contacts_keep_their_state_and_the_others_go_on() {
                 Imposed::Displacement => before.state(index).force(&models[index]),
                 Imposed::Force => 1e-3,
             };
-            assert!((results[index] - if failed { kept } else { expected[index] }).abs() < 1e-12, "{imposed:?} {index}");
+            assert!(
+                (results[index] - if failed { kept } else { expected[index] }).abs() < 1e-12,
+                "{imposed:?} {index}"
+            );
         }
         // None fails any more.
         some.reset(Some(&before.failed().iter().enumerate().map(|(index, _)| index == 15).collect::<Vec<_>>()));
@@ -287,7 +291,10 @@ fn linear_contacts_side_by_side_are_contacts_alone() {
     let models = ContactModels::new(contacts.iter().cloned().map(Contact::from).collect()).unwrap();
     assert_eq!(models.rows(), 4);
     let mut together = ContactStates::new(models, 29);
-    let alone: Vec<_> = contacts.iter().map(|contact| crate::simulate::linear::LinearStepper::new(contact.clone())).collect();
+    let alone: Vec<_> = contacts
+        .iter()
+        .map(|contact| crate::simulate::linear::LinearStepper::new(contact.clone()))
+        .collect();
     let mut states = vec![(0.0, [0.0; 3]); 29];
     let (mut random, mut places, mut left) = (Rng::new(11), vec![0.002; 29], 0);
     for _ in 0..400 {
