@@ -327,7 +327,6 @@ shown! {
     #[pyo3(signature = (
         model, count=None, *, modulus_pa=None, radius_m=None, exponent=None, rate_coefficient_per_s=None, layer_thickness_m=None
     ))]
-    #[expect(clippy::too_many_arguments, reason = "the keywords of Python")]
     fn new<'py>(
         model: &Bound<'py, PyAny>,
         count: Option<&Bound<'py, PyAny>>,
