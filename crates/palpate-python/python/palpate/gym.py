@@ -41,7 +41,7 @@ ID = "palpate/SoftGrip-v0"
 EPISODE = 500
 #: Slip that costs all of the cost of slip, m/s.
 _FAST_M_PER_S = 0.1
-#: Draws of bodies that are tried until all are bodies.
+#: Draws that are tried until one is a body.
 _TRIES = 20
 
 _Doubles = NDArray[np.float64]
@@ -176,15 +176,25 @@ class SoftGripVectorEnv(VectorEnv[_Floats, _Floats, NDArray[Any]]):
 
     def _begin(self, mask: _Marks) -> None:
         """New bodies, untouched, in the environments that the mask marks."""
-        for attempt in range(_TRIES):
-            self.bodies.draw(self.np_random, mask)
-            try:
-                self.contacts.reset(mask, **self.bodies.of_body)
-                break
-            except ModelError:
-                if attempt + 1 == _TRIES:
-                    raise
+        self.bodies.draw(self.np_random, mask)
+        self._take_bodies(np.flatnonzero(mask), mask, _TRIES)
         self._begin_again(mask)
+
+    def _take_bodies(self, places: NDArray[np.intp], mask: _Marks, tries: int) -> None:
+        """Contacts with the bodies that were drawn; draws that are no body, such as layers thicker than it, are repeated."""
+        try:
+            self.contacts.reset(mask, **self.bodies.of_body)
+        except ModelError:
+            if len(places) == 1:
+                if tries == 0:
+                    raise
+                self.bodies.draw(self.np_random, mask)
+                self._take_bodies(places, mask, tries - 1)
+                return
+            for some in np.array_split(places, 2):
+                marked = np.zeros(self.num_envs, np.bool_)
+                marked[some] = True
+                self._take_bodies(some, marked, tries)
 
     def _begin_again(self, mask: _Marks) -> None:
         """All back to the start, where the bodies are untouched."""

@@ -250,6 +250,17 @@ def test_bodies_are_drawn_from_the_covariance_of_a_calibration() -> None:
     envs.step(pushed(envs, 0.3))
 
 
+def test_draws_that_are_no_body_are_repeated() -> None:
+    # Layers cannot be thicker than the ball of 35 mm: half of the draws are none.
+    envs = SoftGripVectorEnv(300, ranges={"layer_thickness_m": (0.03, 0.04)})
+    envs.reset(seed=1)
+    thickness = envs.bodies.of_body["layer_thickness_m"]
+    assert thickness.max() <= 0.035 and len(np.unique(thickness)) == 300
+    never = SoftGripVectorEnv(2, ranges={"layer_thickness_m": (0.04, 0.05)})
+    with pytest.raises(palpate.ModelError, match="layer thickness must be above 0 m and at most the depth"):
+        never.reset(seed=1)
+
+
 @pytest.mark.parametrize(
     ("settings", "text"),
     [
