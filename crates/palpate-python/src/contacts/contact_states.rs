@@ -290,7 +290,7 @@ fn with_values(mut models: ContactModels, given: &Given<'_, '_>, count: usize) -
     for (parameter, values) in given {
         if let Some(values) = values {
             let values = Values::new(values, parameter.name(), count)?.each(count);
-            models = models.with(*parameter, values).map_err(refused_plainly::<ModelError>)?;
+            models = models.with(*parameter, &values).map_err(refused_plainly::<ModelError>)?;
         }
     }
     Ok(models)
@@ -575,7 +575,7 @@ shown! {
             let parameter = parameter.ok_or_else(|| {
                 refused_plainly::<ModelError>(format!("expected a parameter of contacts, found {name:?}"))
             })?;
-            models = models.with(parameter, numbers(&values.joined(py)?)?).map_err(refused_plainly::<ModelError>)?;
+            models = models.with(parameter, &numbers(&values.joined(py)?)?).map_err(refused_plainly::<ModelError>)?;
         }
         let states = states.joined(py)?;
         let states = if format == PICKLE { rows_of(&states)? } else { numbers(&states)? };

@@ -39,6 +39,7 @@ mod model;
 #[cfg(feature = "std")]
 mod states;
 mod step;
+mod stiffness;
 #[cfg(feature = "std")]
 mod summary;
 #[cfg(feature = "std")]

@@ -227,15 +227,15 @@ impl LatencyModels {
     }
 
     /// Forces (N) and stiffnesses (N/m) of the states of contacts from `from` on.
-    pub(super) fn force_and_stiffness(&self, from: usize, state: (&[f64], &[f64]), out: (&mut [f64], &mut [f64])) {
+    pub(super) fn force_and_stiffness(&self, from: usize, state: (&[f64], &[f64]), (forces, slopes): (&mut [f64], &mut [f64])) {
         accelerated(
             #[inline(always)]
             || {
-                for at in (0..out.0.len()).step_by(LANES) {
+                for at in (0..forces.len()).step_by(LANES) {
                     let (jaw, behind) = (lanes(state.0, at), lanes(state.1, at));
                     let block = self.block(from + at);
                     let (mut force, mut slope) = block.force_and_stiffness(&jaw, &behind);
-                    for lane in (0..LANES.min(out.0.len() - at)).filter(|lane| block.bodies.limit[*lane] < 0.0) {
+                    for lane in (0..LANES.min(forces.len() - at)).filter(|lane| block.bodies.limit[*lane] < 0.0) {
                         let (state, model) = (
                             ContactState {
                                 jaw: jaw[lane],
@@ -245,8 +245,8 @@ impl LatencyModels {
                         );
                         (force[lane], slope[lane]) = (state.force(&model), state.stiffness(&model));
                     }
-                    store(out.0, at, &force);
-                    store(out.1, at, &slope);
+                    store(forces, at, &force);
+                    store(slopes, at, &slope);
                 }
             },
         );

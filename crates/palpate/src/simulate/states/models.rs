@@ -22,7 +22,7 @@ use crate::vector::LANES;
 /// use palpate::test_problems::paper_ball;
 ///
 /// let models = ContactModels::alike(paper_ball(Separation::Unilateral));
-/// let models = models.with(ContactParameter::Modulus, vec![28e3, 14e3, 28e3])?;
+/// let models = models.with(ContactParameter::Modulus, &[28e3, 14e3, 28e3])?;
 /// let (mut states, mut forces, mut failed) = (vec![0.0; 2 * 3], [0.0; 3], [false; 3]);
 /// let step = ContactsStep {
 ///     imposed: Imposed::Displacement,
@@ -102,7 +102,7 @@ impl ContactModels {
     /// # Errors
     /// [`ContactModelsError`] for a parameter that body or law do not have, values that are none of it, another number of values than those of
     /// another parameter, and contacts of a model each.
-    pub fn with(mut self, parameter: ContactParameter, values: Vec<f64>) -> Result<Self, ContactModelsError> {
+    pub fn with(mut self, parameter: ContactParameter, values: &[f64]) -> Result<Self, ContactModelsError> {
         let (name, found) = (parameter.name(), values.len());
         if found == 0 {
             return Err(ContactModelsError::Empty);
@@ -110,7 +110,7 @@ impl ContactModels {
         if let Some(expected) = self.parameters_of().count().filter(|expected| *expected != found) {
             return Err(ContactModelsError::Count { name, expected, found });
         }
-        self.replace(&[(parameter, &values)], &vec![true; found])?;
+        self.replace(&[(parameter, values)], &vec![true; found])?;
         Ok(self)
     }
 

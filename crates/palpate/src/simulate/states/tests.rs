@@ -133,7 +133,7 @@ fn substeps_are_steps_along_a_straight_line() {
         let models = models(exponents, 21);
         let (mut parts, mut one_by_one) =
             (ContactStates::of_each(models.clone()), ContactStates::of_each(models.clone()));
-        let (mut random, mut places, mut forces) = (Rng::new(8), vec![1e-4; 21], vec![0.0; 21]);
+        let (mut random, mut places, mut forces) = (Rng::new(8), vec![0.0; 21], vec![0.0; 21]);
         for _ in 0..50 {
             let before = places.clone();
             wander(&mut places, &mut random, |index| models[index].separation == Separation::Bonded);
@@ -237,7 +237,7 @@ fn values_of_each_contact_are_models_of_each() {
     ];
     let base = &models(&[5.0], 1)[0];
     let together = columns.iter().try_fold(ContactModels::alike(base.clone()), |models, (parameter, values)| {
-        models.with(*parameter, values.clone())
+        models.with(*parameter, values)
     });
     let mut together = ContactStates::new(together.unwrap(), 37);
     let own = |index: usize| {
@@ -267,18 +267,18 @@ fn values_of_each_contact_are_models_of_each() {
 #[test]
 fn values_that_are_none_are_refused() {
     let ball = || ContactModels::alike(models(&[5.0], 1).swap_remove(0));
-    let refused = |parameter, values: Vec<f64>| ball().with(parameter, values).unwrap_err().to_string();
+    let refused = |parameter, values: Vec<f64>| ball().with(parameter, &values).unwrap_err().to_string();
     assert!(refused(ContactParameter::Modulus, vec![1e4, -1.0]).starts_with("modulus_pa, contact 1: modulus must be"));
     assert!(refused(ContactParameter::Exponent, vec![f64::NAN]).starts_with("exponent, contact 0: exponent n must"));
     assert!(refused(ContactParameter::LayerThickness, vec![1.0]).contains("layer thickness must be above 0 m"));
     let block = ContactModels::alike(models(&[5.0], 3).swap_remove(2));
-    let refused = block.with(ContactParameter::Radius, vec![0.1]).unwrap_err();
+    let refused = block.with(ContactParameter::Radius, &[0.1]).unwrap_err();
     assert_eq!(refused, ContactModelsError::NoSuchParameter { name: "radius_m" });
     let several = ContactModels::of_each(models(&[5.0], 3));
-    let refused = several.with(ContactParameter::Modulus, vec![1e4; 3]).unwrap_err();
+    let refused = several.with(ContactParameter::Modulus, &[1e4; 3]).unwrap_err();
     assert_eq!(refused.to_string(), "modulus_pa: values for each contact need one model for all, found 3 models");
-    let two = ball().with(ContactParameter::Modulus, vec![1e4; 2]).unwrap();
-    let refused = two.with(ContactParameter::Exponent, vec![2.0; 3]).unwrap_err();
+    let two = ball().with(ContactParameter::Modulus, &[1e4; 2]).unwrap();
+    let refused = two.with(ContactParameter::Exponent, &[2.0; 3]).unwrap_err();
     assert_eq!(refused.to_string(), "exponent: expected 2 values, one a contact, found 3");
     let mixed = vec![Contact::from(models(&[5.0], 1).swap_remove(0)), Contact::from(linear(0))];
     assert_eq!(ContactModels::new(mixed), Err(ContactModelsError::Mixed { index: 1 }));
