@@ -133,7 +133,7 @@ class SoftGripVectorEnv(VectorEnv[_Floats, _Floats, NDArray[Any]]):
 
     def reset(self, *, seed: int | None = None, options: dict[str, Any] | None = None) -> tuple[_Floats, dict[str, Any]]:
         """Begins new episodes: of all environments, or of those that ``options["reset_mask"]`` marks."""
-        super().reset(seed=seed)  # type: ignore[safe-super]
+        super().reset(seed=seed)
         mask = np.ones(self.num_envs, np.bool_)
         if options is not None and options.get("reset_mask") is not None:
             mask = np.asarray(options["reset_mask"])
@@ -143,7 +143,7 @@ class SoftGripVectorEnv(VectorEnv[_Floats, _Floats, NDArray[Any]]):
         self._observe()
         return self._shown(), {}
 
-    def step(self, actions: ArrayLike) -> tuple[_Floats, _Doubles, _Marks, _Marks, dict[str, Any]]:  # type: ignore[override]
+    def step(self, actions: ArrayLike) -> tuple[_Floats, _Doubles, _Marks, _Marks, dict[str, Any]]:
         """Takes a step of every environment; see the class for actions, observations, rewards and ends."""
         task, fresh = self.task, None
         if self.autoreset_mode is AutoresetMode.NEXT_STEP and self._ended.any():
@@ -279,7 +279,7 @@ class SoftGripEnv(gymnasium.Env[_Floats, _Floats]):
         self._envs = SoftGripVectorEnv(
             1, max_episode_steps=max_episode_steps, autoreset_mode=AutoresetMode.DISABLED, **settings
         )
-        self.observation_space, self.action_space = spaces()
+        self.observation_space, self.action_space = self._envs.single_observation_space, self._envs.single_action_space
 
     def reset(self, *, seed: int | None = None, options: dict[str, Any] | None = None) -> tuple[_Floats, dict[str, Any]]:
         """Begins a new episode."""

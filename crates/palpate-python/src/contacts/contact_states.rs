@@ -1,10 +1,9 @@
 //! Contacts that are moved side by side, their states in an array of Python's.
 
+use std::fmt::Display;
 use std::io::Write;
 
-use numpy::{
-    BorrowError, PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray2, PyReadwriteArray2, PyUntypedArrayMethods,
-};
+use numpy::{PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray2, PyReadwriteArray2, PyUntypedArrayMethods};
 use palpate::simulate::{
     Contact, ContactModels, ContactParameter, ContactQuantity, ContactState as State, ContactsStep, Imposed, Refusal,
 };
@@ -152,7 +151,7 @@ impl ContactStates {
             return Ok(array);
         }
         let (models, failed) = (&self.models, &mut self.failed);
-        let advance = || models.step(states, &step, results, failed);
+        let mut advance = || models.step(states, &step, results, failed);
         let stepped = match work > TINY {
             false => advance(),
             true if ContactModels::is_spread(self.count, request.imposed) => {
@@ -202,11 +201,11 @@ impl ContactStates {
         let mut all = vec![0.0; self.count];
         for (index, some) in all.chunks_mut(AT_ONCE).enumerate() {
             py.check_signals()?;
-            let show = || self.models.show((states, self.count), quantity, index * AT_ONCE, some);
+            let mut show = || self.models.show((states, self.count), quantity, index * AT_ONCE, some);
             if self.count > TINY {
-                briefly(py, show)?
+                briefly(py, show)?;
             } else {
-                show()
+                show();
             };
         }
         Ok(PyArray1::from_vec(py, all))
@@ -228,7 +227,7 @@ impl ContactStates {
     }
 }
 
-fn in_use(error: BorrowError) -> PyErr {
+fn in_use(error: impl Display) -> PyErr {
     refused_plainly::<OptionError>(format!("state: expected states that nobody uses, found: {error}"))
 }
 

@@ -47,9 +47,9 @@ def test_make_vec_makes_the_vector_environment() -> None:
         assert rewards.shape == terminations.shape == truncations.shape == (6,) and terminations.dtype == np.bool_
 
 
-def run(seed: int, mode: AutoresetMode = AutoresetMode.NEXT_STEP, steps: int = 120, **settings: Any) -> list[np.ndarray[Any, Any]]:
+def run(seed: int, mode: AutoresetMode = AutoresetMode.NEXT_STEP, steps: int = 120, **settings: Any) -> list[Any]:
     envs = SoftGripVectorEnv(32, autoreset_mode=mode, ranges=RANGES, max_episode_steps=50, **settings)
-    found = [envs.reset(seed=seed)[0]]
+    found: list[Any] = [envs.reset(seed=seed)[0]]
     actions = np.random.default_rng(9)
     for _ in range(steps):
         observations, rewards, terminations, truncations, _ = envs.step(actions.uniform(-1, 1, (32, 1)).astype(np.float32))
