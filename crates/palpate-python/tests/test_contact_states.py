@@ -174,7 +174,7 @@ def test_values_that_are_none_are_refused() -> None:
         palpate.ContactStates(PRONY, 2, exponent=2.0)
     with pytest.raises(palpate.ModelError, match="contact 1: expected a law of the kind of contact 0"):
         palpate.ContactStates([MODEL, PRONY])
-    varying = {**MODEL, "law": {**MODEL["law"], "rate": "by-strain", "strain_factor": 0.5}}
+    varying = {**MODEL, "law": {**MODEL["law"], "strain_factor": 0.5}}
     with pytest.raises(palpate.ModelError, match="contact is stepped by a latency law with one rate coefficient"):
         palpate.ContactStates(varying, 2)
 
