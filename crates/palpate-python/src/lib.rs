@@ -55,7 +55,8 @@ mod _palpate {
     #[pymodule_export]
     use crate::{
         command::command,
-        contacts::contact_state::{ContactState, ContactStates},
+        contacts::contact_state::ContactState,
+        contacts::contact_states::ContactStates,
         contacts::simulate::{Trajectory, energy, simulate},
         contacts::simulate_many::simulate_many,
         contacts::sweep::sweep,

@@ -10,3 +10,14 @@ pub(crate) fn for_each<T: Send>(count: usize, of: impl Fn(usize) -> T + Sync + S
     #[cfg(not(feature = "rayon"))]
     (0..count).map(of).collect()
 }
+
+/// What two pieces of work return, side by side where there are threads.
+#[cfg(feature = "std")]
+pub(crate) fn both<A: Send, B: Send>(a: impl FnOnce() -> A + Send, b: impl FnOnce() -> B + Send) -> (A, B) {
+    #[cfg(feature = "rayon")]
+    {
+        rayon::join(a, b)
+    }
+    #[cfg(not(feature = "rayon"))]
+    (a(), b())
+}

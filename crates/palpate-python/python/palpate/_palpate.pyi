@@ -1841,14 +1841,28 @@ class ContactState(_Moved):
 
 @final
 class ContactStates(_Moved):
-    """Contacts that are moved side by side, such as those of many grippers, or of one under many guesses.
+    """Contacts that are moved side by side, such as those of many grippers, or of one with many values of its parameters.
+
+    Thousands of contacts are stepped on all cores, to the same bits on any number of them. Two threads cannot step one object at once:
+    the second gets a ``RuntimeError``.
 
     Parameters
     ----------
     model : path or mapping, or a list of them
-        One model for ``count`` contacts, or one each.
+        One model for ``count`` contacts, or one each, as for `ContactState`; all by the latency law with one rate coefficient, or all by
+        linear laws.
     count : int, optional
-        How many, of one model; none beside a list.
+        How many, of one model; none beside a list, or where the arrays below say it.
+    modulus_pa, radius_m, exponent, rate_coefficient_per_s, layer_thickness_m : float or array_like, shape (N,), optional
+        Values for each contact in place of those of the one model: Young's modulus, Pa; radius of a ball or a pad, m, with the number
+        of layers as it was; exponent, rate coefficient (1/s) and thickness of a layer (m) of the latency law.
+
+    Raises
+    ------
+    OptionError
+        Descriptions that are none; another number of values than contacts; values beside a list.
+    ModelError
+        Laws of both kinds, a rate coefficient that varies, a parameter that the body or its law does not have, a value out of range.
 
     Examples
     --------
@@ -1862,44 +1876,142 @@ class ContactStates(_Moved):
     ...     forces = contacts.step(1e-3, (k + 1) * np.array([3e-5, 4e-5, 5e-5]))
     >>> forces.round(2)
     array([1.94, 2.86, 3.89])
+
+    Twice the modulus is twice the force; a step of NaN is masked, and a reset makes a contact untouched.
+
+    >>> contacts = palpate.ContactStates(model, modulus_pa=[28e3, 56e3, 28e3])
+    >>> forces = np.empty(3)
+    >>> contacts.step(0.1, [5e-3, 5e-3, np.nan], out=forces, substeps=100, errors="mask").round(2)
+    array([3.89, 7.77, 0.  ])
+    >>> contacts.failed
+    array([False, False,  True])
+    >>> contacts.reset(forces > 5)
+    >>> contacts.state[:, 0]
+    array([0.0025, 0.    , 0.    ])
     """
     def __new__(
-        cls, model: _Described | Sequence[_Described], count: int | None = None
+        cls,
+        model: _Described | Sequence[_Described],
+        count: int | None = None,
+        *,
+        modulus_pa: float | ArrayLike | None = None,
+        radius_m: float | ArrayLike | None = None,
+        exponent: float | ArrayLike | None = None,
+        rate_coefficient_per_s: float | ArrayLike | None = None,
+        layer_thickness_m: float | ArrayLike | None = None,
     ) -> Self: ...
-    def step(self, dt_s: float | ArrayLike, displacement_m: float | ArrayLike) -> _Doubles:
-        """Moves every jaw to its displacement within a time step; all contacts, or none if one cannot.
+    def step(
+        self,
+        dt_s: float | ArrayLike,
+        displacement_m: float | ArrayLike,
+        out: _Doubles | None = None,
+        substeps: int = 1,
+        errors: Literal["raise", "mask"] = "raise",
+    ) -> _Doubles:
+        """Moves every jaw to its displacement within a time step.
+
+        With ``errors="raise"`` all contacts are stepped, or none if one cannot be. With ``errors="mask"`` such a contact keeps its state,
+        `failed` marks it, and its force is that before the step, 0 where its state is not finite.
 
         Parameters
         ----------
         dt_s, displacement_m : float or array_like, shape (N,)
-            As for `ContactState.step`; one number stands for all contacts.
+            As for `ContactState.step`; one number stands for all contacts. Arrays of doubles are read in place: another thread that changes
+            them meanwhile changes the step.
+        out : ndarray, shape (N,), optional
+            Doubles one behind the other, where the forces go; a new array if left out, which takes longer of many contacts.
+        substeps : int
+            Equal parts that the step is taken in, along a straight line.
+        errors : str
+            "raise" or "mask".
 
         Returns
         -------
         ndarray, shape (N,)
-            Forces, N.
+            Forces, N: ``out`` if it was given.
 
         Raises
         ------
         ModelError
-            A step that one contact cannot make; the message says which.
+            A step that one contact cannot make, with ``errors="raise"``; the message says which.
+        OptionError
+            Arrays of another length, an ``out`` that cannot be written to.
         """
         ...
-    def step_force(self, dt_s: float | ArrayLike, force_n: float | ArrayLike) -> _Doubles:
+    def step_force(
+        self,
+        dt_s: float | ArrayLike,
+        force_n: float | ArrayLike,
+        out: _Doubles | None = None,
+        substeps: int = 1,
+        errors: Literal["raise", "mask"] = "raise",
+    ) -> _Doubles:
         """Applies a force to every contact within a time step, as `step` does a displacement.
+
+        Parameters
+        ----------
+        dt_s, force_n : float or array_like, shape (N,)
+            As for `ContactState.step_force`; of a linear law the jaw goes at constant speed to where the force is reached.
+        out, substeps, errors
+            As for `step`.
 
         Returns
         -------
         ndarray, shape (N,)
-            Displacements of the jaws, m.
+            Displacements of the jaws, m; those before the step where it failed.
+
+        Raises
+        ------
+        ModelError, OptionError
+            As for `step`.
         """
         ...
+    def reset(
+        self,
+        mask: ArrayLike | None = None,
+        *,
+        modulus_pa: float | ArrayLike | None = None,
+        radius_m: float | ArrayLike | None = None,
+        exponent: float | ArrayLike | None = None,
+        rate_coefficient_per_s: float | ArrayLike | None = None,
+        layer_thickness_m: float | ArrayLike | None = None,
+    ) -> None:
+        """Makes contacts untouched, with other values of parameters if those are given.
+
+        Parameters
+        ----------
+        mask : array_like of bool, shape (N,), optional
+            Which ones; all if left out.
+        modulus_pa, radius_m, exponent, rate_coefficient_per_s, layer_thickness_m : float or array_like, shape (N,), optional
+            New values of these contacts, as for the constructor; those at the places of others are left aside.
+
+        Raises
+        ------
+        OptionError
+            A mask of another length, or of something else; another number of values.
+        ModelError
+            A parameter that the body or its law does not have, a value out of range; nothing is changed.
+        """
+        ...
+    @property
+    def state(self) -> _Doubles:
+        """The states, a row each, in place: what is written there is the state. Columns are one contact's share of the displacement of the
+        jaw, m, and, of the latency law, the displacement of the node behind the contact layer, m; of a linear law the excess of every
+        term, by rising rate, in strain, or in N where its memory is of force. Zeros are an untouched contact.
+        """
+        ...
+    @state.setter
+    def state(self, state: ArrayLike, /) -> None: ...
     force_n: Final[_Doubles]
     """Forces now, N."""
+    stiffness_n_per_m: Final[_Doubles]
+    """Tangent stiffnesses dF/dd against the displacements of the jaws, N/m: the slopes of a step within no time. 0 while a jaw is off."""
     surface_m: Final[_Doubles]
     """Displacements of the surfaces at one contact each, m."""
     is_touching: Final[NDArray[np.bool_]]
     """Whether the jaws touch their bodies."""
+    failed: Final[NDArray[np.bool_]]
+    """Which contacts kept their state in the last step with ``errors="mask"``."""
     def __len__(self) -> int: ...
 
 def read(

@@ -48,24 +48,29 @@ impl Given {
         Ok((parse_scene(&self.text, path)?.1, self_contained(&self.text, path)?))
     }
 
-    fn made(&self, read: Read) -> PyResult<(ContactModel, String)> {
+    fn made(&self, read: Read) -> PyResult<(Contact, String)> {
         let of_mapping = |error| if self.path.is_none() { of_mapping(error) } else { error };
-        let (contact, text) = read.map_err(of_mapping).map_err(undescribed)?;
-        Ok((latency(contact)?, text))
+        read.map_err(of_mapping).map_err(undescribed)
     }
 }
 
 /// A body and its law as a description has them: path of a file or mapping; and a text that makes them again anywhere.
-pub(super) fn described(model: &Bound<'_, PyAny>) -> PyResult<(ContactModel, String)> {
+pub(super) fn described_contact(model: &Bound<'_, PyAny>) -> PyResult<(Contact, String)> {
     let given = Given::of(model)?;
     given.made(given.read())
+}
+
+/// The same under the latency law.
+pub(super) fn described(model: &Bound<'_, PyAny>) -> PyResult<(ContactModel, String)> {
+    let (contact, text) = described_contact(model)?;
+    Ok((latency(contact)?, text))
 }
 
 /// Descriptions that are read in some ten milliseconds.
 const AT_ONCE: usize = 4096;
 
 /// The same of many, of which those that are alike are read once.
-pub(super) fn all_described(models: &Bound<'_, PyAny>) -> PyResult<Vec<(ContactModel, String)>> {
+pub(super) fn all_described(models: &Bound<'_, PyAny>) -> PyResult<Vec<(Contact, String)>> {
     let (mut places, mut all) = (HashMap::new(), Vec::new());
     for (index, model) in models.try_iter()?.enumerate() {
         if index.is_multiple_of(AT_ONCE) {
@@ -100,7 +105,12 @@ fn latency(contact: Contact) -> PyResult<ContactModel> {
     }
 }
 
-/// The model of a text out of a pickle.
+/// The contact of a text out of a pickle.
+pub(super) fn contact_of(text: &str) -> PyResult<Contact> {
+    Ok(parse_scene(text, Path::new("model")).map_err(undescribed)?.1)
+}
+
+/// The same under the latency law.
 pub(super) fn model_of(text: &str) -> PyResult<ContactModel> {
-    latency(parse_scene(text, Path::new("model")).map_err(undescribed)?.1)
+    latency(contact_of(text)?)
 }

@@ -1,6 +1,8 @@
 //! Contacts that are simulated: a protocol, one with many numbers, a sweep to a file, step by step.
 
+mod columns;
 pub(crate) mod contact_state;
+pub(crate) mod contact_states;
 mod described;
 mod protocol;
 pub(crate) mod simulate;

@@ -18,6 +18,8 @@
 //! | `step.rs` | one step at a time, for controllers; with `model.rs` and `stiffness.rs` all that there is without std |
 //! | `stiffness.rs` | stiffness and excess strain of a contact at an instant |
 //! | `states/` | many contacts, one step at a time |
+//! | `step.rs` | one step at a time, for controllers; with `model.rs` all that there is without std |
+//! | `states/` | many contacts, one step at a time, in place |
 //! | `error.rs` | why one could not run |
 
 #[cfg(feature = "std")]
@@ -64,7 +66,10 @@ pub use {
     energy::{Energy, EnergySplit, energy, energy_watched},
     error::SimulateError,
     linear::{LinearContact, LinearLaw, LinearLawError, LinearTerm, Memory},
-    states::{ContactStates, NextStates, OneStepError},
+    states::{
+        ContactModels, ContactModelsError, ContactParameter, ContactQuantity, ContactStates, ContactsStep, Imposed,
+        OneStepError, Refusal, ValueProblem,
+    },
     summary::{RunSummary, Summary, summary},
     trajectory::{Sampling, Trajectory, simulate, simulate_force, simulate_watched},
     walk::{ContactEvent, ContactEventKind, StepEnd, step_ends},

@@ -272,7 +272,7 @@ impl ContactState {
     }
 }
 
-fn check_step(dt: f64, expected: &'static str, value: f64) -> Result<(), StepError> {
+pub(super) fn check_step(dt: f64, expected: &'static str, value: f64) -> Result<(), StepError> {
     if !(dt.is_finite() && dt >= 0.0) {
         return Err(StepError::Number {
             expected: "time step must be a finite number of 0 s or more",
@@ -286,7 +286,7 @@ fn check_step(dt: f64, expected: &'static str, value: f64) -> Result<(), StepErr
 }
 
 /// Where in 0…1 a function that begins above zero and ends below crosses it, to a thousandth of a millionth, in a bounded number of steps.
-fn crossing(f: impl Fn(f64) -> f64) -> f64 {
+pub(super) fn crossing(f: impl Fn(f64) -> f64) -> f64 {
     let (mut above, mut below) = (0.0, 1.0);
     for _ in 0..30 {
         let middle = 0.5 * (above + below);

@@ -92,9 +92,14 @@ impl LinearContact {
 
     /// The contact displacement (m) that a force (N) asks for at once, with Σ(x_k − g_k q) at `behind`.
     pub(super) fn carried(&self, force: f64, behind: f64) -> Option<f64> {
-        let (whole, depth) = (1.0 + self.law.overshoot(), self.specimen.depth());
+        self.carried_by(1.0 + self.law.overshoot(), force, behind)
+    }
+
+    /// The contact displacement (m) at which `whole` q + `behind` carries a force (N).
+    pub(super) fn carried_by(&self, whole: f64, force: f64, behind: f64) -> Option<f64> {
+        let depth = self.specimen.depth();
         match self.memory {
-            // ε = (1 + Σ g) u/depth + behind
+            // ε = whole u/depth + behind
             Memory::Strain => {
                 let layer = Layer::Behind {
                     behind: -behind * depth / whole,
@@ -110,7 +115,7 @@ impl LinearContact {
         self.specimen.check_contact_displacement(u, self.is_bonded()).is_ok()
     }
 
-    pub(super) fn is_bonded(&self) -> bool {
+    pub(in crate::simulate) fn is_bonded(&self) -> bool {
         self.separation == Separation::Bonded
     }
 }

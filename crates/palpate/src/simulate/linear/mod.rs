@@ -20,6 +20,7 @@
 //! | `forced.rs` | while the force goes straight |
 //! | `recovery.rs` | what fades while no force changes, and the surface once the jaw has left it |
 //! | `layer.rs` | all of it as the walk through a drive asks for it |
+//! | `step.rs` | one step at a time |
 
 mod contact;
 mod forced;
@@ -29,9 +30,11 @@ mod layer;
 mod moving;
 mod recovery;
 mod stage;
+mod step;
 
 pub use contact::{LinearContact, Memory};
 use forced::Forced;
 pub use law::{LinearLaw, LinearLawError, LinearTerm};
 use moving::Moving;
-use recovery::Surface;
+use recovery::{Modes, Surface};
+pub(super) use step::{LinearStepper, Memories};

@@ -28,9 +28,24 @@ struct Mode {
     sum: f64,
 }
 
-impl Recovery {
-    /// From the excess strains at the moment when the jaw left.
-    pub(super) fn new(law: &LinearLaw, excess: &[f64]) -> Self {
+/// The rates and vectors of a law's recovery, whatever it starts from.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Modes {
+    modes: Vec<FreeMode>,
+}
+
+#[derive(Debug, Clone, PartialEq)]
+struct FreeMode {
+    /// μ, 1/s.
+    rate: f64,
+    /// λ_k − μ, 1/s.
+    gaps: Vec<f64>,
+    /// Σ g_k λ_k/(λ_k − μ)².
+    size: f64,
+}
+
+impl Modes {
+    pub(super) fn new(law: &LinearLaw) -> Self {
         let terms = law.terms();
         let whole = 1.0 + law.overshoot();
         let mode = |index: usize| {
@@ -43,22 +58,51 @@ impl Recovery {
                 sum - whole
             };
             let delta = root(gap, excess_of_sum);
-            let (mut along, mut size) = (0.0, 0.0);
-            for (k, (term, x)) in terms.iter().zip(excess).enumerate() {
-                along += term.rate * x / off(k, delta);
-                size += term.overshoot * term.rate / (off(k, delta) * off(k, delta));
-            }
-            let amount = along / size;
-            let parts: Vec<f64> =
-                terms.iter().enumerate().map(|(k, term)| amount * term.overshoot / off(k, delta)).collect();
-            Mode {
+            let gaps: Vec<f64> = (0..terms.len()).map(|k| off(k, delta)).collect();
+            let size = terms.iter().zip(&gaps).map(|(term, gap)| term.overshoot * term.rate / (gap * gap)).sum();
+            FreeMode {
                 rate: own - delta,
+                gaps,
+                size,
+            }
+        };
+        Self {
+            modes: (0..terms.len()).map(mode).collect(),
+        }
+    }
+
+    /// How much of a mode there is in excess strains.
+    fn amount(mode: &FreeMode, law: &LinearLaw, excess: &[f64]) -> f64 {
+        let terms = law.terms().iter().zip(excess).zip(&mode.gaps);
+        terms.map(|((term, x), gap)| term.rate * x / gap).sum::<f64>() / mode.size
+    }
+
+    /// Excess strains after some time (s) in which no force changes, without allocation: `excess` to `after`.
+    pub(super) fn fade(&self, law: &LinearLaw, excess: &[f64], elapsed: f64, after: &mut [f64]) {
+        after.fill(0.0);
+        for mode in &self.modes {
+            let left = Self::amount(mode, law, excess) * (-mode.rate * elapsed).exp();
+            let parts = law.terms().iter().zip(&mode.gaps);
+            after.iter_mut().zip(parts).for_each(|(x, (term, gap))| *x += left * term.overshoot / gap);
+        }
+    }
+}
+
+impl Recovery {
+    /// From the excess strains at the moment when the jaw left.
+    pub(super) fn new(law: &LinearLaw, excess: &[f64]) -> Self {
+        let started = |mode: &FreeMode| {
+            let amount = Modes::amount(mode, law, excess);
+            let parts: Vec<f64> =
+                law.terms().iter().zip(&mode.gaps).map(|(term, gap)| amount * term.overshoot / gap).collect();
+            Mode {
+                rate: mode.rate,
                 sum: parts.iter().sum(),
                 parts,
             }
         };
         Self {
-            modes: (0..terms.len()).map(mode).collect(),
+            modes: Modes::new(law).modes.iter().map(started).collect(),
         }
     }
 

@@ -1,15 +1,16 @@
-//! Contacts that stay in contact, side by side in vectors.
+//! Contacts of the latency law that stay in contact, side by side in vectors.
 
-use crate::contact::{Equilibrium, Shape};
+use super::parameters::{ContactParameter, Parameters};
+use crate::contact::{Equilibrium, Shape, Specimen};
 use crate::latency::lanes::{Power, by_power};
 use crate::simulate::{ContactModel, Separation};
 use crate::vector::LANES;
 use crate::vector::elementary::{exp, ln, ln_1p};
 
-/// Numbers of contacts side by side.
-type Lanes = [f64; LANES];
+/// Values of contacts side by side.
+pub(super) type Lanes = [f64; LANES];
 
-/// Numbers from a place on; the last of them also in place of those that are not there.
+/// Values from a position on; the last of them also in place of those that are not there.
 #[inline(always)]
 pub(super) fn lanes(all: &[f64], from: usize) -> Lanes {
     let some = all.get(from..).unwrap_or_default();
@@ -19,29 +20,138 @@ pub(super) fn lanes(all: &[f64], from: usize) -> Lanes {
         .unwrap_or_else(|| std::array::from_fn(|lane| all[(from + lane).min(last)]))
 }
 
-/// The numbers of the models of contacts side by side.
+/// Writes values from a position on, as many as there is room for.
+#[inline(always)]
+pub(super) fn store(all: &mut [f64], from: usize, values: &Lanes) {
+    let Some(some) = all.get_mut(from..) else { return };
+    match some.first_chunk_mut() {
+        Some(chunk) => *chunk = *values,
+        None => some.iter_mut().zip(values).for_each(|(slot, value)| *slot = *value),
+    }
+}
+
+/// The bodies of contacts side by side: E ε A(u) of a ball, a pad or a prism, and where others begin that are stepped alone.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Bodies {
+    /// Share of the displacement that is one contact's.
+    pub(super) share: Lanes,
+    pub(super) per_depth: Lanes,
+    pub(super) depth: Lanes,
+    pub(super) modulus: Lanes,
+    /// Twice the radius of a ball or a pad, 0 of another body.
+    pub(super) diameter: Lanes,
+    /// Whether the radius is the depth.
+    is_ball: [bool; LANES],
+    /// The contact area of a prism.
+    pub(super) section: Lanes,
+    /// Contact displacements from which on there is no body, and below which nothing holds on to it.
+    pub(super) limit: Lanes,
+    pub(super) lowest: Lanes,
+    /// How far the layer may be stretched: nothing, or without end where it is bonded.
+    pub(super) hold: Lanes,
+}
+
+/// Whether the force of a body is E ε A(u) with the area of a ball, a pad or a prism.
+pub(super) fn is_plain(specimen: &Specimen) -> bool {
+    matches!(specimen.shape(), Shape::Ball { .. } | Shape::Pad { .. } | Shape::Prism { .. })
+        && *specimen.equilibrium() == Equilibrium::UniformStrain
+}
+
+impl Bodies {
+    /// Of up to [`LANES`] bodies; the last of them also in place of those that are not there.
+    pub(super) fn new(bodies: &[(&Specimen, Separation)]) -> Self {
+        let each = |of: &dyn Fn(&Specimen, bool) -> f64| -> Lanes {
+            std::array::from_fn(|lane| {
+                let (specimen, separation) = bodies[lane.min(bodies.len() - 1)];
+                of(specimen, separation == Separation::Bonded)
+            })
+        };
+        Self {
+            share: each(&|specimen, _| specimen.contact_displacement(1.0)),
+            per_depth: each(&|specimen, _| 1.0 / specimen.depth()),
+            depth: each(&|specimen, _| specimen.depth()),
+            modulus: each(&|specimen, _| specimen.modulus()),
+            diameter: each(&|specimen, _| match specimen.shape() {
+                Shape::Ball { radius } | Shape::Pad { radius, .. } => 2.0 * radius,
+                _ => 0.0,
+            }),
+            is_ball: std::array::from_fn(|lane| {
+                matches!(bodies[lane.min(bodies.len() - 1)].0.shape(), Shape::Ball { .. })
+            }),
+            section: each(&|specimen, _| match specimen.shape() {
+                Shape::Prism { area, .. } => *area,
+                _ => 0.0,
+            }),
+            limit: each(&|specimen, bonded| match (is_plain(specimen), bonded && specimen.has_constant_section()) {
+                // A body of another form is stepped alone.
+                (false, _) => f64::NEG_INFINITY,
+                (true, true) => f64::INFINITY,
+                (true, false) => specimen.limit().at,
+            }),
+            lowest: each(&|specimen, bonded| {
+                if bonded && !specimen.has_constant_section() { 0.0 } else { f64::NEG_INFINITY }
+            }),
+            hold: each(&|_, bonded| if bonded { f64::INFINITY } else { 0.0 }),
+        }
+    }
+
+    /// With the values of parameters from contact `from` on.
+    #[inline(always)]
+    pub(super) fn set(&mut self, parameters: &Parameters, from: usize) {
+        if let Some(modulus) = parameters.values(ContactParameter::Modulus) {
+            self.modulus = lanes(modulus, from);
+        }
+        if let Some(radius) = parameters.values(ContactParameter::Radius) {
+            for (lane, radius) in lanes(radius, from).into_iter().enumerate() {
+                self.diameter[lane] = 2.0 * radius;
+                if self.is_ball[lane] {
+                    self.depth[lane] = radius;
+                    self.per_depth[lane] = 1.0 / radius;
+                    self.limit[lane] = if self.limit[lane] > 0.0 { radius } else { self.limit[lane] };
+                }
+            }
+        }
+    }
+
+    /// The contact area at a contact displacement (m), and its slope.
+    #[inline(always)]
+    pub(super) fn area(&self, lane: usize, u: f64) -> (f64, f64) {
+        let inside = if u > 0.0 { u } else { 0.0 };
+        let round = std::f64::consts::PI * inside * (self.diameter[lane] - inside);
+        let growth = std::f64::consts::PI * (self.diameter[lane] - 2.0 * inside);
+        match self.diameter[lane] > 0.0 {
+            true => (round, growth),
+            false => (self.section[lane], 0.0),
+        }
+    }
+
+    /// Whether a contact displacement is one that vector code takes.
+    #[inline(always)]
+    pub(super) fn fits(&self, lane: usize, u: f64) -> bool {
+        (u < self.limit[lane]) & (u >= self.lowest[lane]) & self.is_near(lane, u)
+    }
+
+    /// Whether a position is within [`FARTHEST`]; not where it is NaN.
+    #[inline(always)]
+    pub(super) fn is_near(&self, lane: usize, position: f64) -> bool {
+        position.abs() < FARTHEST * self.depth[lane]
+    }
+}
+
+/// Positions beyond so many depths of a body are refused: their forces might not be finite.
+pub(super) const FARTHEST: f64 = 1e6;
+
+/// The laws of contacts side by side, and their bodies.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Block {
+    pub(super) bodies: Bodies,
     power: Power,
     exponent: Lanes,
     rate_coefficient: Lanes,
-    /// Share of the displacement that is one contact's.
-    share: Lanes,
-    per_depth: Lanes,
     thickness: Lanes,
     per_thickness: Lanes,
-    /// m − 1.
-    layers_behind: Lanes,
-    modulus: Lanes,
-    /// Twice the radius of a ball or a pad, 0 for another body.
-    diameter: Lanes,
-    /// The contact area of a prism.
-    section: Lanes,
-    /// Contact displacements from which on there is no body, and below which nothing holds on to it.
-    limit: Lanes,
-    lowest: Lanes,
-    /// How far the layer may be stretched, m: nothing, or without end where it is bonded.
-    hold: Lanes,
+    /// m
+    layers: Lanes,
 }
 
 /// Contacts after a step.
@@ -49,7 +159,7 @@ pub(super) struct Moved {
     pub(super) jaw: Lanes,
     pub(super) behind: Lanes,
     pub(super) force: Lanes,
-    /// Whether the contact was closed all along, at numbers that can be.
+    /// Whether the contact was closed all along, at values that can be.
     pub(super) stays: [bool; LANES],
 }
 
@@ -60,51 +170,84 @@ impl Block {
             std::array::from_fn(|lane| of(&models[lane.min(models.len() - 1)]))
         };
         let exponent = each(&|model| model.law.exponent());
-        let is_bonded = |model: &ContactModel| model.separation == Separation::Bonded;
-        let is_prism = |model: &ContactModel| model.specimen.has_constant_section();
+        let bodies: Vec<_> = models.iter().map(|model| (&model.specimen, model.separation)).collect();
         Self {
+            bodies: Bodies::new(&bodies),
             power: Power::of(&exponent),
             exponent,
             rate_coefficient: each(&|model| model.law.rate_coefficient()),
-            share: each(&|model| model.specimen.contact_displacement(1.0)),
-            per_depth: each(&|model| 1.0 / model.specimen.depth()),
             thickness: each(&|model| model.layers.thickness(model.specimen.depth())),
             per_thickness: each(&|model| 1.0 / model.layers.thickness(model.specimen.depth())),
-            layers_behind: each(&|model| model.layers.count() - 1.0),
-            modulus: each(&|model| model.specimen.modulus()),
-            diameter: each(&|model| match model.specimen.shape() {
-                Shape::Ball { radius } | Shape::Pad { radius, .. } => 2.0 * radius,
-                _ => 0.0,
-            }),
-            section: each(&|model| match model.specimen.shape() {
-                Shape::Prism { area, .. } => *area,
-                _ => 0.0,
-            }),
-            limit: each(&|model| {
-                let plain =
-                    matches!(model.specimen.shape(), Shape::Ball { .. } | Shape::Pad { .. } | Shape::Prism { .. })
-                        && *model.specimen.equilibrium() == Equilibrium::UniformStrain;
-                match (plain, is_bonded(model) && is_prism(model)) {
-                    // A body of another form is stepped alone.
-                    (false, _) => f64::NEG_INFINITY,
-                    (true, true) => f64::INFINITY,
-                    (true, false) => model.specimen.limit().at,
-                }
-            }),
-            lowest: each(&|model| if is_bonded(model) && !is_prism(model) { 0.0 } else { f64::NEG_INFINITY }),
-            hold: each(&|model| if is_bonded(model) { f64::INFINITY } else { 0.0 }),
+            layers: each(&|model| model.layers.count()),
         }
     }
 
-    /// In contact all along, in code for vectors.
+    /// With the values of parameters from contact `from` on.
     #[inline(always)]
-    pub(super) fn moved(&self, state: (&Lanes, &Lanes), dt: &Lanes, to: &Lanes) -> Moved {
-        by_power!(self.power, power => self.pressed(power, state, dt, to))
+    pub(super) fn with(&self, parameters: &Parameters, from: usize) -> Self {
+        let mut block = self.clone();
+        block.bodies.set(parameters, from);
+        if let Some(exponent) = parameters.values(ContactParameter::Exponent) {
+            block.exponent = lanes(exponent, from);
+            block.power = Power::of(&block.exponent);
+        }
+        if let Some(rate_coefficient) = parameters.values(ContactParameter::RateCoefficient) {
+            block.rate_coefficient = lanes(rate_coefficient, from);
+        }
+        if let Some(thickness) = parameters.values(ContactParameter::LayerThickness) {
+            for (lane, thickness) in lanes(thickness, from).into_iter().enumerate() {
+                block.layers[lane] = block.bodies.depth[lane] / thickness;
+            }
+        }
+        for lane in 0..LANES {
+            block.thickness[lane] = block.bodies.depth[lane] / block.layers[lane];
+            block.per_thickness[lane] = 1.0 / block.thickness[lane];
+        }
+        block
     }
 
-    /// In contact all along, as `ContactState` has it.
+    /// A step in equal parts, in contact all along, in code for vectors; `to` is a displacement of the jaw (m).
+    #[inline(always)]
+    pub(super) fn moved(&self, (jaw, behind): (&Lanes, &Lanes), dt: &Lanes, to: &Lanes, substeps: u32) -> Moved {
+        by_power!(self.power, power => self.moved_by(power, (jaw, behind), dt, to, substeps))
+    }
+
+    #[inline(always)]
+    fn moved_by(&self, power: Power, (jaw, behind): (&Lanes, &Lanes), dt: &Lanes, to: &Lanes, substeps: u32) -> Moved {
+        let mut target = [0.0; LANES];
+        for lane in 0..LANES {
+            target[lane] = to[lane] * self.bodies.share[lane];
+        }
+        if substeps == 1 {
+            return self.pressed(power, (jaw, behind), dt, &target);
+        }
+        let mut part_dt = [0.0; LANES];
+        for lane in 0..LANES {
+            part_dt[lane] = dt[lane] / f64::from(substeps);
+        }
+        let mut first = [0.0; LANES];
+        for lane in 0..LANES {
+            first[lane] = between(jaw[lane], target[lane], (1, substeps));
+        }
+        let mut moved = self.pressed(power, (jaw, behind), &part_dt, &first);
+        for step in 2..=substeps {
+            let mut next = [0.0; LANES];
+            for lane in 0..LANES {
+                next[lane] = between(jaw[lane], target[lane], (step, substeps));
+            }
+            let before = moved;
+            moved = self.pressed(power, (&before.jaw, &before.behind), &part_dt, &next);
+            for lane in 0..LANES {
+                moved.stays[lane] &= before.stays[lane];
+            }
+        }
+        moved
+    }
+
+    /// In contact all along, as `ContactState` has it, to contact displacements `to` (m).
     #[inline(always)]
     fn pressed(&self, power: Power, (jaw, behind): (&Lanes, &Lanes), dt: &Lanes, to: &Lanes) -> Moved {
+        let bodies = &self.bodies;
         let mut moved = Moved {
             jaw: [0.0; LANES],
             behind: [0.0; LANES],
@@ -112,28 +255,44 @@ impl Block {
             stays: [false; LANES],
         };
         for lane in 0..LANES {
-            let (per_depth, per_thickness) = (self.per_depth[lane], self.per_thickness[lane]);
-            let u = to[lane] * self.share[lane];
-            let kick = 0.5 * ((u - jaw[lane]) * self.layers_behind[lane] * per_depth);
+            let (per_depth, per_thickness) = (bodies.per_depth[lane], self.per_thickness[lane]);
+            let u = to[lane];
+            let kick = 0.5 * ((u - jaw[lane]) * (self.layers[lane] - 1.0) * per_depth);
             let excess = (jaw[lane] - behind[lane]) * per_thickness - jaw[lane] * per_depth + kick;
             let excess = self.relaxed(power, lane, excess, dt[lane]) + kick;
             let left = u - self.thickness[lane] * (excess + u * per_depth);
             let strain = (u - left) / self.thickness[lane];
-            let inside = if u > 0.0 { u } else { 0.0 };
-            let round = std::f64::consts::PI * inside * (self.diameter[lane] - inside);
-            let area = if self.diameter[lane] > 0.0 { round } else { self.section[lane] };
-            let force = self.modulus[lane] * strain * area;
+            let force = bodies.modulus[lane] * strain * bodies.area(lane, u).0;
             (moved.jaw[lane], moved.behind[lane]) = (u, left);
-            moved.force[lane] = if strain <= 0.0 && self.hold[lane] == 0.0 { 0.0 } else { force };
-            moved.stays[lane] = (jaw[lane] + self.hold[lane] >= behind[lane])
-                & (u + self.hold[lane] >= left)
-                & (u < self.limit[lane])
-                & (u >= self.lowest[lane])
-                & (u > f64::NEG_INFINITY)
+            moved.force[lane] = if strain <= 0.0 && bodies.hold[lane] == 0.0 { 0.0 } else { force };
+            moved.stays[lane] = (jaw[lane] + bodies.hold[lane] >= behind[lane])
+                & (u + bodies.hold[lane] >= left)
+                & bodies.fits(lane, u)
+                & bodies.is_near(lane, jaw[lane])
+                & bodies.is_near(lane, behind[lane])
+                & (force.abs() < f64::INFINITY)
                 & (dt[lane] >= 0.0)
                 & (dt[lane] < f64::INFINITY);
         }
         moved
+    }
+
+    /// Forces (N) and stiffnesses dF/dd (N/m) of states, as `ContactState` has them.
+    #[inline(always)]
+    pub(super) fn force_and_stiffness(&self, jaw: &Lanes, behind: &Lanes) -> (Lanes, Lanes) {
+        let bodies = &self.bodies;
+        let (mut forces, mut slopes) = ([0.0; LANES], [0.0; LANES]);
+        for lane in 0..LANES {
+            let strain = (jaw[lane] - behind[lane]) / self.thickness[lane];
+            let (area, growth) = bodies.area(lane, jaw[lane]);
+            let growth = if jaw[lane] < 0.0 { 0.0 } else { bodies.modulus[lane] * growth };
+            let force = bodies.modulus[lane] * strain * area;
+            let slope = bodies.share[lane] * (bodies.modulus[lane] * area / self.thickness[lane] + growth * strain);
+            let (bonded, is_off) = (bodies.hold[lane] > 0.0, jaw[lane] < behind[lane]);
+            forces[lane] = if strain <= 0.0 && !bonded { 0.0 } else { force };
+            slopes[lane] = if is_off && !bonded { 0.0 } else { slope };
+        }
+        (forces, slopes)
     }
 
     /// An excess strain after some time, [`LatencyLaw::excess_after`](crate::latency::LatencyLaw::excess_after).
@@ -160,4 +319,11 @@ impl Block {
             }
         }
     }
+}
+
+/// The position after `part` of a way from one to another, exactly there at its end.
+#[inline(always)]
+pub(super) fn between(from: f64, to: f64, (part, parts): (u32, u32)) -> f64 {
+    let way = from + (to - from) * (f64::from(part) / f64::from(parts));
+    if part == parts { to } else { way }
 }

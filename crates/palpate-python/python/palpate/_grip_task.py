@@ -1,0 +1,160 @@
+"""The task of `palpate.gym`: what is gripped, how fingers move, what counts, and how bodies are drawn."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass, field, fields
+from typing import Any, Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from palpate._palpate import Material, OptionError
+
+#: A ball of 35 mm that relaxes by the latency law with n = 5.
+BALL: dict[str, Any] = {
+    "specimen": {"shape": "ball", "radius": "35 mm", "modulus": "28 kPa"},
+    "law": {"name": "latency", "exponent": 5, "rate_coefficient": "2e4 /s"},
+}
+#: Parameters of bodies that differ between environments, as `palpate.ContactStates` names them.
+OF_BODY = ("modulus_pa", "radius_m", "exponent", "rate_coefficient_per_s", "layer_thickness_m")
+#: Those of the load.
+OF_LOAD = ("mass_kg", "friction")
+#: Draws beyond so many standard deviations are put there.
+_WIDEST = 4.0
+
+Control = Literal["position", "force", "impedance"]
+
+
+@dataclass(frozen=True)
+class SoftGripTask:
+    """Settings of the environments of `palpate.gym`; lengths, times and forces in SI.
+
+    Examples
+    --------
+    >>> from palpate.gym import SoftGripTask
+    >>> task = SoftGripTask(mass_kg=0.2, friction=0.5)
+    >>> round(task.needed_force_n(), 3)  # 0.2 kg * 9.80665 m/s^2 / (2 * 0.5)
+    1.961
+    """
+
+    #: The body: a description as for `palpate.ContactStates`, or a `palpate.Material`.
+    model: Any = field(default_factory=lambda: BALL)
+    #: What an action is: a displacement that the jaw goes to, a force, or where a spring pulls the finger.
+    control: Control = "position"
+    #: Whether every episode draws a body from the covariance of a `palpate.Material`.
+    posterior: bool = False
+    #: Parameters that every episode draws between two numbers, evenly: those of ``ContactStates`` by name, ``mass_kg``, ``friction``.
+    ranges: Mapping[str, tuple[float, float]] = field(default_factory=dict)
+    #: Mass that is held, kg, and coefficient of friction between finger and body.
+    mass_kg: float = 0.2
+    friction: float = 0.5
+    #: Gravity, m/s^2.
+    gravity_m_per_s2: float = 9.80665
+    #: When the support begins to give way, s, and how long it takes to carry nothing, s.
+    lift_s: float = 1.0
+    lift_takes_s: float = 0.5
+    #: Displacement of the jaw at an action of 1, m, and its largest speed, m/s.
+    travel_m: float = 0.02
+    speed_m_per_s: float = 0.05
+    #: Force at an action of 1, N, and that which crushes the body, N.
+    force_n: float = 10.0
+    crush_force_n: float = 20.0
+    #: Resistance of the finger to motion, N s/m, with a force or an impedance; stiffness of its spring, N/m, with an impedance.
+    damping_n_s_per_m: float = 50.0
+    stiffness_n_per_m: float = 1000.0
+    #: Time of a step, s, and equal parts that the contact takes it in.
+    period_s: float = 0.02
+    substeps: int = 4
+    #: Slip at which the body is lost, m.
+    slip_limit_m: float = 5e-3
+    #: Cost of a force of `force_n`, of slip at 0.1 m/s or faster, and of a body that is lost or crushed.
+    force_cost: float = 0.5
+    slip_cost: float = 0.5
+    loss_cost: float = 10.0
+
+    def __post_init__(self) -> None:
+        if self.control not in ("position", "force", "impedance"):
+            raise OptionError(f'control is one of "position", "force", "impedance", found {self.control!r}')
+        for one in fields(self):
+            value = getattr(self, one.name)
+            if one.type == "float":
+                least_is_allowed = one.name in ("lift_s", "gravity_m_per_s2") or one.name.endswith("_cost")
+                _number(one.name, value, least_is_allowed)
+        if isinstance(self.substeps, bool) or not isinstance(self.substeps, int) or self.substeps < 1:
+            raise OptionError(f"substeps: expected a whole number, 1 or more, found {self.substeps!r}")
+        if self.posterior:
+            _posterior(self.model)
+        for name, ends in self.ranges.items():
+            if name not in (*OF_BODY, *OF_LOAD):
+                raise OptionError(f"ranges: expected names among {', '.join((*OF_BODY, *OF_LOAD))}, found {name}")
+            low, high = _ends(name, ends)
+            if not low <= high:
+                raise OptionError(f"ranges: {name}: expected a lower and an upper end, found {low} and {high}")
+
+    def needed_force_n(self) -> float:
+        """Least force at a finger that holds the mass, m g/(2 mu), N."""
+        return self.mass_kg * self.gravity_m_per_s2 / (2.0 * self.friction)
+
+
+def _number(name: str, value: Any, zero: bool) -> float:
+    wanted = "0 or more" if zero else "above 0"
+    try:
+        number = float(value)
+    except (TypeError, ValueError):
+        number = math.nan
+    if not (math.isfinite(number) and (number > 0.0 or (zero and number == 0.0))):
+        raise OptionError(f"{name}: expected a number {wanted}, found {value!r}")
+    return number
+
+
+def _ends(name: str, ends: Any) -> tuple[float, float]:
+    try:
+        low, high = ends
+    except (TypeError, ValueError):
+        raise OptionError(f"ranges: {name}: expected a lower and an upper end, found {ends!r}") from None
+    return _number(f"ranges: {name}", low, False), _number(f"ranges: {name}", high, False)
+
+
+def _posterior(model: Any) -> tuple[tuple[str, ...], NDArray[np.float64], NDArray[np.float64]]:
+    """Names of the parameters of a material, the means of their logarithms, and a root of the covariance of these."""
+    if not isinstance(model, Material):
+        raise OptionError(f"posterior: expected a palpate.Material as the model, found {type(model).__name__}\nhint: Record.calibrate(...).material is one")
+    covariance = model.log_covariance
+    if covariance is None:
+        raise OptionError("posterior: expected a material with a covariance, found one whose record leaves a parameter open")
+    names = tuple(model.parameters)
+    unknown = [name for name in names if name not in OF_BODY]
+    if unknown or len(covariance) != len(names):
+        raise OptionError(f"posterior: expected a material of the latency law with a modulus, found parameters {', '.join(names)}")
+    values, vectors = np.linalg.eigh(covariance)
+    root = vectors * np.sqrt(np.maximum(values, 0.0))
+    return names, np.log([model.parameters[name] for name in names]), root
+
+
+class Bodies:
+    """Parameters of the bodies of many environments, in place; every episode draws its own."""
+
+    def __init__(self, task: SoftGripTask, count: int) -> None:
+        self.task = task
+        self.mass_kg = np.full(count, float(task.mass_kg))
+        self.friction = np.full(count, float(task.friction))
+        self.posterior = _posterior(task.model) if task.posterior else None
+        names = [] if self.posterior is None else list(self.posterior[0])
+        names += [name for name in task.ranges if name in OF_BODY and name not in names]
+        #: Values of contacts, for `ContactStates.reset`.
+        self.of_body = {name: np.ones(count) for name in names}
+
+    def draw(self, rng: np.random.Generator, mask: NDArray[np.bool_]) -> None:
+        """Draws the parameters of the environments that the mask marks."""
+        count = int(np.count_nonzero(mask))
+        if self.posterior is not None:
+            names, mean, root = self.posterior
+            draws = rng.standard_normal((count, len(names))).clip(-_WIDEST, _WIDEST)
+            values = np.exp(mean + draws @ root.T)
+            for place, name in enumerate(names):
+                self.of_body[name][mask] = values[:, place]
+        for name, (low, high) in self.task.ranges.items():
+            column = self.of_body[name] if name in OF_BODY else getattr(self, name)
+            column[mask] = rng.uniform(low, high, count)

@@ -1,0 +1,643 @@
+//! Contacts that are moved side by side, their states in an array of Python's.
+
+use std::fmt::Display;
+use std::io::Write;
+
+use numpy::{PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray2, PyReadwriteArray2, PyUntypedArrayMethods};
+use palpate::simulate::{
+    Contact, ContactModels, ContactParameter, ContactQuantity, ContactState as State, ContactsStep, Imposed, Refusal,
+};
+use pyo3::prelude::*;
+use pyo3::types::{PyDict, PyList, PyTuple, PyType};
+
+use super::columns::{Values, marks, results};
+use super::described::{all_described, contact_of, described_contact};
+use crate::arrays::AT_ONCE;
+use crate::errors::{ModelError, OptionError, PalpateError, one_of, refused_plainly};
+use crate::pickles::{Made, PICKLE, Piece, Pieces, check_pickle, in_pieces};
+use crate::shown::shown;
+use crate::work::{briefly, in_parallel};
+
+/// Contacts that are moved side by side, such as those of many grippers, or of one with many values of its parameters.
+///
+/// Thousands of contacts are stepped on all cores, to the same bits on any number of them. Two threads cannot step one object at once:
+/// the second gets a ``RuntimeError``.
+///
+/// Parameters
+/// ----------
+/// model : path or mapping, or a list of them
+///     One model for ``count`` contacts, or one each, as for `ContactState`; all by the latency law with one rate coefficient, or all by
+///     linear laws.
+/// count : int, optional
+///     How many, of one model; none beside a list, or where the arrays below say it.
+/// modulus_pa, radius_m, exponent, rate_coefficient_per_s, layer_thickness_m : float or array_like, shape (N,), optional
+///     Values for each contact in place of those of the one model: Young's modulus, Pa; radius of a ball or a pad, m, with the number
+///     of layers as it was; exponent, rate coefficient (1/s) and thickness of a layer (m) of the latency law.
+///
+/// Raises
+/// ------
+/// OptionError
+///     Descriptions that are none; another number of values than contacts; values beside a list.
+/// ModelError
+///     Laws of both kinds, a rate coefficient that varies, a parameter that the body or its law does not have, a value out of range.
+///
+/// Examples
+/// --------
+/// >>> import numpy as np, palpate
+/// >>> model = {
+/// ...     "specimen": {"shape": "ball", "radius": "35 mm", "modulus": "28 kPa"},
+/// ...     "law": {"name": "latency", "exponent": 5, "rate_coefficient": "2e4 /s"},
+/// ... }
+/// >>> contacts = palpate.ContactStates(model, 3)
+/// >>> for k in range(100):
+/// ...     forces = contacts.step(1e-3, (k + 1) * np.array([3e-5, 4e-5, 5e-5]))
+/// >>> forces.round(2)
+/// array([1.94, 2.86, 3.89])
+///
+/// Twice the modulus is twice the force; a step of NaN is masked, and a reset makes a contact untouched.
+///
+/// >>> contacts = palpate.ContactStates(model, modulus_pa=[28e3, 56e3, 28e3])
+/// >>> forces = np.empty(3)
+/// >>> contacts.step(0.1, [5e-3, 5e-3, np.nan], out=forces, substeps=100, errors="mask").round(2)
+/// array([3.89, 7.77, 0.  ])
+/// >>> contacts.failed
+/// array([False, False,  True])
+/// >>> contacts.reset(forces > 5)
+/// >>> contacts.state[:, 0]
+/// array([0.0025, 0.    , 0.    ])
+#[pyclass(name = "ContactStates", module = "palpate")]
+pub(crate) struct ContactStates {
+    models: ContactModels,
+    count: usize,
+    /// A row for each number of a state, a column for each contact; Python may have changed what it is, so that it is looked at again.
+    states: Py<PyAny>,
+    failed: Vec<bool>,
+    /// The description of all, or one each, so that they can be sent elsewhere.
+    texts: Vec<String>,
+}
+
+/// Contacts that fit into the memory of a small machine.
+const MOST: usize = 100_000_000;
+
+/// Steps of contacts in a row that are taken before Ctrl-C is looked for.
+const BRIEF: usize = 1 << 22;
+
+/// Steps of contacts that take less time than to hand over the GIL.
+const TINY: usize = 64;
+
+/// Steps by displacement that take the time of one by force.
+const FORCE: usize = 64;
+
+/// What a step imposes: time steps, targets with their name, and how it is taken.
+struct Request<'a, 'py> {
+    imposed: Imposed,
+    dt_s: &'a Bound<'py, PyAny>,
+    to: (&'a Bound<'py, PyAny>, &'static str),
+    out: Option<&'a Bound<'py, PyAny>>,
+    substeps: i64,
+    errors: &'a str,
+}
+
+impl ContactStates {
+    fn new_of(py: Python<'_>, models: ContactModels, count: usize, texts: Vec<String>) -> Self {
+        Self {
+            states: PyArray2::<f64>::zeros(py, [models.rows(), count], false).into_any().unbind(),
+            failed: vec![false; count],
+            models,
+            count,
+            texts,
+        }
+    }
+
+    /// The states, if they are still what they were made as.
+    fn checked<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
+        let shape = [self.models.rows(), self.count];
+        match self.states.bind(py).cast::<PyArray2<f64>>() {
+            Ok(array) if array.shape() == shape && array.is_c_contiguous() => Ok(array.clone()),
+            _ => {
+                let message = format!("state: expected its base to be an array of {shape:?} doubles, found it changed");
+                Err(refused_plainly::<OptionError>(message))
+            }
+        }
+    }
+
+    fn states<'py>(&self, py: Python<'py>) -> PyResult<PyReadonlyArray2<'py, f64>> {
+        self.checked(py)?.try_readonly().map_err(in_use)
+    }
+
+    fn states_mut<'py>(&self, py: Python<'py>) -> PyResult<PyReadwriteArray2<'py, f64>> {
+        self.checked(py)?.try_readwrite().map_err(in_use)
+    }
+
+    /// Steps all contacts; with errors="raise" all or none.
+    fn stepped<'py>(&mut self, py: Python<'py>, request: &Request<'_, 'py>) -> PyResult<Bound<'py, PyArray1<f64>>> {
+        let (substeps, refusal) = (substeps_of(request.substeps)?, refusal_of(request.errors)?);
+        let mut states = self.states_mut(py)?;
+        let dt = Values::new(request.dt_s, "dt_s", self.count)?;
+        let to = Values::new(request.to.0, request.to.1, self.count)?;
+        let (array, mut results) = results(py, request.out, self.count)?;
+        let step = ContactsStep {
+            imposed: request.imposed,
+            dt: dt.slice(),
+            to: to.slice(),
+            substeps,
+            refusal,
+        };
+        let (states, results) = (states.as_slice_mut()?, results.as_slice_mut()?);
+        let each = if request.imposed == Imposed::Force { FORCE } else { 1 };
+        let work = self.count.saturating_mul(substeps as usize).saturating_mul(each);
+        if work > BRIEF {
+            self.at_length(py, (states, results), &step, (BRIEF / each / substeps as usize).max(8))?;
+            return Ok(array);
+        }
+        let (models, failed) = (&self.models, &mut self.failed);
+        let mut advance = || models.step(states, &step, results, failed);
+        let stepped = match work > TINY {
+            false => advance(),
+            true if ContactModels::is_spread(self.count, request.imposed) => {
+                briefly(py, || in_parallel(advance))?.map_err(refused_plainly::<PalpateError>)?
+            }
+            true => briefly(py, advance)?,
+        };
+        stepped.map_err(refused_plainly::<ModelError>)?;
+        Ok(array)
+    }
+
+    /// Steps so many contacts that Ctrl-C is looked for in between; an exception leaves all states as they were.
+    fn at_length(
+        &mut self,
+        py: Python<'_>,
+        (states, results): (&mut [f64], &mut [f64]),
+        step: &ContactsStep<'_>,
+        at_once: usize,
+    ) -> PyResult<()> {
+        let mut kept = Vec::with_capacity(states.len());
+        for some in states.chunks(AT_ONCE) {
+            py.check_signals()?;
+            kept.extend_from_slice(some);
+        }
+        let at_once = at_once.next_multiple_of(8);
+        for from in (0..self.count).step_by(at_once) {
+            let range = from..self.count.min(from + at_once);
+            let (models, failed) = (&self.models, &mut self.failed);
+            let (states, results) = (&mut *states, &mut *results);
+            let stepped = py.check_signals().and_then(|()| {
+                let advance = || models.step_range(range, states, step, results, failed);
+                let stepped = briefly(py, || in_parallel(advance))?.map_err(refused_plainly::<PalpateError>)?;
+                stepped.map_err(refused_plainly::<ModelError>)
+            });
+            if let Err(error) = stepped {
+                states.copy_from_slice(&kept);
+                return Err(error);
+            }
+        }
+        Ok(())
+    }
+
+    /// What all contacts show.
+    fn shown<'py>(&self, py: Python<'py>, quantity: ContactQuantity) -> PyResult<Bound<'py, PyArray1<f64>>> {
+        let states = self.states(py)?;
+        let states = states.as_slice()?;
+        let mut all = vec![0.0; self.count];
+        for (index, some) in all.chunks_mut(AT_ONCE).enumerate() {
+            py.check_signals()?;
+            let mut show = || self.models.show((states, self.count), quantity, index * AT_ONCE, some);
+            if self.count > TINY {
+                briefly(py, show)?;
+            } else {
+                show();
+            };
+        }
+        Ok(PyArray1::from_vec(py, all))
+    }
+
+    fn copied(&self, py: Python<'_>) -> PyResult<Self> {
+        Ok(Self {
+            models: self.models.clone(),
+            count: self.count,
+            states: self.states.bind(py).call_method0("copy")?.unbind(),
+            failed: self.failed.clone(),
+            texts: self.texts.clone(),
+        })
+    }
+
+    /// The states as an array with a row for each contact, which writes to them.
+    fn view<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        self.states.bind(py).call_method0("transpose")
+    }
+}
+
+fn in_use(error: impl Display) -> PyErr {
+    refused_plainly::<OptionError>(format!("state: expected states that nobody uses, found: {error}"))
+}
+
+/// A number of equal parts.
+fn substeps_of(substeps: i64) -> PyResult<u32> {
+    match u32::try_from(substeps) {
+        Ok(number) if (1..=1_000_000).contains(&number) => Ok(number),
+        _ => {
+            let message = format!("substeps: expected a whole number from 1 to 1000000, found {substeps}");
+            Err(refused_plainly::<OptionError>(message))
+        }
+    }
+}
+
+/// What happens where a contact cannot take a step.
+fn refusal_of(errors: &str) -> PyResult<Refusal> {
+    one_of("errors", &[("raise", Refusal::All), ("mask", Refusal::Masked)], errors)
+}
+
+/// How many contacts of how many models there are to be.
+fn count_of(count: Option<&Bound<'_, PyAny>>, several: bool, values: Option<usize>) -> PyResult<Option<usize>> {
+    let requested = |found: String| {
+        let message = format!(
+            "count: expected how many contacts of one model, 1 to {MOST}, or none beside a list of models, found {found}"
+        );
+        Err(refused_plainly::<OptionError>(message))
+    };
+    match count {
+        None if several => Ok(None),
+        None => values.map_or_else(|| requested("none".to_owned()), |count| Ok(Some(count))),
+        Some(count) if several => requested(format!("a list and {count}")),
+        Some(count) => match count.extract::<usize>() {
+            Ok(number) if (1..=MOST).contains(&number) => Ok(Some(number)),
+            _ => requested(count.to_string()),
+        },
+    }
+}
+
+/// Values of parameters for each contact, as keywords give them.
+type Given<'a, 'py> = [(ContactParameter, Option<&'a Bound<'py, PyAny>>); 5];
+
+/// How many contacts values are for, if one of them is an array.
+fn count_of_values(given: &Given<'_, '_>) -> PyResult<Option<usize>> {
+    for values in given.iter().filter_map(|(_, values)| *values) {
+        let length = match values.hasattr("__len__")? {
+            // Of an array of no dimension there is none.
+            true => values.len().ok(),
+            false => None,
+        };
+        if let Some(length) = length.filter(|length| (1..=MOST).contains(length)) {
+            return Ok(Some(length));
+        }
+    }
+    Ok(None)
+}
+
+/// The models with values of parameters for each contact.
+fn with_values(mut models: ContactModels, given: &Given<'_, '_>, count: usize) -> PyResult<ContactModels> {
+    for (parameter, values) in given {
+        if let Some(values) = values {
+            let values = Values::new(values, parameter.name(), count)?.each(count);
+            models = models.with(*parameter, &values).map_err(refused_plainly::<ModelError>)?;
+        }
+    }
+    Ok(models)
+}
+
+/// The format of pickles with parameters of each contact and with linear laws.
+const STATES_PICKLE: u32 = 5;
+
+shown! {
+    ContactStates: self
+    getters {
+        /// Forces now, N.
+        force_n<'py>(py): PyResult<Bound<'py, PyArray1<f64>>> = self.shown(py, ContactQuantity::Force),
+        /// Tangent stiffnesses dF/dd against the displacements of the jaws, N/m: the slopes of a step within no time. 0 while a jaw is off.
+        stiffness_n_per_m<'py>(py): PyResult<Bound<'py, PyArray1<f64>>> = self.shown(py, ContactQuantity::Stiffness),
+        /// Displacements of the surfaces at one contact each, m.
+        surface_m<'py>(py): PyResult<Bound<'py, PyArray1<f64>>> = self.shown(py, ContactQuantity::Surface),
+        /// Whether the jaws touch their bodies.
+        is_touching<'py>(py): PyResult<Bound<'py, PyArray1<bool>>> = {
+            let shown = self.shown(py, ContactQuantity::Touching)?;
+            let touching = shown.try_readonly().map_err(refused_plainly::<OptionError>)?;
+            let touching = touching.as_array().iter().map(|touching| *touching > 0.0).collect();
+            Ok(PyArray1::from_vec(py, touching))
+        },
+        /// Which contacts kept their state in the last step with ``errors="mask"``.
+        failed<'py>(py): Bound<'py, PyArray1<bool>> = PyArray1::from_slice(py, &self.failed),
+        /// The states, a row each, in place: what is written there is the state. Columns are one contact's share of the displacement of the
+        /// jaw, m, and, of the latency law, the displacement of the node behind the contact layer, m; of a linear law the excess of every
+        /// term, by rising rate, in strain, or in N where its memory is of force. Zeros are an untouched contact.
+        state<'py>(py): PyResult<Bound<'py, PyAny>> = self.view(py),
+    }
+
+    #[new]
+    #[pyo3(signature = (
+        model, count=None, *, modulus_pa=None, radius_m=None, exponent=None, rate_coefficient_per_s=None, layer_thickness_m=None
+    ))]
+    fn new<'py>(
+        model: &Bound<'py, PyAny>,
+        count: Option<&Bound<'py, PyAny>>,
+        modulus_pa: Option<&Bound<'py, PyAny>>,
+        radius_m: Option<&Bound<'py, PyAny>>,
+        exponent: Option<&Bound<'py, PyAny>>,
+        rate_coefficient_per_s: Option<&Bound<'py, PyAny>>,
+        layer_thickness_m: Option<&Bound<'py, PyAny>>,
+    ) -> PyResult<Self> {
+        let given = [
+            (ContactParameter::Modulus, modulus_pa),
+            (ContactParameter::Radius, radius_m),
+            (ContactParameter::Exponent, exponent),
+            (ContactParameter::RateCoefficient, rate_coefficient_per_s),
+            (ContactParameter::LayerThickness, layer_thickness_m),
+        ];
+        let several = model.is_instance_of::<PyList>() || model.is_instance_of::<PyTuple>();
+        let count = count_of(count, several, count_of_values(&given)?)?;
+        let described: Vec<(Contact, String)> = match count {
+            Some(_) => vec![described_contact(model)?],
+            None => all_described(model)?,
+        };
+        if described.is_empty() {
+            let message = "count: expected one model or more, found an empty list";
+            return Err(refused_plainly::<OptionError>(message));
+        }
+        let count = count.unwrap_or(described.len());
+        if let Some((parameter, _)) = given.iter().find(|(_, values)| several && values.is_some()) {
+            let message = format!("{}: values for each contact need one model for all, found a list", parameter.name());
+            return Err(refused_plainly::<OptionError>(message));
+        }
+        let (contacts, texts) = described.into_iter().unzip();
+        let models = ContactModels::new(contacts).map_err(refused_plainly::<ModelError>)?;
+        let models = with_values(models, &given, count)?;
+        Ok(Self::new_of(model.py(), models, count, texts))
+    }
+
+    #[setter]
+    fn set_state(&self, py: Python<'_>, state: &Bound<'_, PyAny>) -> PyResult<()> {
+        let numpy = py.import("numpy")?;
+        let shape = [self.count, self.models.rows()];
+        let refused = |found: String| {
+            let message = format!("state: expected an array of shape {shape:?}, found {found}");
+            refused_plainly::<OptionError>(message)
+        };
+        let given = numpy.call_method1("asarray", (state, "float64")).map_err(|error| refused(error.to_string()))?;
+        let found: Vec<usize> = given.getattr("shape")?.extract()?;
+        if found != shape {
+            return Err(refused(format!("one of {found:?}")));
+        }
+        // A copy with rows one behind the other, whatever they were before.
+        let new = given.call_method0("transpose")?.call_method0("copy")?;
+        let new = new.cast_into::<PyArray2<f64>>()?;
+        let new = new.try_readonly().map_err(refused_plainly::<OptionError>)?;
+        let new = new.as_slice()?;
+        self.models.check_states(new, self.count).map_err(refused_plainly::<ModelError>)?;
+        self.states_mut(py)?.as_slice_mut()?.copy_from_slice(new);
+        Ok(())
+    }
+
+    /// Moves every jaw to its displacement within a time step.
+    ///
+    /// With ``errors="raise"`` all contacts are stepped, or none if one cannot be. With ``errors="mask"`` such a contact keeps its state,
+    /// `failed` marks it, and its force is that before the step, 0 where its state is not finite.
+    ///
+    /// Parameters
+    /// ----------
+    /// dt_s, displacement_m : float or array_like, shape (N,)
+    ///     As for `ContactState.step`; one number stands for all contacts. Arrays of doubles are read in place: another thread that changes
+    ///     them meanwhile changes the step.
+    /// out : ndarray, shape (N,), optional
+    ///     Doubles one behind the other, where the forces go; a new array if left out, which takes longer of many contacts.
+    /// substeps : int
+    ///     Equal parts that the step is taken in, along a straight line.
+    /// errors : str
+    ///     "raise" or "mask".
+    ///
+    /// Returns
+    /// -------
+    /// ndarray, shape (N,)
+    ///     Forces, N: ``out`` if it was given.
+    ///
+    /// Raises
+    /// ------
+    /// ModelError
+    ///     A step that one contact cannot make, with ``errors="raise"``; the message says which.
+    /// OptionError
+    ///     Arrays of another length, an ``out`` that cannot be written to.
+    #[pyo3(signature = (dt_s, displacement_m, out=None, substeps=1, errors="raise"))]
+    fn step<'py>(
+        &mut self,
+        py: Python<'py>,
+        dt_s: &Bound<'py, PyAny>,
+        displacement_m: &Bound<'py, PyAny>,
+        out: Option<&Bound<'py, PyAny>>,
+        substeps: i64,
+        errors: &str,
+    ) -> PyResult<Bound<'py, PyArray1<f64>>> {
+        let request = Request {
+            imposed: Imposed::Displacement,
+            dt_s,
+            to: (displacement_m, "displacement_m"),
+            out,
+            substeps,
+            errors,
+        };
+        self.stepped(py, &request)
+    }
+
+    /// Applies a force to every contact within a time step, as `step` does a displacement.
+    ///
+    /// Parameters
+    /// ----------
+    /// dt_s, force_n : float or array_like, shape (N,)
+    ///     As for `ContactState.step_force`; of a linear law the jaw goes at constant speed to where the force is reached.
+    /// out, substeps, errors
+    ///     As for `step`.
+    ///
+    /// Returns
+    /// -------
+    /// ndarray, shape (N,)
+    ///     Displacements of the jaws, m; those before the step where it failed.
+    ///
+    /// Raises
+    /// ------
+    /// ModelError, OptionError
+    ///     As for `step`.
+    #[pyo3(signature = (dt_s, force_n, out=None, substeps=1, errors="raise"))]
+    fn step_force<'py>(
+        &mut self,
+        py: Python<'py>,
+        dt_s: &Bound<'py, PyAny>,
+        force_n: &Bound<'py, PyAny>,
+        out: Option<&Bound<'py, PyAny>>,
+        substeps: i64,
+        errors: &str,
+    ) -> PyResult<Bound<'py, PyArray1<f64>>> {
+        let request = Request {
+            imposed: Imposed::Force,
+            dt_s,
+            to: (force_n, "force_n"),
+            out,
+            substeps,
+            errors,
+        };
+        self.stepped(py, &request)
+    }
+
+    /// Makes contacts untouched, with other values of parameters if those are given.
+    ///
+    /// Parameters
+    /// ----------
+    /// mask : array_like of bool, shape (N,), optional
+    ///     Which ones; all if left out.
+    /// modulus_pa, radius_m, exponent, rate_coefficient_per_s, layer_thickness_m : float or array_like, shape (N,), optional
+    ///     New values of these contacts, as for the constructor; those at the places of others are left aside.
+    ///
+    /// Raises
+    /// ------
+    /// OptionError
+    ///     A mask of another length, or of something else; another number of values.
+    /// ModelError
+    ///     A parameter that the body or its law does not have, a value out of range; nothing is changed.
+    #[pyo3(signature = (
+        mask=None, *, modulus_pa=None, radius_m=None, exponent=None, rate_coefficient_per_s=None, layer_thickness_m=None
+    ))]
+    #[expect(clippy::too_many_arguments, reason = "the keywords of Python")]
+    fn reset<'py>(
+        &mut self,
+        py: Python<'py>,
+        mask: Option<&Bound<'py, PyAny>>,
+        modulus_pa: Option<&Bound<'py, PyAny>>,
+        radius_m: Option<&Bound<'py, PyAny>>,
+        exponent: Option<&Bound<'py, PyAny>>,
+        rate_coefficient_per_s: Option<&Bound<'py, PyAny>>,
+        layer_thickness_m: Option<&Bound<'py, PyAny>>,
+    ) -> PyResult<()> {
+        let given = [
+            (ContactParameter::Modulus, modulus_pa),
+            (ContactParameter::Radius, radius_m),
+            (ContactParameter::Exponent, exponent),
+            (ContactParameter::RateCoefficient, rate_coefficient_per_s),
+            (ContactParameter::LayerThickness, layer_thickness_m),
+        ];
+        let mask = mask.map(|mask| marks(mask, self.count)).transpose()?;
+        let mut states = self.states_mut(py)?;
+        let mut values = Vec::new();
+        for (parameter, given) in given {
+            if let Some(given) = given {
+                values.push((parameter, Values::new(given, parameter.name(), self.count)?));
+            }
+        }
+        if !values.is_empty() {
+            let values: Vec<_> = values.iter().map(|(parameter, values)| (*parameter, values.slice())).collect();
+            let replaced = match &mask {
+                Some(mask) => self.models.replace(&values, mask),
+                None => self.models.replace(&values, &vec![true; self.count]),
+            };
+            replaced.map_err(refused_plainly::<ModelError>)?;
+        }
+        self.models.reset(states.as_slice_mut()?, self.count, mask.as_deref());
+        Ok(())
+    }
+
+    fn __len__(&self) -> usize {
+        self.count
+    }
+
+    fn __eq__(&self, py: Python<'_>, other: &Bound<'_, Self>) -> PyResult<bool> {
+        let other = other.try_borrow()?;
+        if self.count != other.count || self.models != other.models {
+            return Ok(false);
+        }
+        if self.states.is(&other.states) {
+            return Ok(true);
+        }
+        let (one, other) = (self.states(py)?, other.states(py)?);
+        Ok(one.as_slice()? == other.as_slice()?)
+    }
+
+    fn __copy__(&self, py: Python<'_>) -> PyResult<Self> {
+        self.copied(py)
+    }
+
+    fn __deepcopy__(&self, py: Python<'_>, _memo: &Bound<'_, PyDict>) -> PyResult<Self> {
+        self.copied(py)
+    }
+
+    #[classmethod]
+    #[pyo3(signature = (texts, states, format=0, values=Vec::new()))]
+    fn _from_parts(
+        class: &Bound<'_, PyType>,
+        texts: Vec<String>,
+        states: Pieces,
+        format: u32,
+        values: Vec<(String, Pieces)>,
+    ) -> PyResult<Self> {
+        if format != STATES_PICKLE {
+            check_pickle(format)?;
+        }
+        let py = class.py();
+        let contacts: Vec<Contact> = texts.iter().map(|text| contact_of(text)).collect::<PyResult<_>>()?;
+        let mut models = ContactModels::new(contacts).map_err(refused_plainly::<ModelError>)?;
+        for (name, values) in values {
+            let parameter = ContactParameter::ALL.into_iter().find(|parameter| parameter.name() == name);
+            let parameter = parameter.ok_or_else(|| {
+                refused_plainly::<ModelError>(format!("expected a parameter of contacts, found {name:?}"))
+            })?;
+            models = models.with(parameter, &numbers(&values.joined(py)?)?).map_err(refused_plainly::<ModelError>)?;
+        }
+        let states = states.joined(py)?;
+        let states = if format == PICKLE { rows_of(&states)? } else { numbers(&states)? };
+        let count = states.len() / models.rows();
+        if states.len() != models.rows() * count
+            || !(1..=MOST).contains(&count)
+            || models.count().is_some_and(|models| models != count)
+        {
+            let message = format!(
+                "expected one model, or one for each contact, found {} for states of {} numbers",
+                texts.len(),
+                states.len()
+            );
+            return Err(refused_plainly::<ModelError>(message));
+        }
+        briefly(py, || models.check_states(&states, count))?.map_err(refused_plainly::<ModelError>)?;
+        let made = Self::new_of(py, models, count, texts);
+        made.states_mut(py)?.as_slice_mut()?.copy_from_slice(&states);
+        Ok(made)
+    }
+
+    #[expect(clippy::type_complexity, reason = "what pickle asks for")]
+    fn __reduce__<'py>(
+        &self,
+        py: Python<'py>,
+    ) -> PyResult<Made<'py, (Vec<String>, Vec<Piece>, u32, Vec<(String, Vec<Piece>)>)>> {
+        let written = |numbers: &[f64]| {
+            in_pieces(py, |out| numbers.iter().try_for_each(|number| out.write_all(&number.to_le_bytes())))
+        };
+        let states = written(self.states(py)?.as_slice()?)?;
+        let values = self.models.parameters().map(|(parameter, values)| Ok((parameter.name().to_owned(), written(values)?)));
+        let values = values.collect::<PyResult<Vec<_>>>()?;
+        let make = py.get_type::<Self>().getattr("_from_parts")?;
+        Ok((make, (self.texts.clone(), states, STATES_PICKLE, values)))
+    }
+
+    fn __repr__(&self) -> String {
+        format!("<palpate.ContactStates: {} contacts>", self.count)
+    }
+}
+
+/// Doubles out of a pickle.
+fn numbers(bytes: &[u8]) -> PyResult<Vec<f64>> {
+    let (parts, rest) = bytes.as_chunks::<8>();
+    match rest.is_empty() {
+        true => Ok(parts.iter().map(|part| f64::from_le_bytes(*part)).collect()),
+        false => Err(refused_plainly::<ModelError>(format!("expected numbers of 8 bytes, found {} more", rest.len()))),
+    }
+}
+
+/// States out of a pickle of format 4, one behind the other, as rows.
+fn rows_of(bytes: &[u8]) -> PyResult<Vec<f64>> {
+    let (parts, rest) = bytes.as_chunks::<{ State::BYTES }>();
+    if !rest.is_empty() {
+        let message = format!("expected states of {} bytes, found {} more", State::BYTES, rest.len());
+        return Err(refused_plainly::<ModelError>(message));
+    }
+    let mut rows = vec![0.0; 2 * parts.len()];
+    let (jaws, behinds) = rows.split_at_mut(parts.len());
+    for ((part, jaw), behind) in parts.iter().zip(jaws).zip(behinds) {
+        State::from_bytes(*part).map_err(refused_plainly::<ModelError>)?;
+        let numbers = numbers(&part[State::BYTES - 16..])?;
+        (*jaw, *behind) = (numbers[0], numbers[1]);
+    }
+    Ok(rows)
+}

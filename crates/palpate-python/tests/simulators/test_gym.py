@@ -1,0 +1,290 @@
+"""The environments of palpate.gym: gymnasium's own checks, seeds, masks, ends, and actions that are none. Takes some seconds."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import palpate
+import pytest
+
+gymnasium = pytest.importorskip("gymnasium")
+
+import palpate.gym  # noqa: E402
+from gymnasium.utils.env_checker import check_env  # noqa: E402
+from gymnasium.vector import AutoresetMode  # noqa: E402
+from palpate.gym import SoftGripTask, SoftGripVectorEnv  # noqa: E402
+
+CONTROLS = ["position", "force", "impedance"]
+RANGES: dict[str, tuple[float, float]] = {"modulus_pa": (2e4, 4e4), "radius_m": (0.03, 0.04), "exponent": (3.0, 5.0), "mass_kg": (0.1, 0.3), "friction": (0.4, 0.8)}
+
+
+def pushed(envs: SoftGripVectorEnv, share: float) -> np.ndarray[Any, Any]:
+    """Actions of one share of the most that can be commanded."""
+    return np.full((envs.num_envs, 1), 2.0 * share - 1.0, np.float32)
+
+
+@pytest.mark.parametrize("control", CONTROLS)
+def test_gymnasium_accepts_the_environment(control: str) -> None:
+    env = gymnasium.make("palpate/SoftGrip-v0", control=control)
+    check_env(env.unwrapped)
+    assert env.spec is not None and env.spec.max_episode_steps == 500
+
+
+def test_make_vec_makes_the_vector_environment() -> None:
+    envs = gymnasium.make_vec("palpate/SoftGrip-v0", num_envs=6, ranges=RANGES)
+    assert isinstance(envs.unwrapped, SoftGripVectorEnv) and envs.num_envs == 6
+    assert envs.metadata["autoreset_mode"] is AutoresetMode.NEXT_STEP
+    observations, infos = envs.reset(seed=1)
+    assert observations in envs.observation_space and infos == {}
+    envs.action_space.seed(1)
+    for _ in range(20):
+        observations, rewards, terminations, truncations, infos = envs.step(envs.action_space.sample())
+        assert observations in envs.observation_space and observations.dtype == np.float32
+        assert rewards.shape == terminations.shape == truncations.shape == (6,) and terminations.dtype == np.bool_
+
+
+def run(seed: int, mode: AutoresetMode = AutoresetMode.NEXT_STEP, steps: int = 120, **settings: Any) -> list[Any]:
+    envs = SoftGripVectorEnv(32, autoreset_mode=mode, ranges=RANGES, max_episode_steps=50, **settings)
+    found: list[Any] = [envs.reset(seed=seed)[0]]
+    actions = np.random.default_rng(9)
+    for _ in range(steps):
+        observations, rewards, terminations, truncations, _ = envs.step(actions.uniform(-1, 1, (32, 1)).astype(np.float32))
+        found += [observations, rewards, terminations, truncations]
+    return found
+
+
+@pytest.mark.parametrize("control", CONTROLS)
+def test_a_seed_makes_the_same_episodes(control: str) -> None:
+    first, again, other = (run(seed, control=control) for seed in (3, 3, 4))
+    assert all(np.array_equal(a, b) for a, b in zip(first, again, strict=True))
+    assert not all(np.array_equal(a, b) for a, b in zip(first, other, strict=True))
+
+
+@pytest.mark.parametrize("control", CONTROLS)
+def test_one_environment_is_one_of_many(control: str) -> None:
+    settings: dict[str, Any] = {"control": control, "mass_kg": 0.15}
+    envs, env = SoftGripVectorEnv(3, **settings), palpate.gym.SoftGripEnv(**settings)
+    (observations, _), (observation, _) = envs.reset(seed=0), env.reset(seed=0)
+    rng = np.random.default_rng(2)
+    for _ in range(100):
+        action = rng.uniform(-1, 0.5, (1, 1)).astype(np.float32)
+        observations, rewards, terminations, _, _ = envs.step(np.repeat(action, 3, axis=0))
+        observation, reward, terminated, _, _ = env.step(action[0])
+        assert np.array_equal(observations, np.repeat(observation[None], 3, axis=0)) and (rewards == reward).all()
+        if terminated:
+            assert terminations.all()
+            break
+
+
+@pytest.mark.parametrize("mass_kg", [0.1, 0.2])
+def test_the_force_that_is_needed_holds_and_less_does_not(mass_kg: float) -> None:
+    task = SoftGripTask(control="force", mass_kg=mass_kg)
+    for share, holds in ((1.05, True), (0.95, False)):
+        envs = SoftGripVectorEnv(2, max_episode_steps=None, control="force", mass_kg=mass_kg)
+        envs.reset(seed=0)
+        lost = np.zeros(2, np.bool_)
+        for _ in range(250):
+            observations, _, terminations, _, infos = envs.step(pushed(envs, share * task.needed_force_n() / task.force_n))
+            lost |= terminations
+            if terminations.any():
+                break
+        assert lost.all() != holds and infos["lost"].all() != holds
+        if holds:
+            # The body creeps, and the finger follows until its force is the one that was commanded.
+            assert infos["force_n"] == pytest.approx([share * task.needed_force_n()] * 2, rel=1e-2)
+            assert observations[0, 2] == pytest.approx(task.needed_force_n() / task.force_n, rel=1e-6)
+
+
+def test_a_squeeze_relaxes_until_it_lets_go() -> None:
+    squeeze_m = 5.5e-3
+    envs = SoftGripVectorEnv(1, max_episode_steps=None, mass_kg=0.2, lift_s=0.3, lift_takes_s=0.01)
+    envs.reset(seed=0)
+    alone, place, forces = palpate.ContactState(envs.task.model), 0.0, []
+    for _ in range(1000):
+        _, _, terminations, _, infos = envs.step(pushed(envs, squeeze_m / envs.task.travel_m))
+        forces.append(float(infos["force_n"][0]))
+        # The contact of the environment is that of ContactState, in four parts a step.
+        way = np.linspace(place, min(squeeze_m, place + envs.task.speed_m_per_s * envs.task.period_s), 5)[1:]
+        last = [alone.step(envs.task.period_s / 4, float(to)) for to in way][-1]
+        place = float(way[-1])
+        assert forces[-1] == pytest.approx(last, rel=1e-5)
+        if terminations.any():
+            break
+    assert 2.0 < 0.02 * len(forces) < 15.0 and max(forces) > envs.task.needed_force_n() > forces[-1]
+    assert infos["lost"][0] and not infos["crushed"][0] and infos["slip_m"][0] > envs.task.slip_limit_m
+
+
+def test_too_much_force_crushes() -> None:
+    envs = SoftGripVectorEnv(4, crush_force_n=3.0)
+    envs.reset(seed=0)
+    for _ in range(50):
+        _, rewards, terminations, _, infos = envs.step(pushed(envs, 1.0))
+        if terminations.any():
+            break
+    assert infos["crushed"].all() and not infos["lost"].any() and (infos["force_n"] > 3.0).all()
+    assert rewards == pytest.approx(1.0 - 0.5 * infos["force_n"] / 10.0 - 10.0)
+
+
+@pytest.mark.parametrize("control", CONTROLS)
+def test_an_action_of_nan_leaves_the_command_and_one_beyond_is_the_most(control: str) -> None:
+    plain, odd = (SoftGripVectorEnv(4, control=control) for _ in range(2))
+    plain.reset(seed=0)
+    odd.reset(seed=0)
+    for k in range(60):
+        action = pushed(plain, 0.3)
+        other = action.copy()
+        if k > 5:
+            other[1] = np.nan
+        expected, found = plain.step(action), odd.step(other)
+        assert all(np.array_equal(a, b) for a, b in zip(expected[:4], found[:4], strict=True))
+    expected, found = plain.step(pushed(plain, 1.0)), odd.step(np.full((4, 1), np.inf))
+    assert np.array_equal(expected[0], found[0])
+    for wrong in (np.zeros(4), np.zeros((3, 1)), np.zeros((4, 2))):
+        with pytest.raises(palpate.OptionError, match=r"actions: expected an array of shape \(4, 1\)"):
+            plain.step(wrong)
+
+
+def dropping(mode: AutoresetMode) -> SoftGripVectorEnv:
+    """Two that are squeezed may hold, two that are not are lost soon."""
+    envs = SoftGripVectorEnv(4, autoreset_mode=mode, lift_s=0.0, lift_takes_s=0.02, max_episode_steps=40)
+    envs.reset(seed=0)
+    return envs
+
+
+SQUEEZED = np.array([[0.0], [-1.0], [0.0], [-1.0]], np.float32)
+
+
+def until_lost(envs: SoftGripVectorEnv) -> tuple[Any, ...]:
+    for _ in range(40):
+        found = envs.step(SQUEEZED)
+        if found[2].any():
+            return found
+    raise AssertionError("none was lost")
+
+
+def test_the_next_step_begins_an_episode() -> None:
+    envs = dropping(AutoresetMode.NEXT_STEP)
+    observations, _, terminations, _, infos = until_lost(envs)
+    lost = terminations.copy()
+    assert lost[[1, 3]].all() and "final_obs" not in infos and (observations[lost, 2] > 0).all()
+    observations, rewards, terminations, truncations, _ = envs.step(SQUEEZED)
+    assert not observations[lost].any() and not rewards[lost].any() and not (terminations | truncations)[lost].any()
+    assert (observations[~lost, 3] > 0).all()
+    observations, rewards, *_ = envs.step(SQUEEZED)
+    assert observations[lost, 3] == pytest.approx(1 / 40) and (rewards[lost] > 0).all()
+
+
+def test_the_same_step_begins_an_episode_and_keeps_the_last_observation() -> None:
+    envs, plain = dropping(AutoresetMode.SAME_STEP), dropping(AutoresetMode.NEXT_STEP)
+    (observations, rewards, terminations, _, infos), expected = until_lost(envs), until_lost(plain)
+    lost = terminations
+    assert np.array_equal(lost, expected[2]) and np.array_equal(rewards, expected[1])
+    assert np.array_equal(infos["_final_obs"], lost) and np.array_equal(infos["final_obs"], expected[0])
+    assert not observations[lost].any() and np.array_equal(observations[~lost], expected[0][~lost])
+    observations, *_ = envs.step(SQUEEZED)
+    assert observations[lost, 3] == pytest.approx(1 / 40)
+
+
+def test_a_mask_begins_episodes_where_nothing_else_does() -> None:
+    envs = dropping(AutoresetMode.DISABLED)
+    observations, _, terminations, _, _ = until_lost(envs)
+    mask = np.array([False, True, False, False])
+    observations, _ = envs.reset(options={"reset_mask": mask})
+    assert not observations[1].any() and observations[[0, 2, 3], 3].all()
+    for wrong in ([True], np.zeros(4)):
+        with pytest.raises(palpate.OptionError, match="reset_mask: expected 4 truth values"):
+            envs.reset(options={"reset_mask": wrong})
+
+
+def test_episodes_are_truncated() -> None:
+    envs = SoftGripVectorEnv(3, max_episode_steps=7)
+    envs.reset(seed=0)
+    ends = [envs.step(pushed(envs, 0.5))[3].tolist() for _ in range(16)]
+    # The eighth step is the reset.
+    assert [index for index, end in enumerate(ends, 1) if all(end)] == [7, 15]
+
+
+def test_bodies_are_drawn_by_episode_from_ranges() -> None:
+    envs = SoftGripVectorEnv(500, ranges=RANGES)
+    envs.reset(seed=5)
+    columns = {**envs.bodies.of_body, "mass_kg": envs.bodies.mass_kg, "friction": envs.bodies.friction}
+    assert set(columns) == set(RANGES)
+    for name, (low, high) in RANGES.items():
+        assert low <= columns[name].min() < low + 0.05 * (high - low) and high - 0.05 * (high - low) < columns[name].max() <= high, name
+    before = {name: values.copy() for name, values in columns.items()}
+    envs.reset(options={"reset_mask": np.arange(500) < 10})
+    for name, values in columns.items():
+        assert (values[:10] != before[name][:10]).all() and np.array_equal(values[10:], before[name][10:]), name
+    # A stiffer body has more force at the same squeeze.
+    for _ in range(20):
+        envs.step(pushed(envs, 0.2))
+    model = {"specimen": {"shape": "ball", "radius_m": float(columns["radius_m"][7]), "modulus_pa": float(columns["modulus_pa"][7])}}
+    law = {"name": "latency", "exponent": float(columns["exponent"][7]), "rate_coefficient_per_s": 2e4}
+    alone = palpate.ContactStates({**model, "law": law}, 1)
+    alone.state = envs.contacts.state[7:8]
+    assert alone.force_n[0] == pytest.approx(envs.contacts.force_n[7], rel=1e-12)
+
+
+def calibrated() -> palpate.Material:
+    made = palpate.simulate({**palpate.gym.SoftGripTask().model, "step": [{"to": "5 mm", "rate": "500 mm/min", "hold": "20 s"}, {"to": "9 mm", "rate": "500 mm/min", "hold": "20 s"}]})
+    noise = np.random.default_rng(1).normal(0.0, 0.02, len(made.force_n))
+    record = palpate.Record.from_arrays(time_s=made.time_s, displacement_m=made.displacement_m, force_n=made.force_n + noise)
+    return record.calibrate(test={"specimen": {"shape": "ball", "radius": "35 mm"}}, alternatives=[]).material
+
+
+@pytest.mark.filterwarnings("ignore::palpate.PalpateWarning")
+def test_bodies_are_drawn_from_the_covariance_of_a_calibration() -> None:
+    material = calibrated()
+    envs = SoftGripVectorEnv(4000, model=material, posterior=True)
+    envs.reset(seed=2)
+    assert material.log_covariance is not None
+    logs = np.log([envs.bodies.of_body[name] for name in material.parameters])
+    root = np.sqrt(np.diag(material.log_covariance))
+    assert np.abs(logs.mean(axis=1) - np.log(list(material.parameters.values()))) == pytest.approx(0 * root, abs=0.1 * root.max())
+    np.testing.assert_allclose(np.corrcoef(logs), material.log_covariance / np.outer(root, root), atol=0.1)
+    np.testing.assert_allclose(logs.std(axis=1), root, rtol=0.06)
+    envs.step(pushed(envs, 0.3))
+
+
+def test_draws_that_are_no_body_are_repeated() -> None:
+    # Layers cannot be thicker than the ball of 35 mm: half of the draws are none.
+    envs = SoftGripVectorEnv(300, ranges={"layer_thickness_m": (0.03, 0.04)})
+    envs.reset(seed=1)
+    thickness = envs.bodies.of_body["layer_thickness_m"]
+    assert thickness.max() <= 0.035 and len(np.unique(thickness)) == 300
+    never = SoftGripVectorEnv(2, ranges={"layer_thickness_m": (0.04, 0.05)})
+    with pytest.raises(palpate.ModelError, match="layer thickness must be above 0 m and at most the depth"):
+        never.reset(seed=1)
+
+
+@pytest.mark.parametrize(
+    ("settings", "text"),
+    [
+        ({"control": "torque"}, "control is one of"),
+        ({"mass_kg": -1.0}, "mass_kg: expected a number above 0, found -1.0"),
+        ({"friction": float("nan")}, "friction: expected a number above 0"),
+        ({"substeps": 0}, "substeps: expected a whole number"),
+        ({"posterior": True}, "posterior: expected a palpate.Material"),
+        ({"ranges": {"stiffness": (1, 2)}}, "ranges: expected names among modulus_pa"),
+        ({"ranges": {"mass_kg": (2, 1)}}, "ranges: mass_kg: expected a lower and an upper end"),
+        ({"ranges": {"mass_kg": 1}}, "ranges: mass_kg: expected a lower and an upper end, found 1"),
+        ({"num_envs": 0}, "num_envs: expected a whole number, 1 or more"),
+        ({"model": {"specimen": {"shape": "ball"}}}, "law"),
+    ],
+)
+def test_settings_that_are_none_are_refused(settings: dict[str, Any], text: str) -> None:
+    with pytest.raises(palpate.PalpateError, match=text):
+        SoftGripVectorEnv(**settings)
+
+
+def test_the_code_of_the_guide_runs() -> None:
+    root = Path(__file__).parents[4]
+    blocks = (root / "docs/guides/simulators-learning.md").read_text(encoding="utf-8").split("```python\n")[1:]
+    assert len(blocks) > 2
+    code = "\n".join(block.split("```")[0] for block in blocks)
+    done = subprocess.run([sys.executable, "-W", "error", "-c", code], cwd=root, capture_output=True, text=True)
+    assert done.returncode == 0, done.stderr

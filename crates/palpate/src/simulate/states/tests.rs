@@ -1,0 +1,383 @@
+//! Many contacts are as many contacts alone.
+
+use super::*;
+use crate::contact::{Equilibrium, Layers, Shape, Sides, Specimen};
+use crate::latency::LatencyLaw;
+use crate::simulate::{Contact, LinearContact, LinearLaw, LinearTerm, Memory, Separation, StepError};
+use crate::test_problems::Rng;
+
+/// Bodies of every kind.
+fn specimen(index: usize) -> Specimen {
+    let size = 0.03 + 1e-4 * index as f64;
+    let shape = match index % 4 {
+        0 => Shape::Ball { radius: size },
+        1 => Shape::Pad {
+            radius: size,
+            thickness: 0.8 * size,
+        },
+        2 => Shape::Prism {
+            area: size * size,
+            length: size,
+        },
+        _ => Shape::Ball { radius: 0.9 * size },
+    };
+    let sides = if index.is_multiple_of(3) { Sides::One } else { Sides::Two };
+    let specimen = Specimen::new(shape, 2e4 + 1e3 * index as f64, sides).unwrap();
+    match index % 4 {
+        3 => specimen.with_equilibrium(Equilibrium::Hertz { poisson_ratio: 0.45 }).unwrap(),
+        _ => specimen,
+    }
+}
+
+fn separation(index: usize) -> Separation {
+    if index.is_multiple_of(5) { Separation::Bonded } else { Separation::Unilateral }
+}
+
+/// Bodies of every kind, bonded and not, with exponents that have roots of their own and others.
+fn models(exponents: &[f64], count: usize) -> Vec<ContactModel> {
+    let model = |index: usize| {
+        let exponent = exponents[index % exponents.len()];
+        ContactModel {
+            specimen: specimen(index),
+            law: LatencyLaw::new(exponent, 1.5 * 10f64.powf(exponent - 1.0)).unwrap(),
+            layers: Layers::new(8.0).unwrap(),
+            separation: separation(index),
+        }
+    };
+    (0..count).map(model).collect()
+}
+
+/// Linear contacts of one to three terms, that remember strain or force.
+fn linear(index: usize) -> LinearContact {
+    let term = |k: usize| LinearTerm {
+        overshoot: 0.4 + 0.3 * k as f64,
+        rate: 0.5 * 20f64.powi(k as i32),
+    };
+    let terms: Vec<LinearTerm> = (0..=index % 3).map(term).collect();
+    LinearContact {
+        specimen: specimen(index),
+        law: LinearLaw::new(&terms).unwrap(),
+        memory: if index.is_multiple_of(2) { Memory::Strain } else { Memory::Force },
+        separation: separation(index),
+    }
+}
+
+/// Displacements that wander; a bonded body whose contact grows cannot be pulled, any other can be left.
+fn wander(places: &mut [f64], random: &mut Rng, is_bonded: impl Fn(usize) -> bool) {
+    for (index, place) in places.iter_mut().enumerate() {
+        let least = if is_bonded(index) { 1e-4 } else { -0.001 };
+        *place = (*place + 1e-3 * (random.uniform() - 0.5)).clamp(least, 0.008);
+    }
+}
+
+fn of_displacement<'a>(dt: &'a [f64], to: &'a [f64], substeps: u32, refusal: Refusal) -> ContactsStep<'a> {
+    ContactsStep {
+        imposed: Imposed::Displacement,
+        dt,
+        to,
+        substeps,
+        refusal,
+    }
+}
+
+#[test]
+fn contacts_side_by_side_are_contacts_alone() {
+    for exponents in [&[5.0][..], &[1.0], &[2.0], &[3.0], &[0.6, 1.0, 2.7, 5.0, 11.3]] {
+        let models = models(exponents, 43);
+        let (mut together, mut alone) = (ContactStates::of_each(models.clone()), vec![ContactState::default(); 43]);
+        let (mut random, mut places) = (Rng::new(3), vec![0.002; 43]);
+        let mut left = 0;
+        for _ in 0..400 {
+            let dt = if random.uniform() < 0.1 { 0.0 } else { 0.01 * random.uniform() };
+            wander(&mut places, &mut random, |index| models[index].separation == Separation::Bonded);
+            let forces = together.step(&[dt], &places).unwrap();
+            for (index, (state, model)) in alone.iter_mut().zip(&models).enumerate() {
+                let force = state.step(model, dt, places[index]).unwrap();
+                left += usize::from(!state.is_touching(model));
+                let found = together.state(index);
+                let scale = model.specimen.depth();
+                let off = (found.behind - state.behind).abs() / scale;
+                assert!(off < 1e-13 && found.jaw == state.jaw, "{exponents:?} {index}: {off:e}");
+                assert!((forces[index] - force).abs() <= 1e-11 * force.abs().max(1e-2), "{exponents:?} {index}");
+                if exponents == [5.0] {
+                    assert_eq!((found, forces[index]), (*state, force), "{index}");
+                }
+            }
+        }
+        assert!(left > 100, "{exponents:?}: {left} steps without contact");
+        shows_what_contacts_show(&together, &models);
+    }
+}
+
+fn shows_what_contacts_show(together: &ContactStates, models: &[ContactModel]) {
+    let mut shown = vec![0.0; together.count()];
+    type Show = fn(&ContactState, &ContactModel) -> f64;
+    let quantities: [(ContactQuantity, Show); 4] = [
+        (ContactQuantity::Force, ContactState::force),
+        (ContactQuantity::Stiffness, ContactState::stiffness),
+        (ContactQuantity::Surface, ContactState::surface),
+        (ContactQuantity::Touching, |state, model| f64::from(u8::from(state.is_touching(model)))),
+    ];
+    for (quantity, of) in quantities {
+        together.models().show((together.states(), together.count()), quantity, 0, &mut shown);
+        for (index, (found, model)) in shown.iter().zip(models).enumerate() {
+            let expected = of(&together.state(index), model);
+            assert!((found - expected).abs() <= 1e-14 * expected.abs(), "{quantity:?} {index}: {found} {expected}");
+        }
+    }
+}
+
+#[test]
+fn substeps_are_steps_along_a_straight_line() {
+    for exponents in [&[5.0][..], &[2.7, 1.0]] {
+        let models = models(exponents, 21);
+        let (mut parts, mut one_by_one) =
+            (ContactStates::of_each(models.clone()), ContactStates::of_each(models.clone()));
+        let (mut random, mut places, mut forces) = (Rng::new(8), vec![0.0; 21], vec![0.0; 21]);
+        for _ in 0..50 {
+            let before = places.clone();
+            wander(&mut places, &mut random, |index| models[index].separation == Separation::Bonded);
+            parts.advance(&of_displacement(&[0.04], &places, 4, Refusal::All), &mut forces).unwrap();
+            for part in 1..=4 {
+                let share = f64::from(part) / 4.0;
+                let there: Vec<f64> = before
+                    .iter()
+                    .zip(&places)
+                    .map(|(from, to)| if part == 4 { *to } else { from + share * (to - from) })
+                    .collect();
+                let found = one_by_one.step(&[0.01], &there).unwrap();
+                if part == 4 {
+                    for (force, found) in forces.iter().zip(found) {
+                        assert!((force - found).abs() < 1e-10, "{force} {found}");
+                    }
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn all_contacts_are_stepped_or_none() {
+    let mut contacts = ContactStates::of_each(models(&[5.0], 11));
+    contacts.step(&[1e-3], &[5e-4]).unwrap();
+    let before = contacts.clone();
+    let mut to = [1e-3; 11];
+    to[9] = 1.0;
+    let error = contacts.step(&[1e-3], &to).unwrap_err();
+    assert!(error.index == 9 && matches!(error.error, StepError::Displacement(_)), "{error}");
+    for dt in [-1.0, f64::NAN, f64::INFINITY] {
+        let error = contacts.step(&[dt], &[1e-3]).unwrap_err();
+        assert!(error.index == 0 && matches!(error.error, StepError::Number { .. }), "{error}");
+    }
+    let mut force = [0.1; 11];
+    force[7] = 1e9;
+    let error = contacts.step_force(&[1e-3], &force).unwrap_err();
+    assert!(error.index == 7 && matches!(error.error, StepError::Force { .. }), "{error}");
+    assert_eq!(contacts, before);
+}
+
+#[test]
+fn masked_contacts_keep_their_state_and_the_others_go_on() {
+    for imposed in [Imposed::Displacement, Imposed::Force] {
+        let models = models(&[5.0, 3.3], 20);
+        let (mut some, mut plain) = (ContactStates::of_each(models.clone()), ContactStates::of_each(models.clone()));
+        let (mut results, mut to) = (vec![0.0; 20], vec![1e-3; 20]);
+        some.step(&[0.01], &to).unwrap();
+        plain.step(&[0.01], &to).unwrap();
+        to = if imposed == Imposed::Force { vec![0.05; 20] } else { vec![2e-3; 20] };
+        let mut mean = to.clone();
+        (mean[3], mean[8], mean[12]) = (f64::NAN, f64::INFINITY, 1e12);
+        // A state that is none.
+        some.states_mut()[20 + 15] = f64::NAN;
+        let step = |to| ContactsStep {
+            imposed,
+            dt: &[0.01],
+            to,
+            substeps: 3,
+            refusal: Refusal::Masked,
+        };
+        let before = some.clone();
+        assert_eq!(some.advance(&step(&mean), &mut results), Ok(4), "{imposed:?}");
+        let mut expected = vec![0.0; 20];
+        assert_eq!(plain.advance(&step(&to), &mut expected), Ok(0));
+        for index in 0..20 {
+            let failed = [3, 8, 12, 15].contains(&index);
+            assert_eq!(some.failed()[index], failed, "{imposed:?} {index}");
+            let other = if failed { &before } else { &plain };
+            let bits = |states: &ContactStates| [0, 20].map(|row| states.states()[row + index].to_bits());
+            assert_eq!(bits(&some), bits(other), "{imposed:?} {index}");
+            let kept = match imposed {
+                Imposed::Displacement if index == 15 => 0.0,
+                Imposed::Displacement => before.state(index).force(&models[index]),
+                Imposed::Force => 1e-3,
+            };
+            assert!(
+                (results[index] - if failed { kept } else { expected[index] }).abs() < 1e-12,
+                "{imposed:?} {index}"
+            );
+        }
+        // None fails any more.
+        some.reset(Some(&before.failed().iter().enumerate().map(|(index, _)| index == 15).collect::<Vec<_>>()));
+        assert_eq!(some.state(15), ContactState::default());
+        assert_eq!(some.advance(&step(&to), &mut results), Ok(0));
+        assert!(some.failed().iter().all(|failed| !failed));
+    }
+}
+
+#[test]
+fn values_of_each_contact_are_models_of_each() {
+    let mut random = Rng::new(5);
+    let mut between = |low: f64, high: f64| (0..37).map(|_| low + (high - low) * random.uniform()).collect::<Vec<_>>();
+    let columns = [
+        (ContactParameter::LayerThickness, between(2e-3, 8e-3)),
+        (ContactParameter::Modulus, between(1e4, 1e5)),
+        (ContactParameter::Exponent, between(1.0, 6.0)),
+        (ContactParameter::Radius, between(0.02, 0.05)),
+        (ContactParameter::RateCoefficient, between(1.0, 1e4)),
+    ];
+    let base = &models(&[5.0], 1)[0];
+    let together = columns.iter().try_fold(ContactModels::alike(base.clone()), |models, (parameter, values)| {
+        models.with(*parameter, values)
+    });
+    let mut together = ContactStates::new(together.unwrap(), 37);
+    let own = |index: usize| {
+        let value = |parameter| columns.iter().find(|(found, _)| *found == parameter).unwrap().1[index];
+        let radius = value(ContactParameter::Radius);
+        let specimen = Specimen::new(Shape::Ball { radius }, value(ContactParameter::Modulus), base.specimen.sides());
+        ContactModel {
+            specimen: specimen.unwrap(),
+            law: LatencyLaw::new(value(ContactParameter::Exponent), value(ContactParameter::RateCoefficient)).unwrap(),
+            layers: Layers::of_thickness(value(ContactParameter::LayerThickness), radius).unwrap(),
+            separation: base.separation,
+        }
+    };
+    let models: Vec<ContactModel> = (0..37).map(own).collect();
+    let mut each = ContactStates::of_each(models.clone());
+    let (mut random, mut places) = (Rng::new(3), vec![0.002; 37]);
+    for _ in 0..100 {
+        wander(&mut places, &mut random, |_| base.separation == Separation::Bonded);
+        let (found, expected) = (together.step(&[0.01], &places).unwrap(), each.step(&[0.01], &places).unwrap());
+        assert_eq!(found, expected);
+        assert_eq!(together.states(), each.states());
+    }
+    shows_what_contacts_show(&together, &models);
+    assert_eq!(together.step_force(&[0.1], &[0.5]), each.step_force(&[0.1], &[0.5]));
+}
+
+#[test]
+fn values_that_are_none_are_refused() {
+    let ball = || ContactModels::alike(models(&[5.0], 1).swap_remove(0));
+    let refused = |parameter, values: Vec<f64>| ball().with(parameter, &values).unwrap_err().to_string();
+    assert!(refused(ContactParameter::Modulus, vec![1e4, -1.0]).starts_with("modulus_pa, contact 1: modulus must be"));
+    assert!(refused(ContactParameter::Exponent, vec![f64::NAN]).starts_with("exponent, contact 0: exponent n must"));
+    assert!(refused(ContactParameter::LayerThickness, vec![1.0]).contains("layer thickness must be above 0 m"));
+    let block = ContactModels::alike(models(&[5.0], 3).swap_remove(2));
+    let refused = block.with(ContactParameter::Radius, &[0.1]).unwrap_err();
+    assert_eq!(refused, ContactModelsError::NoSuchParameter { name: "radius_m" });
+    let several = ContactModels::of_each(models(&[5.0], 3));
+    let refused = several.with(ContactParameter::Modulus, &[1e4; 3]).unwrap_err();
+    assert_eq!(refused.to_string(), "modulus_pa: values for each contact need one model for all, found 3 models");
+    let two = ball().with(ContactParameter::Modulus, &[1e4; 2]).unwrap();
+    let refused = two.with(ContactParameter::Exponent, &[2.0; 3]).unwrap_err();
+    assert_eq!(refused.to_string(), "exponent: expected 2 values, one a contact, found 3");
+    let mixed = vec![Contact::from(models(&[5.0], 1).swap_remove(0)), Contact::from(linear(0))];
+    assert_eq!(ContactModels::new(mixed), Err(ContactModelsError::Mixed { index: 1 }));
+    assert_eq!(ContactModels::new(Vec::new()), Err(ContactModelsError::Empty));
+}
+
+#[test]
+fn linear_contacts_side_by_side_are_contacts_alone() {
+    let contacts: Vec<LinearContact> = (0..29).map(linear).collect();
+    let models = ContactModels::new(contacts.iter().cloned().map(Contact::from).collect()).unwrap();
+    assert_eq!(models.rows(), 4);
+    let mut together = ContactStates::new(models, 29);
+    let alone: Vec<_> = contacts
+        .iter()
+        .map(|contact| crate::simulate::linear::LinearStepper::new(contact.clone()))
+        .collect();
+    let mut states = vec![(0.0, [0.0; 3]); 29];
+    let (mut random, mut places, mut left) = (Rng::new(11), vec![0.002; 29], 0);
+    for _ in 0..400 {
+        let dt = if random.uniform() < 0.1 { 0.0 } else { 0.05 * random.uniform() };
+        wander(&mut places, &mut random, |index| contacts[index].separation == Separation::Bonded);
+        let forces = together.step(&[dt], &places).unwrap();
+        for (index, (jaw, memory)) in states.iter_mut().enumerate() {
+            let (contact, terms) = (&contacts[index], contacts[index].law.terms().len());
+            let to = contact.specimen.contact_displacement(places[index]);
+            let force = alone[index].step(*jaw, &mut memory[..terms], dt, to).unwrap();
+            *jaw = to;
+            left += usize::from(!alone[index].is_touching(to, &memory[..terms]));
+            assert!((forces[index] - force).abs() < 1e-9, "{index}: {} {force}", forces[index]);
+            for (k, x) in memory.iter().enumerate() {
+                let found = together.states()[(1 + k) * 29 + index];
+                assert!((found - x).abs() < 1e-9, "{index} {k}: {found} {x}");
+            }
+        }
+    }
+    assert!(left > 100, "{left} steps without contact");
+    let mut shown = vec![0.0; 29];
+    together.models().show((together.states(), 29), ContactQuantity::Force, 0, &mut shown);
+    let before = together.clone();
+    places[4] = f64::NAN;
+    assert_eq!(together.step(&[0.1], &places).unwrap_err().index, 4);
+    assert_eq!(together, before);
+    let mut forces = vec![0.0; 29];
+    assert_eq!(together.advance(&of_displacement(&[0.1], &places, 2, Refusal::Masked), &mut forces), Ok(1));
+    assert!(together.failed()[4] && forces[4] == shown[4]);
+}
+
+#[test]
+fn one_term_of_a_linear_law_is_the_latency_law_of_exponent_one() {
+    // g = m − 1 and λ = v.
+    let model = ContactModel {
+        specimen: specimen(0),
+        law: LatencyLaw::new(1.0, 0.7).unwrap(),
+        layers: Layers::new(6.0).unwrap(),
+        separation: Separation::Unilateral,
+    };
+    let law = LinearLaw::new(&[LinearTerm {
+        overshoot: 5.0,
+        rate: 0.7,
+    }]);
+    let contact = LinearContact {
+        specimen: specimen(0),
+        law: law.unwrap(),
+        memory: Memory::Strain,
+        separation: Separation::Unilateral,
+    };
+    let models = ContactModels::new(vec![contact.into()]).unwrap();
+    let (mut linear, mut latency) = (ContactStates::new(models, 9), ContactStates::alike(model, 9));
+    for tick in 1..2000 {
+        let to = 4e-3 * (2e-3 * f64::from(tick)).sin();
+        let (found, expected) = (linear.step(&[1e-3], &[to]).unwrap()[8], latency.step(&[1e-3], &[to]).unwrap()[8]);
+        // Strang's splitting of the latter is of second order.
+        assert!((found - expected).abs() < 1e-5, "{tick}: {found} {expected}");
+    }
+}
+
+#[test]
+#[cfg(feature = "rayon")]
+fn the_number_of_threads_changes_no_bit() {
+    let count = 20_001;
+    let places: Vec<f64> = (0..count).map(|index| 8e-3 * f64::from(index as u32) / 2e4 - 1e-3).collect();
+    let run = |threads: usize| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+        pool.install(|| {
+            let mut contacts = ContactStates::alike(models(&[2.5], 2).swap_remove(1), count);
+            let mut forces = vec![0.0; count];
+            for dt in [0.01, 0.3] {
+                contacts.advance(&of_displacement(&[dt], &places, 2, Refusal::Masked), &mut forces).unwrap();
+            }
+            contacts.step_force(&[0.1], &[0.2]).unwrap();
+            contacts
+        })
+    };
+    let one = run(1);
+    for threads in [2, 3, 5] {
+        assert_eq!(run(threads), one);
+    }
+    let mut contacts = one;
+    let mut wrong = places;
+    (wrong[19_000], wrong[12_000]) = (1.0, 2.0);
+    assert_eq!(contacts.step(&[0.01], &wrong).unwrap_err().index, 12_000);
+}
