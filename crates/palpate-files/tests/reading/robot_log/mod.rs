@@ -3,6 +3,7 @@
 mod damage;
 mod grippers;
 mod reading;
+mod written;
 mod writing;
 
 use std::path::Path;
