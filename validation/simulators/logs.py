@@ -1,8 +1,8 @@
 """Logs of ROS 2 that palpate writes, read by other software and compared bit by bit.
 
-`palpate simulate`, `predict` and `watch` each write a log (MCAP) and the same numbers as text, in decimals that identify a double. The log is
-read by `rosbags`, and by `mcap` with `mcap-ros2-support`, the reader of Foxglove's Python packages; both take the definitions of the messages from
-the log. Every number and every stamp is compared with the text.
+`palpate simulate`, `predict` and `watch` each write a log (MCAP) and the same numbers as text, in decimals that identify a double. The log
+is read by `rosbags`, and by `mcap` with `mcap-ros2-support`, Foxglove's own packages; both take the definitions of the messages from the
+log. Every number and every stamp is compared with the text.
 
     pip install palpate rosbags mcap mcap-ros2-support
     python validation/simulators/logs.py
@@ -94,14 +94,15 @@ class Result:
 
 def palpate(folder: Path, *arguments: str) -> str:
     """What the command prints."""
-    run = subprocess.run([sys.executable, "-m", "palpate", *arguments], cwd=folder, capture_output=True, text=True, encoding="utf-8", check=False)
+    command = [sys.executable, "-m", "palpate", *arguments]
+    run = subprocess.run(command, cwd=folder, capture_output=True, text=True, encoding="utf-8", check=False)
     if run.returncode not in (0, 1):
         raise RuntimeError(f"palpate {' '.join(arguments)}: {run.stderr}")
     return run.stdout
 
 
 def stamp(time_s: float) -> int:
-    """The stamp of a time: time 0 is 1 s; rounded to the nearest nanosecond, half to even as in exact arithmetic no time here is halfway."""
+    """The stamp of a time, rounded to the nearest nanosecond: time 0 is 1 s."""
     whole = math.floor(time_s)
     return (1 + whole) * 10**9 + round((time_s - whole) * 1e9)
 
@@ -289,8 +290,8 @@ def page(folder: Path | None = None) -> str:
     lines = [
         "## Logs of ROS 2",
         "",
-        f"Logs of `palpate`, read by other software and compared with the text that the same commands print ({', '.join(versions)}). A number",
-        "differs if it is missing, or its stamp or any of its bits is another.",
+        "Logs of `palpate`, read by other software and compared with the text that the same commands print. A number differs if it is",
+        f"missing, or its stamp or any of its bits is another ({', '.join(versions)}).",
         "",
         "| log of | reader | messages | size | compared numbers | differing |",
         "|---|---|---|---|---|---|",

@@ -158,11 +158,11 @@ fn what_is_watched_is_logged_tick_by_tick() {
     let folder = tempdir().unwrap();
     let record = file(folder.path(), "log.csv", ramp_and_hold(30.0, 100.0));
     let watch = ["watch", &record, "--slip-force", "1.5 N", "--format", "jsonl", "--every", "1 ms"];
-    let lines = done(folder.path(), &[&watch[..], &["--out", "seen.mcap"]].concat());
+    let lines = done(folder.path(), &[&watch[..], &["--out", "observed.mcap"]].concat());
     assert_eq!(lines, done(folder.path(), &watch), "the lines are those without a log");
     let lines: Vec<Value> = lines.lines().map(|line| serde_json::from_str(line).unwrap()).collect();
     let ticks: Vec<&Value> = lines.iter().filter(|line| line["event"] == "tick").collect();
-    let log = Log::open(&folder.path().join("seen.mcap"));
+    let log = Log::open(&folder.path().join("observed.mcap"));
     assert_eq!(log.values("/palpate/wrench.wrench.force.z").len(), ticks.len());
     for (topic, key) in [
         ("/palpate/equilibrium_force_n.data", "equilibrium_force_n"),
@@ -188,14 +188,14 @@ fn a_log_of_a_log_keeps_its_stamps() {
     let folder = tempdir().unwrap();
     let protocol = file(folder.path(), "squeeze.toml", PROTOCOL);
     done(folder.path(), &["simulate", &protocol, "--out", "run.mcap"]);
-    done(folder.path(), &["watch", "run.mcap", "--out", "seen.mcap"]);
+    done(folder.path(), &["watch", "run.mcap", "--out", "observed.mcap"]);
     done(folder.path(), &["simulate", &protocol, "--drive", "run.mcap", "--out", "again.mcap"]);
     let stamps = |name: &str| {
         let bytes = fs::read(folder.path().join(name)).unwrap();
         let contents = Contents::of(Input::from_bytes(name, bytes).unwrap(), &ReadOptions::default()).unwrap();
         (contents.parts[0].metadata[0].value.clone(), Log(contents).values("/palpate/wrench time"))
     };
-    assert!(stamps("run.mcap") == stamps("seen.mcap") && stamps("run.mcap") == stamps("again.mcap"));
+    assert!(stamps("run.mcap") == stamps("observed.mcap") && stamps("run.mcap") == stamps("again.mcap"));
     assert_eq!(stamps("run.mcap").0, "1.000000000");
 }
 
@@ -208,12 +208,12 @@ fn a_record_without_displacement_is_watched_and_logged() {
         .map(|line| line + "\n")
         .collect();
     let record = file(folder.path(), "force.csv", text);
-    done(folder.path(), &["watch", &record, "--out", "seen.mcap"]);
-    let log = Log::open(&folder.path().join("seen.mcap"));
+    done(folder.path(), &["watch", &record, "--out", "observed.mcap"]);
+    let log = Log::open(&folder.path().join("observed.mcap"));
     assert!(log.0.parts[0].column_named("/palpate/joint_states.position[finger]").is_none());
     assert_eq!(log.values("/palpate/joint_states.effort[finger]").len(), 551);
     // It is a record of forces for palpate, too.
-    done(folder.path(), &["watch", "seen.mcap"]);
+    done(folder.path(), &["watch", "observed.mcap"]);
 }
 
 #[test]
@@ -244,8 +244,8 @@ fn a_pre_trigger_is_shifted_and_times_that_have_no_stamp_are_refused() {
 fn names_that_are_no_logs_are_refused_before_any_work() {
     let folder = tempdir().unwrap();
     let record = file(folder.path(), "log.csv", ramp_and_hold(2.0, 50.0));
-    let error = refused(folder.path(), &["watch", &record, "--out", "seen.txt"]);
-    assert!(error.contains("seen.txt: expected a log ending in .mcap"), "{error}");
+    let error = refused(folder.path(), &["watch", &record, "--out", "observed.txt"]);
+    assert!(error.contains("observed.txt: expected a log ending in .mcap"), "{error}");
     let protocol = file(folder.path(), "squeeze.toml", PROTOCOL);
     let error = refused(folder.path(), &["simulate", &protocol, "--out", "run.txt"]);
     assert!(error.contains("run.txt: expected a series ending in .csv or .mcap"), "{error}");
