@@ -9,12 +9,7 @@ use crate::progress::Bars;
 use crate::terminal::{notes, print_with};
 
 pub(crate) fn run(requested: &SimulateArguments) -> Result<Verdict, JobError> {
-    let series = [
-        &requested.wave,
-        &requested.energy,
-        &requested.energy_by_step,
-        &requested.energy_by_cycle,
-    ];
+    let series = [&requested.wave, &requested.energy, &requested.energy_by_step, &requested.energy_by_cycle];
     let figures = [&requested.figure, &requested.hysteresis, &requested.strain_map].into_iter().flatten();
     let series = series.into_iter().flatten();
     let reads = [&requested.protocol].into_iter().chain(&requested.drive).chain(&requested.test);

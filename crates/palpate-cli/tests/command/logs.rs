@@ -50,8 +50,10 @@ impl Log {
 fn columns(text: &str) -> std::collections::BTreeMap<String, Vec<f64>> {
     let mut reader = csv::Reader::from_reader(text.as_bytes());
     let names: Vec<String> = reader.headers().unwrap().iter().map(str::to_owned).collect();
-    let rows: Vec<Vec<f64>> =
-        reader.records().map(|row| row.unwrap().iter().map(|cell| cell.parse().unwrap_or(f64::NAN)).collect()).collect();
+    let rows: Vec<Vec<f64>> = reader
+        .records()
+        .map(|row| row.unwrap().iter().map(|cell| cell.parse().unwrap_or(f64::NAN)).collect())
+        .collect();
     let column = |index: usize| rows.iter().map(|row| row[index]).collect();
     names.into_iter().enumerate().map(|(index, name)| (name, column(index))).collect()
 }
@@ -204,7 +206,14 @@ fn a_record_without_displacement_is_watched_and_logged() {
     let folder = tempdir().unwrap();
     let text: String = ramp_and_hold(10.0, 50.0)
         .lines()
-        .map(|line| line.split(',').enumerate().filter(|(i, _)| *i != 1).map(|(_, cell)| cell).collect::<Vec<_>>().join(","))
+        .map(|line| {
+            line.split(',')
+                .enumerate()
+                .filter(|(i, _)| *i != 1)
+                .map(|(_, cell)| cell)
+                .collect::<Vec<_>>()
+                .join(",")
+        })
         .map(|line| line + "\n")
         .collect();
     let record = file(folder.path(), "force.csv", text);
@@ -231,7 +240,10 @@ fn a_pre_trigger_is_shifted_and_times_that_have_no_stamp_are_refused() {
     let late = file(folder.path(), "late.csv", at(0.0, 4e7));
     let error = palpate(folder.path(), &["watch", &late, "--out", "late.mcap", "--format", "jsonl"]);
     let error = String::from_utf8_lossy(&error.stderr).into_owned();
-    assert!(error.contains("late.mcap: expected times that ROS 2 can stamp") && error.contains("hint:"), "{error}");
+    assert!(
+        error.contains("late.mcap: expected times that ROS 2 can stamp") && error.contains("hint:"),
+        "{error}"
+    );
     let close = file(folder.path(), "close.csv", at(0.0, 1e-10));
     let error = palpate(folder.path(), &["watch", &close, "--out", "close.mcap"]);
     let error = String::from_utf8_lossy(&error.stderr).into_owned();

@@ -17,7 +17,9 @@ pub enum LogError {
     #[error("expected a build with robot logs, found one without the feature `robot-log`")]
     NotInThisBuild,
     /// A time that has no stamp.
-    #[error("expected times that ROS 2 can stamp, above 0 and below 2147483648 s, found {stamp_s} s (time {time_s} s of the series)")]
+    #[error(
+        "expected times that ROS 2 can stamp, above 0 and below 2147483648 s, found {stamp_s} s (time {time_s} s of the series)"
+    )]
     Time {
         /// The time in the series, s.
         time_s: f64,

@@ -23,19 +23,19 @@ pub fn zero_ns(contents: &Contents, part: usize) -> Option<u64> {
 
 /// What is read of a contact at one moment.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Reading {
+pub(crate) struct Reading {
     /// When, s.
-    pub time: f64,
+    pub(crate) time: f64,
     /// Displacement of the jaw, m.
-    pub displacement: Option<f64>,
+    pub(crate) displacement: Option<f64>,
     /// Its velocity, m/s.
-    pub velocity: Option<f64>,
+    pub(crate) velocity: Option<f64>,
     /// Contact force, N, positive in compression.
-    pub force: f64,
+    pub(crate) force: f64,
 }
 
 /// A log that is being written; only [`finish`](Self::finish) completes it.
-pub struct ContactLog<W: Write> {
+pub(crate) struct ContactLog<W: Write> {
     writer: LogWriter<W>,
     clock: LogClock,
     /// The last reading: its time and stamp.
@@ -48,7 +48,7 @@ impl<W: Write> ContactLog<W> {
     ///
     /// # Errors
     /// [`LogError`] where the operating system takes no bytes.
-    pub fn new(
+    pub(crate) fn new(
         out: W,
         content: &str,
         (first, zero): (f64, Option<u64>),
@@ -68,7 +68,7 @@ impl<W: Write> ContactLog<W> {
     ///
     /// # Errors
     /// [`LogError`] where the time has no stamp, or that of the sample before, or the operating system takes no bytes.
-    pub fn reading(&mut self, reading: &Reading) -> Result<Stamp, LogError> {
+    pub(crate) fn reading(&mut self, reading: &Reading) -> Result<Stamp, LogError> {
         let stamp = self.clock.stamp(reading.time)?;
         if let Some((first_s, before)) = self.last
             && stamp <= before
@@ -96,7 +96,7 @@ impl<W: Write> ContactLog<W> {
     ///
     /// # Errors
     /// [`LogError`] where the operating system takes no bytes.
-    pub fn number(&mut self, name: &str, stamp: Stamp, value: Option<f64>) -> Result<(), LogError> {
+    pub(crate) fn number(&mut self, name: &str, stamp: Stamp, value: Option<f64>) -> Result<(), LogError> {
         let known = value.filter(|value| !value.is_nan());
         known.map_or(Ok(()), |value| self.writer.write(&topic(name), stamp, &Message::Float64(value)))
     }
@@ -105,7 +105,7 @@ impl<W: Write> ContactLog<W> {
     ///
     /// # Errors
     /// As for [`number`](Self::number).
-    pub fn flag(&mut self, name: &str, stamp: Stamp, value: bool) -> Result<(), LogError> {
+    pub(crate) fn flag(&mut self, name: &str, stamp: Stamp, value: bool) -> Result<(), LogError> {
         self.writer.write(&topic(name), stamp, &Message::Bool(value))
     }
 
@@ -113,7 +113,7 @@ impl<W: Write> ContactLog<W> {
     ///
     /// # Errors
     /// [`LogError`] where the time has no stamp, or the operating system takes no bytes.
-    pub fn event(
+    pub(crate) fn event(
         &mut self,
         time: f64,
         level: Level,
@@ -133,7 +133,7 @@ impl<W: Write> ContactLog<W> {
     ///
     /// # Errors
     /// [`LogError`] where the operating system takes no bytes.
-    pub fn finish(self) -> Result<W, LogError> {
+    pub(crate) fn finish(self) -> Result<W, LogError> {
         self.writer.finish()
     }
 }

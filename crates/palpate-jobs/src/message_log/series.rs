@@ -120,9 +120,7 @@ fn write_course(
 fn speed(course: &Trajectory, index: usize) -> Option<f64> {
     let next = (index + 1).min(course.len() - 1);
     let before = next.checked_sub(1)?;
-    let (duration, way) = (
-        course.time[next] - course.time[before],
-        course.displacement[next] - course.displacement[before],
-    );
+    let (duration, way) =
+        (course.time[next] - course.time[before], course.displacement[next] - course.displacement[before]);
     (duration > 0.0).then_some(way / duration)
 }

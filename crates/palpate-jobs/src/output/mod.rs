@@ -220,13 +220,11 @@ mod tests {
     /// With all features both names pass; `validation/long_proofs.sh features` runs this without them.
     #[test]
     fn what_a_build_cannot_write_is_refused_before_any_work() {
-        for (name, feature, is_there) in
-            [
-                ("a.parquet", "arrow", cfg!(feature = "arrow")),
-                ("a.png", "png", cfg!(feature = "png")),
-                ("a.mcap", "robot-log", cfg!(feature = "robot-log")),
-            ]
-        {
+        for (name, feature, is_there) in [
+            ("a.parquet", "arrow", cfg!(feature = "arrow")),
+            ("a.png", "png", cfg!(feature = "png")),
+            ("a.mcap", "robot-log", cfg!(feature = "robot-log")),
+        ] {
             let checked = check_ending(Path::new(name), &["parquet", "png", "mcap"], "a table or a figure", "");
             let refused = checked.err().map(|error| error.to_string());
             let expected =

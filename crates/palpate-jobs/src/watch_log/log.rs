@@ -14,9 +14,9 @@ use serde_json::Value;
 
 use super::Observed;
 use super::holds::Event;
+use crate::JobError;
 use crate::message_log::{ContactLog, Reading};
 use crate::output::{Stage, StagedFile, unwritten_log};
-use crate::JobError;
 
 /// Results of an observer that are numbers, in SI; a time is infinite for "never".
 const NUMBERS: [&str; 14] = [
@@ -121,9 +121,7 @@ fn numbers(observed: &Observation) -> [Option<f64>; NUMBERS.len()] {
     let error = |estimate: Option<Estimate>| estimate.and_then(|estimate| estimate.standard_error);
     let seconds = |time: TimeToSlip| time.seconds().unwrap_or(f64::INFINITY);
     let (best, low, high) = match observed.time_to_slip {
-        Some(SlipForecast::Known { best, low, high }) => {
-            (Some(seconds(best)), Some(seconds(low)), Some(seconds(high)))
-        }
+        Some(SlipForecast::Known { best, low, high }) => (Some(seconds(best)), Some(seconds(low)), Some(seconds(high))),
         _ => (None, None, None),
     };
     [

@@ -18,7 +18,7 @@ from rosbags.typesys import Stores, get_typestore  # noqa: E402
 
 ROOT = Path(__file__).resolve().parents[4]
 PACKAGE = ROOT / "examples/ros2/palpate_observer"
-STORE = get_typestore(Stores.ROS2_JAZZY)
+STORE: Any = get_typestore(Stores.ROS2_JAZZY)
 START = 1_700_000_000 * 10**9
 SLIP_N = 5.3
 

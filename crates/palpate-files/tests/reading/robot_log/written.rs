@@ -3,9 +3,7 @@
 use std::io::{self, Write};
 
 use palpate_files::{
-    message_log::{
-        Diagnostic, JointState, Level, LogClock, LogError, LogWriter, Message, MessageType, Wrench,
-    },
+    message_log::{Diagnostic, JointState, Level, LogClock, LogError, LogWriter, Message, MessageType, Wrench},
     naming::own_topics::{DIAGNOSTICS, FINGER, FRAME, JOINT_STATES, WRENCH},
 };
 
@@ -71,7 +69,10 @@ fn every_number_comes_back_to_the_bit() {
     }
     assert_eq!(values(&contents, "/palpate/in_contact.data")[..3], [1.0, 0.0, 1.0]);
     assert_eq!(values(&contents, "/palpate/diagnostics.status[0].level"), [1.0; 8]);
-    assert!(names(&contents).iter().all(|name| !name.contains("velocity")), "an unknown velocity is an empty array");
+    assert!(
+        names(&contents).iter().all(|name| !name.contains("velocity")),
+        "an unknown velocity is an empty array"
+    );
     // The stamps are those of the record to the nanosecond, from the first message on.
     let time: Vec<f64> = (0..40).map(|i| f64::from(i) / 100.0).collect();
     assert_eq!(values(&contents, "/palpate/joint_states time"), time);
@@ -111,8 +112,7 @@ fn the_same_messages_give_the_same_bytes_in_chunks_of_a_mebibyte() {
 #[test]
 fn messages_are_those_that_the_reference_library_reads() {
     let bytes = log(3, 0.0);
-    let messages: Vec<mcap::Message<'_>> =
-        mcap::MessageStream::new(&bytes).unwrap().collect::<Result<_, _>>().unwrap();
+    let messages: Vec<mcap::Message<'_>> = mcap::MessageStream::new(&bytes).unwrap().collect::<Result<_, _>>().unwrap();
     assert_eq!(messages.len(), 3 * 4 + 1);
     let first = &messages[0];
     assert_eq!((first.channel.topic.as_str(), first.sequence), (JOINT_STATES, 0));
