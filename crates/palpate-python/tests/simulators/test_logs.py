@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import importlib.util
-import subprocess
-import sys
 from pathlib import Path
 from typing import Any
 
@@ -38,6 +36,6 @@ def test_an_empty_schema_or_another_definition_would_be_found(logs: Any, tmp_pat
     other = tmp_path / "other.mcap"
     protocol = (tmp_path / "squeeze.toml").read_text(encoding="utf-8").replace("10 mm", "10.001 mm")
     (tmp_path / "other.toml").write_text(protocol, encoding="utf-8")
-    subprocess.run([sys.executable, "-m", "palpate", "simulate", "other.toml", "--out", other.name], cwd=tmp_path, check=True, stderr=subprocess.DEVNULL)
+    logs.palpate(tmp_path, "simulate", "other.toml", "--out", other.name)
     assert logs.differing(logs.read_with_rosbags(log), table) == 0
     assert logs.differing(logs.read_with_rosbags(other), table) > 0
