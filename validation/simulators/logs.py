@@ -148,6 +148,8 @@ def watched(folder: Path) -> tuple[Path, Numbers]:
             continue
         at = stamp(line["time_s"])
         found.setdefault("/palpate/filtered_force_n.data", []).append((at, line["force_n"]))
+        if line.get("slips") == "never":
+            line |= dict.fromkeys(name for name in names if name.startswith("time_to_slip"))
         for name in names:
             if name in line:
                 # "Never" is null in JSON.

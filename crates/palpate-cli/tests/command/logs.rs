@@ -176,7 +176,7 @@ fn what_is_watched_is_logged_tick_by_tick() {
         assert_eq!(log.values(topic), reported, "{key}");
     }
     // F = 1 + (1 + 4 t)^(-1/4) is 1.5 N after 3.75 s of the hold, which begins at 1 s: 1 s into it, in 2.75 s.
-    let (time, slip) = (log.values("/palpate/time_to_slip_s log time"), log.values("/palpate/time_to_slip_s.data"));
+    let (time, slip) = (log.values("/palpate/time_to_slip_s time"), log.values("/palpate/time_to_slip_s.data"));
     let at = time.iter().position(|time| *time >= 2.0).unwrap();
     assert!((slip[at] - 2.75).abs() < 0.05, "{}", slip[at]);
     // A hold begins, a warning, it slips; the last two are not harmless.
