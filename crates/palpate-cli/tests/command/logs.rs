@@ -86,20 +86,24 @@ fn a_simulated_squeeze_is_analysed_from_its_log_as_from_its_table() {
     let equilibrium = log.values("/palpate/equilibrium_force_n.data");
     assert!((equilibrium.last().unwrap() - truth).abs() < 1e-9 * truth);
     let text = done(folder.path(), &["inspect", "run.mcap"]);
-    assert!(text.contains("/palpate/wrench.wrench.force.z"), "{text}");
+    assert!(text.contains("/palpate/wrench.wrench.force.z") && !text.contains("skipped"), "{text}");
     let fitted = |record: &str| -> Value {
         let json = done(folder.path(), &["analyze", record, "--no-compare", "--format", "json"]);
         serde_json::from_str(&json).unwrap()
     };
     fs::write(folder.path().join("run.csv"), done(folder.path(), &["simulate", &protocol])).unwrap();
     let (log, table) = (fitted("run.mcap"), fitted("run.csv"));
-    let fit = |analysis: &Value, key: &str| analysis["holds"][0]["fits"][0][key].as_f64().unwrap();
-    for key in ["exponent", "equilibrium_force_n", "relative_rate_per_s"] {
+    let fit = |analysis: &Value, key: &str| {
+        let fits = analysis["holds"][0]["fits"].as_array().unwrap();
+        let of_law = fits.iter().find(|fit| fit["law"] == "latency:5").unwrap();
+        of_law["parameters"][key]["value"].as_f64().unwrap()
+    };
+    for key in ["equilibrium", "amplitude", "relative_rate_per_s"] {
         let (found, expected) = (fit(&log, key), fit(&table, key));
         // Stamps are whole nanoseconds.
         assert!((found / expected - 1.0).abs() < 1e-6, "{key}: {found} {expected}");
     }
-    assert!((fit(&log, "equilibrium_force_n") / truth - 1.0).abs() < 0.02);
+    assert!((fit(&log, "equilibrium") / truth - 1.0).abs() < 0.002);
 }
 
 #[test]

@@ -43,23 +43,17 @@ pub(crate) struct ContactLog<W: Write> {
 }
 
 impl<W: Write> ContactLog<W> {
-    /// Begins the log of a series, whose first sample has the time `first` (s) and whose results are `topics`; `zero` is the date of its time
-    /// 0 (ns since 1970), where that is known. `content` names what wrote it.
+    /// Begins the log of a series, whose first sample has the time `first` (s); `zero` is the date of its time 0 (ns since 1970), where that
+    /// is known. `content` names what wrote it. The topic of a result is in the log once it has a message.
     ///
     /// # Errors
     /// [`LogError`] where the operating system takes no bytes.
-    pub(crate) fn new(
-        out: W,
-        content: &str,
-        (first, zero): (f64, Option<u64>),
-        topics: &[(&str, MessageType)],
-    ) -> Result<Self, LogError> {
+    pub(crate) fn new(out: W, content: &str, (first, zero): (f64, Option<u64>)) -> Result<Self, LogError> {
         let clock = zero.map_or(LogClock::beginning_at(first), LogClock::since_1970);
         let zero = clock.zero_ns().to_string();
         let mut writer = LogWriter::new(out, &[("content", content), ("time_zero_ns", &zero)])?;
         writer.declare(JOINT_STATES, MessageType::JointState)?;
         writer.declare(WRENCH, MessageType::WrenchStamped)?;
-        topics.iter().try_for_each(|(name, kind)| writer.declare(&topic(name), *kind))?;
         let last = None;
         Ok(Self { writer, clock, last })
     }
@@ -138,7 +132,7 @@ impl<W: Write> ContactLog<W> {
     }
 }
 
-/// The topic of a result, or one that is named in full.
+/// The topic of a result.
 fn topic(name: &str) -> String {
-    if name.starts_with('/') { name.to_owned() } else { format!("{PREFIX}{name}") }
+    format!("{PREFIX}{name}")
 }

@@ -5,8 +5,7 @@ use std::io::Write;
 use palpate::calibrate::Prediction;
 use palpate::contact::Specimen;
 use palpate::simulate::Trajectory;
-use palpate_files::message_log::{Level, LogError, MessageType};
-use palpate_files::naming::own_topics::DIAGNOSTICS;
+use palpate_files::message_log::{Level, LogError};
 use palpate_report::result::word;
 
 use super::contact::{ContactLog, Reading};
@@ -74,7 +73,7 @@ pub(crate) fn write_readings(
     zero: Option<u64>,
 ) -> Result<(), LogError> {
     let start = (time.first().copied().unwrap_or(0.0), zero);
-    let mut log = ContactLog::new(out, "palpate simulate, with noise: not measured", start, &[])?;
+    let mut log = ContactLog::new(out, "palpate simulate, with noise: not measured", start)?;
     for (time, (displacement, force)) in time.iter().zip(readings) {
         log.reading(&Reading {
             time: *time,
@@ -93,10 +92,8 @@ fn write_course(
     columns: &[Column<'_>],
     moves: bool,
 ) -> Result<(), LogError> {
-    let mut topics: Vec<(&str, MessageType)> = columns.iter().map(|(name, _)| (*name, MessageType::Float64)).collect();
-    topics.extend([("in_contact", MessageType::Bool), (DIAGNOSTICS, MessageType::DiagnosticArray)]);
     let start = (course.time.first().copied().unwrap_or(0.0), zero);
-    let mut log = ContactLog::new(out, content, start, &topics)?;
+    let mut log = ContactLog::new(out, content, start)?;
     let mut events = course.events.iter().peekable();
     for index in 0..course.len() {
         while let Some(event) = events.next_if(|event| event.time <= course.time[index]) {

@@ -7,8 +7,7 @@ use palpate::grip::TimeToSlip;
 use palpate::number::significant;
 use palpate::observe::{Observation, Slip, SlipForecast};
 use palpate::record::Record;
-use palpate_files::message_log::{Level, LogError, MessageType};
-use palpate_files::naming::own_topics::DIAGNOSTICS;
+use palpate_files::message_log::{Level, LogError};
 use palpate_report::result::word;
 use serde_json::Value;
 
@@ -53,10 +52,8 @@ impl<'r> ObservationLog<'r> {
     /// [`JobError`] where the operating system takes no file there.
     pub fn open(path: &Path, record: &'r Record, zero: Option<u64>) -> Result<Self, JobError> {
         let mut stage = Stage::default();
-        let mut topics = NUMBERS.map(|name| (name, MessageType::Float64)).to_vec();
-        topics.push((DIAGNOSTICS, MessageType::DiagnosticArray));
         let start = (record.time()[0], zero);
-        let log = ContactLog::new(stage.open(path)?, "palpate watch", start, &topics);
+        let log = ContactLog::new(stage.open(path)?, "palpate watch", start);
         Ok(Self {
             path: path.to_owned(),
             record,

@@ -13,29 +13,49 @@ use super::{look, names, opened, record, values};
 const VALUES: [f64; 8] =
     [0.1, -1.0 / 3.0, f64::MIN_POSITIVE, 5e-324, f64::MAX, -f64::EPSILON, 1e22, std::f64::consts::PI];
 
-/// A log of so many samples at 100 Hz from a time on, s; displacement and force are `VALUES` in turn, and what is left of them.
+/// Values that a machine may measure.
+const CALM: [f64; 8] = [
+    0.1,
+    -1.0 / 3.0,
+    2.0 / 7.0,
+    0.7,
+    std::f64::consts::FRAC_1_PI,
+    -f64::EPSILON,
+    1.1,
+    std::f64::consts::PI,
+];
+
+/// A log of so many samples at 100 Hz from a time on, s; displacements are half of `VALUES` in turn, forces those three places on.
 fn log(count: usize, first: f64) -> Vec<u8> {
+    log_of(&VALUES, count, first)
+}
+
+fn log_of(values: &[f64; 8], count: usize, first: f64) -> Vec<u8> {
+    written(values, count, first).expect("a log in memory")
+}
+
+fn written(values: &[f64; 8], count: usize, first: f64) -> Result<Vec<u8>, LogError> {
     let clock = LogClock::beginning_at(first);
-    let mut log = LogWriter::new(Vec::new(), &[("content", "a test")]).unwrap();
-    log.declare(JOINT_STATES, MessageType::JointState).unwrap();
-    log.declare("/palpate/excess_strain", MessageType::Float64).unwrap();
+    let mut log = LogWriter::new(Vec::new(), &[("content", "a test")])?;
+    log.declare(JOINT_STATES, MessageType::JointState)?;
+    log.declare("/palpate/excess_strain", MessageType::Float64)?;
     for index in 0..count {
-        let stamp = clock.stamp(first + index as f64 / 100.0).unwrap();
-        let (displacement, force) = (VALUES[index % 8] / 2.0, VALUES[(index + 3) % 8]);
+        let stamp = clock.stamp(first + index as f64 / 100.0)?;
+        let (displacement, force) = (values[index % 8] / 2.0, values[(index + 3) % 8]);
         let state = JointState {
             name: FINGER,
             position: Some(displacement),
             velocity: None,
             effort: Some(force),
         };
-        log.write(JOINT_STATES, stamp, &Message::JointState(state)).unwrap();
+        log.write(JOINT_STATES, stamp, &Message::JointState(state))?;
         let wrench = Wrench {
             frame: FRAME,
             force: [0.0, 0.0, force],
         };
-        log.write(WRENCH, stamp, &Message::Wrench(wrench)).unwrap();
-        log.write("/palpate/excess_strain", stamp, &Message::Float64(-displacement)).unwrap();
-        log.write("/palpate/in_contact", stamp, &Message::Bool(index % 2 == 0)).unwrap();
+        log.write(WRENCH, stamp, &Message::Wrench(wrench))?;
+        log.write("/palpate/excess_strain", stamp, &Message::Float64(-displacement))?;
+        log.write("/palpate/in_contact", stamp, &Message::Bool(index % 2 == 0))?;
         if index % 5 == 0 {
             let diagnostic = Diagnostic {
                 level: Level::Warn,
@@ -43,10 +63,10 @@ fn log(count: usize, first: f64) -> Vec<u8> {
                 message: "slip soon",
                 values: &[("time_to_slip_s".to_owned(), "0.5".to_owned())],
             };
-            log.write(DIAGNOSTICS, stamp, &Message::Diagnostic(diagnostic)).unwrap();
+            log.write(DIAGNOSTICS, stamp, &Message::Diagnostic(diagnostic))?;
         }
     }
-    log.finish().unwrap()
+    log.finish()
 }
 
 fn bits(values: &[f64]) -> Vec<u64> {
@@ -85,12 +105,12 @@ fn every_number_comes_back_to_the_bit() {
 #[test]
 fn a_record_needs_no_description() {
     for first in [0.0, -0.25, 100.0] {
-        let file = record(&log(40, first), "").unwrap();
+        let file = record(&log_of(&CALM, 40, first), "").unwrap();
         let used: Vec<&str> = file.columns.iter().filter_map(|column| column.name.as_deref()).collect();
         assert_eq!(used[2..], ["/palpate/joint_states.position[finger]", "/palpate/wrench.wrench.force.z"]);
         let time: Vec<f64> = (0..40).map(|i| f64::from(i) / 100.0).collect();
         assert_eq!(file.record.time(), time, "{first}");
-        assert_eq!(bits(file.record.force()), bits(&(0..40).map(|i| VALUES[(i + 3) % 8]).collect::<Vec<_>>()));
+        assert_eq!(bits(file.record.force()), bits(&(0..40).map(|i| CALM[(i + 3) % 8]).collect::<Vec<_>>()));
     }
 }
 
