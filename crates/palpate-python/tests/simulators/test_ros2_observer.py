@@ -90,6 +90,9 @@ class Grip:
     def warnings(self) -> list[str]:
         return [text for _, _, name, text in self.reports if name == "palpate: input"]
 
+    def values(self, topic: str) -> list[float]:
+        return [value for _, value in self.numbers[topic]]
+
     def at(self, topic: str, time: float) -> float:
         return next(value for when, value in self.numbers[topic] if when >= time)
 
@@ -112,7 +115,7 @@ def slip_time(series: Any, after: float = 0.0) -> float:
     time, force = series.time_s, series.force_n
     peak = int(np.argmax(np.where(time >= after, force, 0.0)))
     fallen = peak + int(np.argmax(force[peak:] <= SLIP_N))
-    return float(time[fallen])
+    return float(np.interp(-SLIP_N, -force[fallen - 1 : fallen + 1], time[fallen - 1 : fallen + 1]))
 
 
 def test_a_simulated_grip_publishes_equilibrium_and_time_to_slip(bridge_module: Any) -> None:
@@ -123,7 +126,9 @@ def test_a_simulated_grip_publishes_equilibrium_and_time_to_slip(bridge_module: 
     # Half of the way from the end of the ramp to slip.
     now = (1.2 + slips) / 2
     assert grip.at("time_to_slip_s", now) == pytest.approx(slips - now, rel=0.1)
-    assert grip.at("time_to_slip_low_s", now) <= slips - now <= grip.at("time_to_slip_high_s", now)
+    # A wrench waits up to 20 ms for the next joint state, and what is published then is from its stamp on.
+    low, high = grip.at("time_to_slip_low_s", now), grip.at("time_to_slip_high_s", now)
+    assert low - 0.03 <= slips - now <= high + 0.03, (low, slips - now, high)
     # E (u/r) A(u) at u = 5 mm.
     truth = 28e3 * (5 / 35) * math.pi * (0.07 * 0.005 - 0.005**2)
     assert grip.numbers["equilibrium_force_n"][-1][1] == pytest.approx(truth, rel=0.02)
@@ -174,7 +179,7 @@ def test_messages_that_are_late_are_left_out(bridge_module: Any) -> None:
     assert {text.split(":")[0] for text in warned} == {"wrenches", "joint states"}
     # Each kind once, and again after 10 s.
     assert len(warned) == 2 * 3, warned
-    assert grip.numbers["equilibrium_force_n"] == clean.numbers["equilibrium_force_n"]
+    assert grip.values("equilibrium_force_n") == clean.values("equilibrium_force_n")
 
 
 def test_a_missing_joint_is_reported_once_and_the_force_alone_is_observed(bridge_module: Any) -> None:
