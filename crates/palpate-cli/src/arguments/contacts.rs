@@ -42,7 +42,7 @@ pub(crate) struct ReproduceArguments {
 Examples:
   palpate simulate examples/protocols/paper-a.toml --out a.csv --figure a.svg
   palpate simulate examples/protocols/grip.toml | head
-  palpate simulate examples/protocols/grip.toml --out grip.mcap   for PlotJuggler, Foxglove, ros2 bag
+  palpate simulate examples/protocols/grip.toml --out grip.mcap   a log of ROS 2
   palpate simulate examples/protocols/creep.toml --figure creep.svg --energy work.csv
   palpate simulate cycles.toml --hysteresis loop.svg --energy-by-cycle loop.csv
   palpate simulate squeeze.toml --force-noise \"0.05 N\" --out record.csv   a record to analyse
