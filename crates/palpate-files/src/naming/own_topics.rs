@@ -34,10 +34,12 @@ pub(crate) fn holds(name: &str) -> Option<Option<Quantity>> {
 }
 
 /// Ends of the names of topics, and their units; a longer one stands before one that it ends in.
+#[cfg(feature = "robot-log")]
 const SUFFIXES: [(&str, &str); 6] =
     [("_m_per_s", "m/s"), ("_per_s", "1/s"), ("_n", "N"), ("_m", "m"), ("_s", "s"), ("_j", "J")];
 
 /// The unit of a field of an own topic.
+#[cfg(feature = "robot-log")]
 pub(crate) fn unit(topic: &str, field: &str) -> Option<&'static str> {
     let known = |starts: &[(&str, &'static str)]| {
         starts.iter().find(|(start, _)| field.starts_with(start)).map(|(_, unit)| *unit)
@@ -51,7 +53,7 @@ pub(crate) fn unit(topic: &str, field: &str) -> Option<&'static str> {
     }
 }
 
-#[cfg(test)]
+#[cfg(all(test, feature = "robot-log"))]
 mod tests {
     use super::*;
 

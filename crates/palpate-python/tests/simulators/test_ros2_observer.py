@@ -212,6 +212,23 @@ def test_values_that_are_no_numbers_are_left_out(bridge_module: Any) -> None:
     assert grip.numbers == clean.numbers
 
 
+def test_a_material_gives_the_excess_strain_and_a_message_without_a_stamp_the_time_of_reception(bridge_module: Any) -> None:
+    settings = bridge_module.Settings(joint="", slip_force_n=1.0, material=str(ROOT / "examples/records/ball-material.toml"))
+    by_reception = bridge_module.Bridge(settings, STORE.types)
+    joined = Grip(bridge_module, material=settings.material)
+    series = simulated({**SQUEEZE, "hold": "2 s"})
+    published: list[Any] = []
+    for index, time in enumerate(series.time_s):
+        joined.joint(time, series.displacement_m[index])
+        joined.wrench(time, series.force_n[index])
+        published += by_reception.wrench(wrench(0, series.force_n[index]), received_ns=START + round(1e9 * time))
+    assert joined.warnings() == []
+    # The excess strain of the simulation, whose ball the material was calibrated on.
+    assert joined.numbers["excess_strain"][-1][1] == pytest.approx(series.excess_strain[-1], rel=0.05)
+    levels = [message.status[0].level for topic, message in published if topic == "diagnostics"]
+    assert levels and max(levels) == 0, "a hold and no warning"
+
+
 def test_settings_that_cannot_be_used_are_refused(bridge_module: Any) -> None:
     for settings in ({"force_axis": "w"}, {"metres_per_position": 0.0}, {"max_wait_s": -1.0}, {"newtons_per_force": math.nan}):
         with pytest.raises(palpate.OptionError, match=next(iter(settings))):
