@@ -3,8 +3,8 @@
 mod damage;
 mod grippers;
 mod reading;
-mod written;
 mod writing;
+mod written;
 
 use std::path::Path;
 
