@@ -19,7 +19,7 @@
 //! use palpate_files::message_log::{LogClock, LogWriter, Message};
 //!
 //! let clock = LogClock::beginning_at(0.0);
-//! let mut log = LogWriter::new(Vec::new(), &[("content", "an example")])?;
+//! let mut log = LogWriter::new(Vec::<u8>::new(), &[("content", "an example")])?;
 //! log.write("/force_n", clock.stamp(0.25)?, &Message::Float64(2.5))?;
 //! let bytes = log.finish()?;
 //! assert!(bytes.starts_with(b"\x89MCAP0\r\n") && bytes.ends_with(b"\x89MCAP0\r\n"));
