@@ -46,14 +46,6 @@ pub(crate) fn print_with(write: impl FnOnce(&mut dyn Write) -> io::Result<()>) -
     }
 }
 
-/// What `write` writes, as bytes.
-pub(crate) fn written(write: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> Result<Vec<u8>, JobError> {
-    let mut bytes = Vec::new();
-    let kind = |error: io::Error| JobError::new(ErrorKind::File(error.kind()), error, None);
-    write(&mut bytes).map_err(kind)?;
-    Ok(bytes)
-}
-
 /// Tells something beside the data, on standard error.
 pub(crate) fn note(text: &str) {
     anstream::eprintln!("{}", clean(text));

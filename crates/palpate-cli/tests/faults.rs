@@ -139,6 +139,9 @@ fn every_operation_fails_once_and_the_output_is_complete() {
                 to("p.svg"),
             ],
         ),
+        ("simulate", vec![at("p.toml"), "--out".into(), to("s.mcap")]),
+        ("predict", vec![at("m.toml"), "--protocol".into(), at("p.toml"), "--out".into(), to("p.mcap")]),
+        ("watch", vec![at("r.csv"), "--slip-force".into(), "1.5 N".into(), "--out".into(), to("w.mcap")]),
         (
             "calibrate",
             vec![

@@ -6,6 +6,7 @@
 //! | module | what |
 //! |---|---|
 //! | [`cell`] | the text of one cell: numbers, dates, decimal marks, names with units |
+//! | [`message_log`] | messages of ROS 2, written as a log in MCAP |
 //! | [`naming`] | what names and units of columns stand for, in the languages of headers |
 //! | `error` | what can be wrong with a file, and what would help ([`FileError`]) |
 //! | [`input`] | where bytes come from: a disk or memory, as they are or unpacked; their lines |
@@ -35,6 +36,7 @@ mod error;
 pub mod faults;
 pub mod formats;
 pub mod input;
+pub mod message_log;
 pub mod naming;
 pub mod open;
 pub mod parquet_table;

@@ -14,6 +14,7 @@
 //! | `store.rs` | what can be resumed |
 //! | `shard/` | one of several slices of a batch or a sweep |
 //! | `threads.rs` | many pieces of work over threads |
+//! | `message_log/` | results as logs of ROS 2 |
 //! | `report_index.rs` | the index of the reports of several records |
 //! | `analyze.rs` … | one job each |
 //! | `typed.rs` | options as they are typed on a command line, with the feature `clap` |
@@ -34,6 +35,7 @@ mod error;
 mod grip;
 mod inspect;
 mod merge;
+mod message_log;
 mod options;
 mod outcome;
 mod predict;
@@ -61,6 +63,7 @@ pub use inspect::{
     RefusalDocument, SkippedDocument, machines_text,
 };
 pub use merge::{Merge, Merged};
+pub use message_log::{is_log, zero_ns};
 pub use outcome::{Outcome, Results, Verdict};
 pub use predict::{Predict, Predicted};
 pub use report_index::{ReportIndex, write_reports};
@@ -68,4 +71,4 @@ pub use reproduce::{Reproduce, ReproducedRecord};
 pub use shard::{Shard, Slice};
 pub use simulate::{DriveBy, Simulate, Simulated};
 pub use sweep::{Sweep, Swept, sweep_fields, sweep_rows};
-pub use watch_log::{Event, HoldObserved, Observed, WatchLog};
+pub use watch_log::{Event, HoldObserved, ObservationLog, Observed, WatchLog};

@@ -1,6 +1,7 @@
 //! A material under a protocol: its force, with intervals.
 
 use std::io::{self, Write};
+use std::path::Path;
 
 use palpate::calibrate::Prediction;
 use palpate::simulate::{Sampling, SimulateError};
@@ -12,7 +13,9 @@ use palpate_report::table::CsvLocale;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+use crate::message_log::{is_log, write_prediction as write_prediction_log};
 use crate::options::checked_confidence;
+use crate::output::{Stage, unwritten, unwritten_log};
 use crate::{JobError, Outcome};
 
 /// Predict the response of a calibrated body to a protocol, with intervals.
@@ -56,6 +59,8 @@ pub struct Predicted {
     pub prediction: Prediction,
     /// The whole course.
     course: Option<Prediction>,
+    /// Single times are wanted, which make no curve.
+    single: bool,
     caption: String,
     csv_locale: CsvLocale,
 }
@@ -98,6 +103,7 @@ impl Predict {
         let predicted = Predicted {
             prediction,
             course,
+            single,
             caption,
             csv_locale: self.csv_locale,
         };
@@ -118,6 +124,22 @@ impl Predicted {
     /// An error of the writer.
     pub fn write_series(&self, out: &mut dyn Write) -> io::Result<()> {
         write_prediction(out, &self.prediction, self.csv_locale)
+    }
+
+    /// Stages the series as the file at `path`: a log of ROS 2 if it ends in `.mcap`, otherwise CSV.
+    ///
+    /// # Errors
+    /// [`JobError`] where a time has no stamp, or the operating system takes no file there.
+    pub fn stage(&self, path: &Path, stage: &mut Stage) -> Result<(), JobError> {
+        if !is_log(path) {
+            let mut bytes = Vec::new();
+            self.write_series(&mut bytes).map_err(|error| unwritten(path, &error))?;
+            return stage.bytes(path, &bytes);
+        }
+        stage.file(path, |into| {
+            let written = write_prediction_log(into, &self.prediction, self.single);
+            written.map_err(|error| unwritten_log(path, &error))
+        })
     }
 
     /// The course with its intervals.

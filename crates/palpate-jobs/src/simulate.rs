@@ -23,7 +23,8 @@ use palpate_report::table::{Cell, CsvLocale, Table};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use crate::output::stem;
+use crate::message_log::{is_log, write_readings, write_trajectory as write_trajectory_log};
+use crate::output::{Stage, stem, unwritten, unwritten_log};
 use crate::{ErrorKind, JobError, Outcome};
 
 /// Simulate squeeze, hold, creep and release under a protocol or a measured motion or force.
@@ -192,6 +193,27 @@ impl Simulated {
         }
     }
 
+    /// Stages the series as the file at `path`: a log of ROS 2 if it ends in `.mcap`, otherwise CSV. `zero` is the date of time 0 (ns since
+    /// 1970), where a replayed log states it: the log then has the stamps of the replayed one.
+    ///
+    /// # Errors
+    /// [`JobError`] where a time has no stamp, or the operating system takes no file there.
+    pub fn stage(&self, path: &Path, zero: Option<u64>, stage: &mut Stage) -> Result<(), JobError> {
+        if !is_log(path) {
+            let mut bytes = Vec::new();
+            self.write_series(&mut bytes).map_err(|error| unwritten(path, &error))?;
+            return stage.bytes(path, &bytes);
+        }
+        stage.file(path, |into| {
+            let (trajectory, specimen) = (&self.trajectory, self.scene.contact.specimen());
+            let written = match (self.job.force_noise_n, self.job.displacement_noise_m) {
+                (None, None) => write_trajectory_log(into, trajectory, specimen, zero),
+                _ => write_readings(into, &trajectory.time, self.readings(), zero),
+            };
+            written.map_err(|error| unwritten_log(path, &error))
+        })
+    }
+
     /// Force, strain and displacement over time, as the figure in the file at `path`.
     #[must_use]
     pub fn figure(&self, path: &Path) -> Figure {
@@ -292,12 +314,25 @@ impl Simulated {
         wave_figure(&stem(path), wave, &self.scene.caption("Strain of each layer over time; lines for selected layers"))
     }
 
+    /// Standard deviations of the noise on the force, N, and on the displacement, m.
+    fn noise(&self) -> (f64, f64) {
+        (self.job.force_noise_n.unwrap_or(0.0), self.job.displacement_noise_m.unwrap_or(0.0))
+    }
+
+    /// Displacement, m, and force, N, of every sample with their noise.
+    fn readings(&self) -> impl Iterator<Item = (f64, f64)> {
+        let (force_noise, displacement_noise) = self.noise();
+        let (mut noise, trajectory) = (Rng::new(self.job.seed), &self.trajectory);
+        (0..trajectory.len()).map(move |i| {
+            let displacement = trajectory.displacement[i] + displacement_noise * noise.normal();
+            (displacement, trajectory.force[i] + force_noise * noise.normal())
+        })
+    }
+
     /// The series as a machine would have recorded it: three columns, noise, and a preamble that says it is none.
     fn record(&self) -> String {
         let Simulate { seed, csv_locale, .. } = self.job;
-        let (force_noise, displacement_noise) =
-            (self.job.force_noise_n.unwrap_or(0.0), self.job.displacement_noise_m.unwrap_or(0.0));
-        let (mut noise, trajectory) = (Rng::new(seed), &self.trajectory);
+        let (force_noise, displacement_noise) = self.noise();
         let between = csv_locale.separator();
         let number = |value: String| csv_locale.number(value);
         let mut out = format!(
@@ -307,10 +342,8 @@ impl Simulated {
             number((1e3 * displacement_noise).to_string()),
         );
         out.push_str(&format!("time_s{between}displacement_mm{between}force_n\n"));
-        for i in 0..trajectory.len() {
-            let displacement = 1e3 * (trajectory.displacement[i] + displacement_noise * noise.normal());
-            let force = trajectory.force[i] + force_noise * noise.normal();
-            let row = [trajectory.time[i], displacement, force].map(|value| number(format!("{value:.6}")));
+        for (time, (displacement, force)) in self.trajectory.time.iter().zip(self.readings()) {
+            let row = [*time, 1e3 * displacement, force].map(|value| number(format!("{value:.6}")));
             out.push_str(&format!("{}\n", row.join(&between.to_string())));
         }
         out

@@ -42,6 +42,7 @@ pub(crate) struct ReproduceArguments {
 Examples:
   palpate simulate examples/protocols/paper-a.toml --out a.csv --figure a.svg
   palpate simulate examples/protocols/grip.toml | head
+  palpate simulate examples/protocols/grip.toml --out grip.mcap   a log of ROS 2
   palpate simulate examples/protocols/creep.toml --figure creep.svg --energy work.csv
   palpate simulate cycles.toml --hysteresis loop.svg --energy-by-cycle loop.csv
   palpate simulate squeeze.toml --force-noise \"0.05 N\" --out record.csv   a record to analyse
@@ -63,7 +64,7 @@ pub(crate) struct SimulateArguments {
     /// Columns of the record by name or number, with their units; they take precedence over the description
     #[arg(long, value_name = "QUANTITY=COLUMN:UNIT,…", value_parser = columns, requires = "drive")]
     pub(crate) columns: Option<NamedColumns>,
-    /// File for the series (CSV); standard output if not given
+    /// File for the series (CSV, or .mcap for a log of ROS 2); standard output if not given
     #[arg(long, value_name = "FILE.csv")]
     pub(crate) out: Option<PathBuf>,
     /// File for a figure (.svg, .png or .pdf)
@@ -161,7 +162,7 @@ pub(crate) struct PredictArguments {
     pub(crate) protocol: PathBuf,
     #[command(flatten)]
     pub(crate) job: jobs::Predict,
-    /// File for the series (CSV); standard output if neither this nor --at is given
+    /// File for the series (CSV, or .mcap for a log of ROS 2); standard output if neither this nor --at is given
     #[arg(long, value_name = "FILE.csv")]
     pub(crate) out: Option<PathBuf>,
     /// File for a figure (.svg, .png or .pdf)

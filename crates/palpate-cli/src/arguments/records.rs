@@ -397,7 +397,8 @@ Examples:
   palpate watch gripper.csv --test gripper.toml --slip-force \"2 N\" --warn-before \"1 s\"
   palpate watch gripper.csv --speed 1
   palpate watch - < gripper.csv
-  palpate watch gripper.csv --format jsonl --every \"0.1 s\" | jq .time_to_slip_s")]
+  palpate watch gripper.csv --format jsonl --every \"0.1 s\" | jq .time_to_slip_s
+  palpate watch bag.mcap --test gripper.toml --slip-force \"2 N\" --out observed.mcap   beside the bag")]
 pub(crate) struct WatchArguments {
     /// Log with time, force and, preferably, displacement; - or nothing is standard input
     #[arg(value_name = "LOG", default_value = "-", hide_default_value = true)]
@@ -428,6 +429,9 @@ pub(crate) struct WatchArguments {
     /// Interval of log time between two lines
     #[arg(long, value_name = "TIME", default_value = seconds(jobs::WatchLog::default().every_s), value_parser = time, allow_hyphen_values = true)]
     pub(crate) every: f64,
+    /// File for a log of ROS 2 (.mcap) with the readings and every result: equilibrium force, time to slip, warnings
+    #[arg(long, value_name = "FILE.mcap")]
+    pub(crate) out: Option<PathBuf>,
     /// Format of standard output
     #[arg(long, value_enum, default_value_t = WatchFormat::Text)]
     pub(crate) format: WatchFormat,

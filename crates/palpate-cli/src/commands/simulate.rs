@@ -1,31 +1,27 @@
 //! `palpate simulate`: protocol to series and figure.
 
 use palpate_jobs::input::{Described, OpenedFile};
-use palpate_jobs::output::{Stage, check_series, keep_apart, picture};
-use palpate_jobs::{JobError, Verdict};
+use palpate_jobs::output::{Stage, check_series, check_series_or_log, keep_apart, picture};
+use palpate_jobs::{JobError, Verdict, zero_ns};
 
 use crate::arguments::SimulateArguments;
 use crate::progress::Bars;
-use crate::terminal::{notes, print_with, written};
+use crate::terminal::{notes, print_with};
 
 pub(crate) fn run(requested: &SimulateArguments) -> Result<Verdict, JobError> {
-    let series = [
-        &requested.out,
-        &requested.wave,
-        &requested.energy,
-        &requested.energy_by_step,
-        &requested.energy_by_cycle,
-    ];
+    let series = [&requested.wave, &requested.energy, &requested.energy_by_step, &requested.energy_by_cycle];
     let figures = [&requested.figure, &requested.hysteresis, &requested.strain_map].into_iter().flatten();
     let series = series.into_iter().flatten();
     let reads = [&requested.protocol].into_iter().chain(&requested.drive).chain(&requested.test);
-    keep_apart(reads, series.clone().chain(figures))?;
+    keep_apart(reads, requested.out.iter().chain(series.clone()).chain(figures))?;
+    requested.out.as_deref().map_or(Ok(()), check_series_or_log)?;
     series.into_iter().try_for_each(|path| check_series(path))?;
     let bars = &mut Bars::default();
     let described = Described::read(requested.test.as_deref().filter(|_| requested.drive.is_some()), None)?
         .with_columns(requested.columns.as_ref());
     let opened = requested.drive.as_ref().map(|path| OpenedFile::open(path, &described)).transpose()?;
-    let measured = opened.map(|opened| opened.measurement(opened.only()?, bars)).transpose()?;
+    let measured = opened.as_ref().map(|opened| opened.measurement(opened.only()?, bars)).transpose()?;
+    let zero = opened.as_ref().and_then(|opened| zero_ns(&opened.contents, opened.only().ok()?));
     let driver = measured.as_ref().map(|measured| (&measured.record, measured.input.path.as_str()));
     measured.iter().for_each(|measured| notes(&measured.notes));
     let outcome = requested.job().run(&requested.protocol, driver, bars)?;
@@ -56,11 +52,11 @@ pub(crate) fn run(requested: &SimulateArguments) -> Result<Verdict, JobError> {
     if let Some(path) = &requested.energy {
         made.push((path, simulated.energy(bars)?.into_bytes()));
     }
-    if let Some(path) = &requested.out {
-        made.push((path, written(|out| simulated.write_series(out))?));
-    }
     let mut stage = Stage::default();
     made.iter().try_for_each(|(path, bytes)| stage.bytes(path, bytes))?;
+    if let Some(path) = &requested.out {
+        simulated.stage(path, zero, &mut stage)?;
+    }
     stage.commit()?;
     if requested.out.is_none() {
         print_with(|out| simulated.write_series(out))?;

@@ -11,6 +11,7 @@ mod depends;
 mod files;
 mod grip;
 mod inspect;
+mod logs;
 mod maps;
 mod several_tests;
 mod shards;

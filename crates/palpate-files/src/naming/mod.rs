@@ -7,8 +7,10 @@
 //! | `unit_words.rs` | units as machines and people write them |
 //! | `names.rs` | a name, weighed against the words |
 //! | `rheometry.rs` | strain, torque and angle, moduli and compliances over time |
+//! | `own_topics.rs` | the topics of the logs that palpate writes ([`own_topics`]) |
 
 mod names;
+pub mod own_topics;
 mod quantity;
 mod rheometry;
 mod unit_words;

@@ -5,7 +5,7 @@ use palpate::units::Dimension;
 use super::part::{ColumnInfo, ColumnKind};
 use crate::naming::{
     AXIAL, BENDING, OTHER, OTHER_CHARACTERS, Quantity, SHEAR, SIGNS_OF_LENGTH, STORAGE, STRAINS, VOCABULARY, is_listed,
-    measured, measures_another, names_another, rank_in_rheometry, rank_of_name, unit_factor, words,
+    measured, measures_another, names_another, own_topics, rank_in_rheometry, rank_of_name, unit_factor, words,
 };
 
 /// The columns that name `quantity` best: one if it is clear, several if it is not, none if none does.
@@ -77,6 +77,9 @@ fn rank(column: &ColumnInfo, quantity: Quantity) -> Option<u8> {
         return None;
     }
     let name = column.name.as_deref()?;
+    if let Some(own) = own_topics::holds(name) {
+        return (own == Some(quantity)).then_some(0);
+    }
     let Some(vocabulary) = VOCABULARY.iter().find(|words| words.quantity == quantity) else {
         return rank_in_rheometry(name, column.unit.as_deref(), quantity);
     };
@@ -284,6 +287,26 @@ mod tests {
         let joints = [("/joint_states.position[force_joint]", None), ("/joint_states.velocity[force_joint]", None)];
         assert!(found(&joints, Quantity::Force).is_empty());
         assert_eq!(found(&joints, Quantity::Displacement), [1]);
+    }
+
+    #[test]
+    fn of_an_own_log_only_readings_are_measurements() {
+        let log = [
+            ("/palpate/joint_states.position[finger]", Some("m")),
+            ("/palpate/joint_states.effort[finger]", Some("N")),
+            ("/palpate/wrench.wrench.force.x", Some("N")),
+            ("/palpate/wrench.wrench.force.z", Some("N")),
+            ("/palpate/contact_displacement_m.data", Some("m")),
+            ("/palpate/equilibrium_force_n.data", Some("N")),
+            ("/palpate/strain.data", None),
+            ("/palpate/time_to_slip_s.data", Some("s")),
+        ];
+        assert_eq!(found(&log, Quantity::Displacement), [1]);
+        assert_eq!(found(&log, Quantity::Force), [4]);
+        assert!(found(&log, Quantity::Strain).is_empty() && found(&log, Quantity::Time).is_empty());
+        // Estimates that a node publishes beside what a gripper measures do not replace it.
+        let bag = [("/ft.wrench.force.z", Some("N")), ("/palpate/equilibrium_force_n.data", None)];
+        assert_eq!(found(&bag, Quantity::Force), [1]);
     }
 
     #[test]

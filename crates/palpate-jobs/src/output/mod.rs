@@ -26,7 +26,7 @@ pub(crate) use names::Names;
 pub use names::file_name;
 pub use stage::{Stage, StagedFile};
 pub use target::{check_folder, unwritten};
-pub(crate) use target::{check_no_folder, unwritten_table};
+pub(crate) use target::{check_no_folder, unwritten_log, unwritten_table};
 use target::{check_regular, folder_of, standing};
 use temporary::remove_stale;
 pub use temporary::{TemporaryFolder, abandon};
@@ -121,6 +121,8 @@ pub(crate) fn hexadecimal(bytes: impl AsRef<[u8]>) -> String {
 const NOT_IN_THIS_BUILD: &[(&str, &str)] = &[
     #[cfg(not(feature = "arrow"))]
     ("parquet", "arrow"),
+    #[cfg(not(feature = "robot-log"))]
+    ("mcap", "robot-log"),
     #[cfg(not(feature = "png"))]
     ("png", "png"),
     #[cfg(not(feature = "png"))]
@@ -166,6 +168,23 @@ pub fn check_series(path: &Path) -> Result<(), JobError> {
     check_ending(path, &["csv"], "a series ending in .csv", "name the series FILE.csv")
 }
 
+/// Refuses names of series that end neither in `.csv` nor in `.mcap`.
+///
+/// # Errors
+/// [`JobError`] for any other name, and for a log in a build without the feature `robot-log`.
+pub fn check_series_or_log(path: &Path) -> Result<(), JobError> {
+    let hint = "name the series FILE.csv or FILE.mcap";
+    check_ending(path, &["csv", "mcap"], "a series ending in .csv or .mcap", hint)
+}
+
+/// Refuses names of logs that do not end in `.mcap`.
+///
+/// # Errors
+/// As for [`check_series_or_log`].
+pub fn check_log(path: &Path) -> Result<(), JobError> {
+    check_ending(path, &["mcap"], "a log ending in .mcap", "name the log FILE.mcap")
+}
+
 /// Refuses a file that is there: a description that a person has worked on is not written over.
 ///
 /// # Errors
@@ -201,10 +220,12 @@ mod tests {
     /// With all features both names pass; `validation/long_proofs.sh features` runs this without them.
     #[test]
     fn what_a_build_cannot_write_is_refused_before_any_work() {
-        for (name, feature, is_there) in
-            [("a.parquet", "arrow", cfg!(feature = "arrow")), ("a.png", "png", cfg!(feature = "png"))]
-        {
-            let checked = check_ending(Path::new(name), &["parquet", "png"], "a table or a figure", "");
+        for (name, feature, is_there) in [
+            ("a.parquet", "arrow", cfg!(feature = "arrow")),
+            ("a.png", "png", cfg!(feature = "png")),
+            ("a.mcap", "robot-log", cfg!(feature = "robot-log")),
+        ] {
+            let checked = check_ending(Path::new(name), &["parquet", "png", "mcap"], "a table or a figure", "");
             let refused = checked.err().map(|error| error.to_string());
             let expected =
                 format!("{name}: expected a format of this build, found one that needs the feature `{feature}`");

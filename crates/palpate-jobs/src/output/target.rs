@@ -6,6 +6,7 @@ use std::path::Path;
 
 use palpate::number::counted;
 use palpate_files::input::kind;
+use palpate_files::message_log::LogError;
 use palpate_files::parquet_table::TableError;
 
 use crate::{ErrorKind, JobError};
@@ -93,6 +94,14 @@ pub(crate) fn unwritten_table(path: &Path, error: &TableError) -> JobError {
             let hint = "compute all runs again with ⟨restart⟩".to_owned();
             JobError::new(ErrorKind::File(io::ErrorKind::InvalidData), error, hint).of(path.display())
         }
+    }
+}
+
+/// A failure of a log at `path`.
+pub(crate) fn unwritten_log(path: &Path, error: &LogError) -> JobError {
+    match error {
+        LogError::Io(error) => unwritten(path, error),
+        error => JobError::new(ErrorKind::Record, error, error.hint().to_owned()).of(path.display()),
     }
 }
 

@@ -3,8 +3,10 @@
 //! | file | what |
 //! |---|---|
 //! | `holds.rs` | what happens from tick to tick, and the holds that were observed |
+//! | `log.rs` | what is observed, as a log of ROS 2 |
 
 mod holds;
+mod log;
 
 use palpate::observe::{Observation, ObserveError, Observer, ObserverOptions};
 use palpate::record::Record;
@@ -15,6 +17,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 pub use holds::{Event, HoldObserved};
+pub use log::ObservationLog;
 
 use crate::{ErrorKind, JobError, Outcome};
 use holds::Holds;

@@ -19,7 +19,8 @@ use palpate::record::Correction;
 use palpate::watch::Unwatched;
 use palpate_files::description::read_material;
 use palpate_jobs::input::OpenedFile;
-use palpate_jobs::{HoldObserved, JobError, Observed, Verdict};
+use palpate_jobs::output::{check_log, keep_apart};
+use palpate_jobs::{HoldObserved, JobError, ObservationLog, Observed, Verdict, zero_ns};
 
 use crate::arguments::{WatchArguments, WatchFormat};
 use crate::progress::Bars;
@@ -34,6 +35,10 @@ trait Output {
 }
 
 pub(crate) fn run(arguments: &WatchArguments) -> Result<Verdict, JobError> {
+    let reads = [&arguments.log].into_iter().chain(&arguments.described.test).chain(&arguments.described.then);
+    let reads = reads.chain(&arguments.material);
+    keep_apart(reads, &arguments.out)?;
+    arguments.out.as_deref().map_or(Ok(()), check_log)?;
     let described = arguments.described.read()?;
     let material = arguments.material.as_deref().map(read_material).transpose()?;
     let job = arguments.job();
@@ -66,26 +71,40 @@ pub(crate) fn run(arguments: &WatchArguments) -> Result<Verdict, JobError> {
             slip_force: arguments.slip_force,
         }),
     };
-    let mut outcome = None;
+    let zero = zero_ns(&opened.contents, opened.only()?);
+    let mut logged = arguments.out.as_deref().map(|path| ObservationLog::open(path, record, zero)).transpose()?;
+    let (mut outcome, mut unlogged) = (None, Ok(()));
     print_with(|out| {
         let (started, mut written) = (Instant::now(), Ok(()));
         let made = job.run((record, &place), material, &mut Unwatched, |observed| {
-            written = match &observed {
-                Observed::Next(time) => {
-                    speed.map_or(Ok(()), |speed| out.flush().map(|()| wait(started, (time - record.time()[0]) / speed)))
-                }
-                observed => shown.see(out, observed),
-            };
-            written.is_ok()
+            if let Some(log) = &mut logged {
+                unlogged = log.see(&observed);
+            }
+            // The log is completed where nobody reads the lines any more.
+            if written.is_ok() {
+                written = match &observed {
+                    Observed::Next(time) => {
+                        let pause = |speed| out.flush().map(|()| wait(started, (time - record.time()[0]) / speed));
+                        speed.map_or(Ok(()), pause)
+                    }
+                    observed => shown.see(out, observed),
+                };
+            }
+            unlogged.is_ok() && (written.is_ok() || arguments.out.is_some())
         });
-        written?;
-        if let Ok(holds) = &made {
-            shown.end(out, &holds.result)?;
-        }
+        let ended = written.and_then(|()| match (&made, &unlogged) {
+            (Ok(holds), Ok(())) => shown.end(out, &holds.result),
+            _ => Ok(()),
+        });
         outcome = Some(made);
-        Ok(())
+        ended
     })?;
-    outcome.map_or(Ok(Verdict::Positive), |made| made.map(|holds| holds.verdict))
+    unlogged?;
+    let Some(holds) = outcome.transpose()? else {
+        return Ok(Verdict::Positive);
+    };
+    logged.map_or(Ok(()), ObservationLog::commit)?;
+    Ok(holds.verdict)
 }
 
 fn wait(started: Instant, until: f64) {

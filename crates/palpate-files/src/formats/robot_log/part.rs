@@ -60,7 +60,7 @@ impl Log {
             }
             for (place, field) in series.fields.iter().enumerate() {
                 let name = format!("{}.{}", series.topic, field.name);
-                let unit = units::unit(&series.kind, &field.name);
+                let unit = units::unit(&series.topic, &series.kind, &field.name);
                 part.columns.push(column(part.columns.len() + 1, name, unit, field.sample));
                 sources.push((index, Source::Field(place)));
             }

@@ -4,6 +4,7 @@ mod damage;
 mod grippers;
 mod reading;
 mod writing;
+mod written;
 
 use std::path::Path;
 
