@@ -80,6 +80,7 @@ mod _palpate {
         records::read::{read, read_all},
         records::record::Record,
         records::several::{SeveralCalibrations, calibrate},
+        contacts::numbers::_contact_numbers,
         shards::{_checked, _found, _run_slice, _sliced, merge},
         table::Table,
     };

@@ -20,6 +20,7 @@ __all__ = [
     "_BUILD",
     "_SI_ENDINGS",
     "_checked",
+    "_contact_numbers",
     "_found",
     "_run_slice",
     "_sliced",
@@ -2377,6 +2378,7 @@ def _checked(
     intervals: Intervals | None = None,
     fit_until_s: float | None = None,
 ) -> None: ...
+def _contact_numbers(model: _Described) -> list[float]: ...
 def _found(paths: Sequence[_Path]) -> list[Path]: ...
 def _sliced(files: Sequence[_SlicedFile], of: int) -> list[_Slice]: ...
 def _run_slice(

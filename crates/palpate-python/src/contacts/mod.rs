@@ -4,6 +4,7 @@ mod columns;
 pub(crate) mod contact_state;
 pub(crate) mod contact_states;
 mod described;
+pub(crate) mod numbers;
 mod protocol;
 pub(crate) mod simulate;
 pub(crate) mod simulate_many;

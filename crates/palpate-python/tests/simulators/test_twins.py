@@ -16,7 +16,7 @@ import numpy as np
 import palpate
 import pytest
 from palpate import _twin_force, _twin_step
-from palpate._twin_parameters import SHAPES, UNITS, contact_numbers
+from palpate._twin_parameters import contact_numbers
 from palpate._twin_step import NUMPY
 
 BALL = {"shape": "ball", "radius": "35 mm", "modulus": "28 kPa"}
@@ -105,23 +105,26 @@ def test_the_stiffness_is_the_slope_of_a_step_of_no_time() -> None:
     assert _twin_step.stiffness(NUMPY, parameters, off) == 0.0
 
 
-def test_numbers_are_read_in_every_unit_that_rust_reads() -> None:
-    number = {"radius": 1.1, "thickness": 0.7, "width": 1.3, "diameter": 1.7, "length": 2.3, "area": 3.1}
-    for shape, keys in SHAPES.items():
-        for length, factor in UNITS["length"].items():
-            # Bodies have sizes from 1 nm on.
-            times = 1.0 if factor > 1e-8 else 1e3
-            for contact in ({}, {"squeezed_from": "one side", "layers": 2.5}, {"layer_thickness": f"{0.13 * times!r} {length}"}):
-                sizes = {key: f"{number[key] * times!r} {'cm^2' if key == 'area' else length}" for key in keys}
-                # The numbers make the same contact, or this is an error.
-                contact_numbers({"specimen": {"shape": shape, "modulus": "28 kPa", **sizes}, "law": LATENCY, "contact": contact})
-    block = {"shape": "block", "area": "0.3 m^2", "length": "40 mm", "modulus": "0.7 MPa"}
-    for unit in UNITS["area"]:
-        contact_numbers({"specimen": {**block, "area": f"3.7{unit}"}, "law": LATENCY})
-    for unit in UNITS["pressure"]:
-        contact_numbers({"specimen": {**block, "modulus": f"+1.7e1 {unit}"}, "law": LATENCY})
-    for unit in UNITS["rate"]:
-        contact_numbers({"specimen": block, "law": {**LATENCY, "rate_coefficient": f"7.3 {unit}"}})
+def test_every_body_has_its_depth_and_section() -> None:
+    number = {"radius": "1.1 m", "thickness": "0.7 m", "width": "1.3 m", "diameter": "1.7 m", "length": "2.3 m", "area": "3.1 m^2"}
+    area = {"strip": 1.3 * 0.7, "cylinder": math.pi / 4 * 1.7**2, "block": 3.1}
+    for shape, keys in {
+        "ball": ["radius"],
+        "pad": ["radius", "thickness"],
+        "strip": ["width", "thickness", "length"],
+        "cylinder": ["diameter", "length"],
+        "block": ["area", "length"],
+    }.items():
+        specimen = {"shape": shape, "modulus": "28 kPa", **{key: number[key] for key in keys}}
+        found = contact_numbers({"specimen": specimen, "law": LATENCY, "contact": {"squeezed_from": "one side", "layers": 2.5}})
+        depth = {"ball": 1.1, "pad": 0.7}.get(shape, 2.3)
+        assert (found.depth_m, found.layers, found.share, found.bonded) == (depth, 2.5, 1.0, 0.0)
+        assert found.radius_m == (1.1 if shape in ("ball", "pad") else 0.0)
+        assert found.area_m2 == pytest.approx(area.get(shape, 0.0), rel=1e-15)
+        # Squeezed from two sides, one half of it.
+        both = contact_numbers({"specimen": specimen, "law": LATENCY, "contact": {"squeezed_from": "two sides", "layer_thickness": "0.1 m"}})
+        half = depth if shape in ("ball", "pad") else depth / 2
+        assert (both.depth_m, both.share) == (half, 0.5) and both.layers == pytest.approx(half / 0.1, rel=1e-15)
 
 
 def test_files_and_materials_are_contacts_too(root: Path) -> None:
@@ -133,15 +136,6 @@ def test_files_and_materials_are_contacts_too(root: Path) -> None:
     assert contact_numbers(root / "examples/protocols/paper-a.toml").bonded == 1.0
 
 
-def test_units_of_rust_are_those_of_twins(root: Path) -> None:
-    """A unit that Rust reads and a twin does not would be refused with a message that lists others."""
-    source = (root / "crates/palpate/src/units.rs").read_text(encoding="utf-8")
-    for name, units in UNITS.items():
-        table = source.partition(f"const {name.upper()}: ")[2].partition("];")[0]
-        listed = [part.partition('"')[0] for part in table.split('("')[1:]]
-        assert listed and sorted(listed) == sorted(units), name
-
-
 def test_what_has_no_twin_is_refused() -> None:
     tip = {"shape": "spherical tip", "radius": "5 um", "modulus": "1 kPa", "poisson_ratio": 0.5}
     hertz = {**BALL, "equilibrium": "hertz", "poisson_ratio": 0.5}
@@ -149,8 +143,8 @@ def test_what_has_no_twin_is_refused() -> None:
     linear = {"name": "standard-linear-solid", "overshoot": 1.0, "time": "2 s"}
     for specimen, law, message in (
         (tip, LATENCY, "expected a body that a twin has, ball, pad"),
-        (hertz, LATENCY, "specimen.poisson_ratio: expected the force of uniform strain"),
-        (table, LATENCY, "specimen.equilibrium_forces: expected the force of uniform strain"),
+        (hertz, LATENCY, "specimen: expected the force of uniform strain"),
+        (table, LATENCY, "specimen: expected the force of uniform strain"),
         (BALL, linear, "latency law alone"),
         (BALL, {**LATENCY, "unloading_factor": 2.0}, "one rate coefficient"),
     ):
