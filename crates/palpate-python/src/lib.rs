@@ -57,6 +57,7 @@ mod _palpate {
         command::command,
         contacts::contact_state::ContactState,
         contacts::contact_states::ContactStates,
+        contacts::numbers::_contact_numbers,
         contacts::simulate::{Trajectory, energy, simulate},
         contacts::simulate_many::simulate_many,
         contacts::sweep::sweep,
@@ -80,7 +81,6 @@ mod _palpate {
         records::read::{read, read_all},
         records::record::Record,
         records::several::{SeveralCalibrations, calibrate},
-        contacts::numbers::_contact_numbers,
         shards::{_checked, _found, _run_slice, _sliced, merge},
         table::Table,
     };

@@ -227,7 +227,12 @@ impl LatencyModels {
     }
 
     /// Forces (N) and stiffnesses (N/m) of the states of contacts from `from` on.
-    pub(super) fn force_and_stiffness(&self, from: usize, state: (&[f64], &[f64]), (forces, slopes): (&mut [f64], &mut [f64])) {
+    pub(super) fn force_and_stiffness(
+        &self,
+        from: usize,
+        state: (&[f64], &[f64]),
+        (forces, slopes): (&mut [f64], &mut [f64]),
+    ) {
         accelerated(
             #[inline(always)]
             || {
