@@ -98,6 +98,7 @@ static void compute(const mjModel* m, mjData* d, int instance, int capability) {
   if (c->joint >= 0) {
     to = c->closing * (d->qpos[m->jnt_qposadr[c->joint]] - c->touch);
     at.displacement = to / c->sides;
+    at.closing = c->closing * d->qvel[m->jnt_dofadr[c->joint]];
   } else {
     place_geoms(m, d, c, &at);
     to = c->sides * at.displacement;
@@ -108,6 +109,8 @@ static void compute(const mjModel* m, mjData* d, int instance, int capability) {
     to = c->sides * memory[MEMORY_JAW];
   }
   force = squeeze(m, c, instance, dt, to, memory);
+  /* Damping alone cannot pull. */
+  if (c->normal_damping > 0 && force > 0 && isfinite(at.closing)) force = fmax(0, force + c->normal_damping * at.closing);
   if (c->joint >= 0) {
     d->qfrc_passive[m->jnt_dofadr[c->joint]] -= c->closing * force;
   } else if (at.displacement > -c->depth) {
@@ -155,7 +158,7 @@ static void destroy(mjData* d, int instance) {
 
 void register_contact(void) {
   static const char* keys[] = {"material", "description",          "geom1",              "geom2",   "joint",    "closing", "touch",
-                               "friction", "torsional_friction", "tangential_stiffness", "tangential_damping", "substeps"};
+                               "friction", "torsional_friction", "normal_damping", "tangential_stiffness", "tangential_damping", "substeps"};
   mjpPlugin plugin;
   mjp_defaultPlugin(&plugin);
   plugin.name = CONTACT_PLUGIN;

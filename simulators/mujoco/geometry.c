@@ -25,6 +25,7 @@ static void relative_motion(const mjModel* m, const mjData* d, const contact* c,
   mju_mulMatVec(spin, rotation, d->qvel, 3, nv);
   along = mju_dot3(at->velocity, at->normal);
   mju_addToScl3(at->velocity, at->normal, -along);
+  at->closing = -along;
   at->spin = mju_dot3(spin, at->normal);
 }
 
@@ -32,7 +33,7 @@ void place_geoms(const mjModel* m, mjData* d, contact* c, placement* at) {
   mjtNum ends[6], distance;
   distance = mj_geomDistance(m, d, c->geom1, c->geom2, c->depth, ends);
   at->displacement = -distance;
-  at->spin = 0;
+  at->spin = at->closing = 0;
   mju_copy3(at->point, ends);
   mju_zero3(at->velocity);
   mju_sub3(at->normal, ends + 3, ends);

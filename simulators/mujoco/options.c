@@ -142,6 +142,7 @@ contact* contact_of(const mjModel* m, int instance) {
     mju_error("%s \"%s\": substeps: expected a whole number of 1 to 1000, found %g", CONTACT_PLUGIN, name_of(m, instance), substeps);
   }
   c->substeps = (int)substeps;
+  c->normal_damping = number_of(m, instance, "normal_damping", 0, 0);
   if (c->joint >= 0) {
     read_joint(m, instance, c);
   } else {

@@ -67,6 +67,7 @@ typedef struct {
   double touch;      /* position of the joint at first touch, m */
   double friction;   /* Coulomb's coefficient */
   double torsion;    /* torsional friction: largest moment about the normal over the normal force, m */
+  double normal_damping;       /* N s/m, beside that of the material; 0 unless requested */
   double tangential_stiffness; /* N/m */
   double tangential_damping;   /* N s/m */
   int substeps;
@@ -81,6 +82,7 @@ typedef struct {
   mjtNum point[3];     /* on the jaw */
   mjtNum normal[3];    /* from the jaw into the body */
   mjtNum velocity[3];  /* of the body relative to the jaw, across the normal, m/s */
+  mjtNum closing;      /* speed at which they come together along the normal, m/s */
   mjtNum spin;         /* of the body relative to the jaw about the normal, rad/s */
 } placement;
 

@@ -241,6 +241,28 @@ def test_two_fingertips_hold_a_box() -> None:
     assert d.sensor("left").data[2] > 0
 
 
+def test_a_ball_that_falls_on_a_plane_comes_to_rest_on_it() -> None:
+    m = mujoco.MjModel.from_xml_string(f"""<mujoco><option timestep="0.001"/>
+      <default><geom contype="0" conaffinity="0"/></default>
+      <extension><plugin plugin="palpate.contact">{instance("floor", DESCRIPTION, geom1="floor", geom2="ball", normal_damping=2)}</plugin>
+        <plugin plugin="palpate.sensor"/></extension>
+      <worldbody><geom name="floor" type="plane" size="1 1 1"/>
+        <body pos="0 0 0.06"><freejoint/><geom name="ball" size="0.035" mass="0.1"/></body></worldbody>
+      <sensor><plugin name="floor" plugin="palpate.sensor"><config key="contact" value="floor"/></plugin></sensor></mujoco>""")
+    d = mujoco.MjData(m)
+    forces = []
+    for _ in range(20_000):
+        mujoco.mj_step(m, d)
+        forces.append(d.sensor("floor").data[1])
+    assert forces[0] == 0 and max(forces) > 0.981
+    assert abs(forces[-1] - 0.981) < 1e-4 and abs(d.qvel[2]) < 1e-4
+    # The impact squeezed it beyond E (u/r) pi (2 r u - u^2) = 0.981 N, which is at 2.403 mm, and it recovers from there.
+    deep = d.sensor("floor").data[4]
+    assert 0.002403 < deep < 0.0035 and d.sensor("floor").data[0] < 0
+    mujoco.mj_step(m, d, nstep=20_000)
+    assert 0.002403 < d.sensor("floor").data[4] < deep - 1e-5
+
+
 def test_what_is_held_off_its_centre_does_not_turn() -> None:
     box = '<geom name="body" type="box" size="0.02 0.03 0.04" pos="0 0.004 0" mass="0.1"/>'
     m = gripper(body=box, description=TIP)
