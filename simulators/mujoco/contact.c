@@ -157,8 +157,9 @@ static void destroy(mjData* d, int instance) {
 }
 
 void register_contact(void) {
-  static const char* keys[] = {"material", "description",          "geom1",              "geom2",   "joint",    "closing", "touch",
-                               "friction", "torsional_friction", "normal_damping", "tangential_stiffness", "tangential_damping", "substeps"};
+  static const char* keys[] = {"material",           "description",    "geom1",    "geom2",    "joint",
+                               "closing",            "touch",          "friction", "substeps", "torsional_friction",
+                               "normal_damping",     "tangential_stiffness",       "tangential_damping"};
   mjpPlugin plugin;
   mjp_defaultPlugin(&plugin);
   plugin.name = CONTACT_PLUGIN;

@@ -398,3 +398,24 @@ def test_wrong_configurations_are_refused_with_a_reason(keys: dict[str, Any], ex
       <worldbody><body><joint name="jaw" type="slide"/><geom name="jaw" size="0.01" mass="1"/></body></worldbody></mujoco>"""
     with pytest.raises((ValueError, mujoco.FatalError), match=re.escape(expected)):
         mujoco.MjData(mujoco.MjModel.from_xml_string(xml))
+
+
+def test_a_sensor_needs_an_instance_of_a_contact() -> None:
+    xml = """<mujoco><extension><plugin plugin="palpate.sensor"/></extension>
+      <worldbody><body><joint type="slide"/><geom size="0.01" mass="1"/></body></worldbody>
+      <sensor><plugin plugin="palpate.sensor"><config key="contact" value="left"/></plugin></sensor></mujoco>"""
+    with pytest.raises((ValueError, mujoco.FatalError), match='expected the name of an instance of palpate.contact, found "left"'):
+        mujoco.MjData(mujoco.MjModel.from_xml_string(xml))
+
+
+def test_transitions_by_differences_leave_the_memory_as_it_is() -> None:
+    m = gripper()
+    d = held(m)
+    before = whole(m, d)
+    transition = np.zeros((2 * m.nv, 2 * m.nv))
+    mujoco.mjd_transitionFD(m, d, 1e-6, True, transition, None, None, None)
+    assert np.array_equal(whole(m, d), before)
+    # One finger inwards: the ball is pushed away by the tangent stiffness of that contact.
+    ball = slice(m.nv + 2, m.nv + 3)
+    slopes = transition[ball, 0] / m.opt.timestep
+    assert slopes[0] > 0 and np.isfinite(transition).all()
