@@ -236,9 +236,9 @@ fn values_of_each_contact_are_models_of_each() {
         (ContactParameter::RateCoefficient, between(1.0, 1e4)),
     ];
     let base = &models(&[5.0], 1)[0];
-    let together = columns.iter().try_fold(ContactModels::alike(base.clone()), |models, (parameter, values)| {
-        models.with(*parameter, values)
-    });
+    let together = columns
+        .iter()
+        .try_fold(ContactModels::alike(base.clone()), |models, (parameter, values)| models.with(*parameter, values));
     let mut together = ContactStates::new(together.unwrap(), 37);
     let own = |index: usize| {
         let value = |parameter| columns.iter().find(|(found, _)| *found == parameter).unwrap().1[index];
