@@ -278,6 +278,21 @@ impl Specimen {
         self.shape.limit(self.sides).or_end(end, name)
     }
 
+    /// The largest contact displacement that the body takes, m: the last number below the depth, or the end of a table or of a law. A prism
+    /// bonded to its grips takes any.
+    ///
+    /// ```
+    /// use palpate::contact::{Shape, Sides, Specimen};
+    /// let ball = Specimen::new(Shape::Ball { radius: 0.035 }, 28e3, Sides::Two)?;
+    /// assert!(ball.deepest() < 0.035 && ball.check_contact_displacement(ball.deepest(), false).is_ok());
+    /// # Ok::<(), palpate::contact::SpecimenError>(())
+    /// ```
+    #[must_use]
+    pub fn deepest(&self) -> f64 {
+        let limit = self.limit();
+        if limit.included { limit.at } else { limit.at.next_down() }
+    }
+
     /// Checks that a contact displacement (m) is one the body can take.
     ///
     /// # Errors

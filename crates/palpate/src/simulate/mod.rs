@@ -15,7 +15,8 @@
 //! | `energy.rs`, `cycles.rs` | work of the jaw, what is stored and what is lost; the same step by step and cycle by cycle |
 //! | `summary.rs` | what a whole simulation comes to, for sweeps |
 //! | `wave/` | all layers over time (the strain wave) |
-//! | `step.rs` | one step at a time, for controllers; with `model.rs` all that there is without std |
+//! | `step.rs` | one step at a time, for controllers; with `model.rs` and `stiffness.rs` all that there is without std |
+//! | `stiffness.rs` | stiffness and excess strain of a contact at an instant |
 //! | `states/` | many contacts, one step at a time, in place |
 //! | `error.rs` | why one could not run |
 

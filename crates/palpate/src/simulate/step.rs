@@ -193,7 +193,20 @@ impl ContactState {
         if format != FORMAT {
             return Err(StepError::Format);
         }
-        let (jaw, behind) = (f64::from_le_bytes(jaw), f64::from_le_bytes(behind));
+        Self::from_displacements(f64::from_le_bytes(jaw), f64::from_le_bytes(behind))
+    }
+
+    /// The two displacements that are the state, m: one contact's share of that of the jaw, and that of the node behind the contact layer.
+    #[must_use]
+    pub fn displacements(self) -> (f64, f64) {
+        (self.jaw, self.behind)
+    }
+
+    /// The state from its [`displacements`](Self::displacements), to the last bit.
+    ///
+    /// # Errors
+    /// [`StepError::Number`] for one that is not finite.
+    pub fn from_displacements(jaw: f64, behind: f64) -> Result<Self, StepError> {
         for found in [jaw, behind] {
             check_step(0.0, "displacement must be a finite number", found)?;
         }
