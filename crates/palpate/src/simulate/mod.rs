@@ -17,8 +17,6 @@
 //! | `wave/` | all layers over time (the strain wave) |
 //! | `step.rs` | one step at a time, for controllers; with `model.rs` and `stiffness.rs` all that there is without std |
 //! | `stiffness.rs` | stiffness and excess strain of a contact at an instant |
-//! | `states/` | many contacts, one step at a time |
-//! | `step.rs` | one step at a time, for controllers; with `model.rs` all that there is without std |
 //! | `states/` | many contacts, one step at a time, in place |
 //! | `error.rs` | why one could not run |
 

@@ -2,7 +2,7 @@
 
 use super::parameters::{ContactParameter, Parameters};
 use crate::contact::{Equilibrium, Shape, Specimen};
-use crate::latency::lanes::{Power, by_power};
+use crate::latency::lanes::{Power, by_power, each};
 use crate::simulate::{ContactModel, Separation};
 use crate::vector::LANES;
 use crate::vector::elementary::{exp, ln, ln_1p};
@@ -60,38 +60,38 @@ pub(super) fn is_plain(specimen: &Specimen) -> bool {
 impl Bodies {
     /// Of up to [`LANES`] bodies; the last of them also in place of those that are not there.
     pub(super) fn new(bodies: &[(&Specimen, Separation)]) -> Self {
-        let each = |of: &dyn Fn(&Specimen, bool) -> f64| -> Lanes {
+        let of_each = |of: &dyn Fn(&Specimen, bool) -> f64| -> Lanes {
             std::array::from_fn(|lane| {
                 let (specimen, separation) = bodies[lane.min(bodies.len() - 1)];
                 of(specimen, separation == Separation::Bonded)
             })
         };
         Self {
-            share: each(&|specimen, _| specimen.contact_displacement(1.0)),
-            per_depth: each(&|specimen, _| 1.0 / specimen.depth()),
-            depth: each(&|specimen, _| specimen.depth()),
-            modulus: each(&|specimen, _| specimen.modulus()),
-            diameter: each(&|specimen, _| match specimen.shape() {
+            share: of_each(&|specimen, _| specimen.contact_displacement(1.0)),
+            per_depth: of_each(&|specimen, _| 1.0 / specimen.depth()),
+            depth: of_each(&|specimen, _| specimen.depth()),
+            modulus: of_each(&|specimen, _| specimen.modulus()),
+            diameter: of_each(&|specimen, _| match specimen.shape() {
                 Shape::Ball { radius } | Shape::Pad { radius, .. } => 2.0 * radius,
                 _ => 0.0,
             }),
             is_ball: std::array::from_fn(|lane| {
                 matches!(bodies[lane.min(bodies.len() - 1)].0.shape(), Shape::Ball { .. })
             }),
-            section: each(&|specimen, _| match specimen.shape() {
+            section: of_each(&|specimen, _| match specimen.shape() {
                 Shape::Prism { area, .. } => *area,
                 _ => 0.0,
             }),
-            limit: each(&|specimen, bonded| match (is_plain(specimen), bonded && specimen.has_constant_section()) {
+            limit: of_each(&|specimen, bonded| match (is_plain(specimen), bonded && specimen.has_constant_section()) {
                 // A body of another form is stepped alone.
                 (false, _) => f64::NEG_INFINITY,
                 (true, true) => f64::INFINITY,
                 (true, false) => specimen.limit().at,
             }),
-            lowest: each(&|specimen, bonded| {
+            lowest: of_each(&|specimen, bonded| {
                 if bonded && !specimen.has_constant_section() { 0.0 } else { f64::NEG_INFINITY }
             }),
-            hold: each(&|_, bonded| if bonded { f64::INFINITY } else { 0.0 }),
+            hold: of_each(&|_, bonded| if bonded { f64::INFINITY } else { 0.0 }),
         }
     }
 
@@ -117,25 +117,45 @@ impl Bodies {
     #[inline(always)]
     pub(super) fn area(&self, lane: usize, u: f64) -> (f64, f64) {
         let inside = if u > 0.0 { u } else { 0.0 };
-        let round = std::f64::consts::PI * inside * (self.diameter[lane] - inside);
-        let growth = std::f64::consts::PI * (self.diameter[lane] - 2.0 * inside);
-        match self.diameter[lane] > 0.0 {
-            true => (round, growth),
-            false => (self.section[lane], 0.0),
-        }
+        let (diameter, section) = (self.diameter[lane], self.section[lane]);
+        let round = std::f64::consts::PI * inside * (diameter - inside);
+        let growth = std::f64::consts::PI * (diameter - 2.0 * inside);
+        let is_round = diameter > 0.0;
+        (choose(is_round, round, section), choose(is_round, growth, 0.0))
     }
 
-    /// Whether a contact displacement is one that vector code takes.
+    /// `wrong`, or 1 where a contact displacement is none that vector code takes.
     #[inline(always)]
-    pub(super) fn fits(&self, lane: usize, u: f64) -> bool {
-        (u < self.limit[lane]) & (u >= self.lowest[lane]) & self.is_near(lane, u)
+    pub(super) fn misfit(&self, lane: usize, u: f64, wrong: f64) -> f64 {
+        let wrong = choose(u < self.limit[lane], wrong, 1.0);
+        let wrong = choose(u >= self.lowest[lane], wrong, 1.0);
+        self.farther(lane, u, wrong)
     }
 
-    /// Whether a position is within [`FARTHEST`]; not where it is NaN.
+    /// `wrong`, or 1 where a position is beyond [`FARTHEST`], or NaN.
     #[inline(always)]
-    pub(super) fn is_near(&self, lane: usize, position: f64) -> bool {
-        position.abs() < FARTHEST * self.depth[lane]
+    pub(super) fn farther(&self, lane: usize, position: f64, wrong: f64) -> f64 {
+        choose(position.abs() < FARTHEST * self.depth[lane], wrong, 1.0)
     }
+}
+
+/// One of two numbers, without a branch.
+#[inline(always)]
+pub(super) fn choose(first: bool, yes: f64, no: f64) -> f64 {
+    if first { yes } else { no }
+}
+
+/// `wrong`, or 1 where a time step is none.
+#[inline(always)]
+pub(super) fn misdated(dt: f64, wrong: f64) -> f64 {
+    choose(dt < f64::INFINITY, choose(dt >= 0.0, wrong, 1.0), 1.0)
+}
+
+/// Whether none of the lanes is wrong.
+#[inline(always)]
+pub(super) fn all_right(wrong: &Lanes) -> bool {
+    let [a, b, c, d, e, f, g, h] = *wrong;
+    ((a + b) + (c + d)) + ((e + f) + (g + h)) == 0.0
 }
 
 /// Positions beyond so many depths of a body are refused: their forces might not be finite.
@@ -159,26 +179,26 @@ pub(super) struct Moved {
     pub(super) jaw: Lanes,
     pub(super) behind: Lanes,
     pub(super) force: Lanes,
-    /// Whether the contact was closed all along, at values that can be.
-    pub(super) stays: [bool; LANES],
+    /// 0 where the contact was closed all along, at values that can be; 1 elsewhere.
+    pub(super) wrong: Lanes,
 }
 
 impl Block {
     /// Of up to [`LANES`] models; the last of them also in place of those that are not there.
     pub(super) fn new(models: &[ContactModel]) -> Self {
-        let each = |of: &dyn Fn(&ContactModel) -> f64| -> Lanes {
+        let of_each = |of: &dyn Fn(&ContactModel) -> f64| -> Lanes {
             std::array::from_fn(|lane| of(&models[lane.min(models.len() - 1)]))
         };
-        let exponent = each(&|model| model.law.exponent());
+        let exponent = of_each(&|model| model.law.exponent());
         let bodies: Vec<_> = models.iter().map(|model| (&model.specimen, model.separation)).collect();
         Self {
             bodies: Bodies::new(&bodies),
             power: Power::of(&exponent),
             exponent,
-            rate_coefficient: each(&|model| model.law.rate_coefficient()),
-            thickness: each(&|model| model.layers.thickness(model.specimen.depth())),
-            per_thickness: each(&|model| 1.0 / model.layers.thickness(model.specimen.depth())),
-            layers: each(&|model| model.layers.count()),
+            rate_coefficient: of_each(&|model| model.law.rate_coefficient()),
+            thickness: of_each(&|model| model.layers.thickness(model.specimen.depth())),
+            per_thickness: of_each(&|model| 1.0 / model.layers.thickness(model.specimen.depth())),
+            layers: of_each(&|model| model.layers.count()),
         }
     }
 
@@ -214,32 +234,18 @@ impl Block {
 
     #[inline(always)]
     fn moved_by(&self, power: Power, (jaw, behind): (&Lanes, &Lanes), dt: &Lanes, to: &Lanes, substeps: u32) -> Moved {
-        let mut target = [0.0; LANES];
-        for lane in 0..LANES {
-            target[lane] = to[lane] * self.bodies.share[lane];
-        }
+        let target = each(|lane| to[lane] * self.bodies.share[lane]);
         if substeps == 1 {
             return self.pressed(power, (jaw, behind), dt, &target);
         }
-        let mut part_dt = [0.0; LANES];
-        for lane in 0..LANES {
-            part_dt[lane] = dt[lane] / f64::from(substeps);
-        }
-        let mut first = [0.0; LANES];
-        for lane in 0..LANES {
-            first[lane] = between(jaw[lane], target[lane], (1, substeps));
-        }
+        let part_dt = each(|lane| dt[lane] / f64::from(substeps));
+        let first = each(|lane| between(jaw[lane], target[lane], (1, substeps)));
         let mut moved = self.pressed(power, (jaw, behind), &part_dt, &first);
         for step in 2..=substeps {
-            let mut next = [0.0; LANES];
-            for lane in 0..LANES {
-                next[lane] = between(jaw[lane], target[lane], (step, substeps));
-            }
+            let next = each(|lane| between(jaw[lane], target[lane], (step, substeps)));
             let before = moved;
             moved = self.pressed(power, (&before.jaw, &before.behind), &part_dt, &next);
-            for lane in 0..LANES {
-                moved.stays[lane] &= before.stays[lane];
-            }
+            moved.wrong = each(|lane| moved.wrong[lane] + before.wrong[lane]);
         }
         moved
     }
@@ -248,33 +254,29 @@ impl Block {
     #[inline(always)]
     fn pressed(&self, power: Power, (jaw, behind): (&Lanes, &Lanes), dt: &Lanes, to: &Lanes) -> Moved {
         let bodies = &self.bodies;
-        let mut moved = Moved {
-            jaw: [0.0; LANES],
-            behind: [0.0; LANES],
-            force: [0.0; LANES],
-            stays: [false; LANES],
-        };
-        for lane in 0..LANES {
-            let (per_depth, per_thickness) = (bodies.per_depth[lane], self.per_thickness[lane]);
-            let u = to[lane];
-            let kick = 0.5 * ((u - jaw[lane]) * (self.layers[lane] - 1.0) * per_depth);
-            let excess = (jaw[lane] - behind[lane]) * per_thickness - jaw[lane] * per_depth + kick;
-            let excess = self.relaxed(power, lane, excess, dt[lane]) + kick;
-            let left = u - self.thickness[lane] * (excess + u * per_depth);
-            let strain = (u - left) / self.thickness[lane];
-            let force = bodies.modulus[lane] * strain * bodies.area(lane, u).0;
-            (moved.jaw[lane], moved.behind[lane]) = (u, left);
-            moved.force[lane] = if strain <= 0.0 && bodies.hold[lane] == 0.0 { 0.0 } else { force };
-            moved.stays[lane] = (jaw[lane] + bodies.hold[lane] >= behind[lane])
-                & (u + bodies.hold[lane] >= left)
-                & bodies.fits(lane, u)
-                & bodies.is_near(lane, jaw[lane])
-                & bodies.is_near(lane, behind[lane])
-                & (force.abs() < f64::INFINITY)
-                & (dt[lane] >= 0.0)
-                & (dt[lane] < f64::INFINITY);
+        // A loop for each line becomes vectors; one loop with conditions does not.
+        let kick = each(|lane| 0.5 * ((to[lane] - jaw[lane]) * (self.layers[lane] - 1.0) * bodies.per_depth[lane]));
+        let excess = each(|lane| {
+            (jaw[lane] - behind[lane]) * self.per_thickness[lane] - jaw[lane] * bodies.per_depth[lane] + kick[lane]
+        });
+        let excess = each(|lane| self.relaxed(power, lane, excess[lane], dt[lane]) + kick[lane]);
+        let left = each(|lane| to[lane] - self.thickness[lane] * (excess[lane] + to[lane] * bodies.per_depth[lane]));
+        let strain = each(|lane| (to[lane] - left[lane]) / self.thickness[lane]);
+        let force = each(|lane| bodies.modulus[lane] * strain[lane] * bodies.area(lane, to[lane]).0);
+        let wrong = each(|lane| {
+            let opened = choose(jaw[lane] + bodies.hold[lane] >= behind[lane], 0.0, 1.0);
+            let opened = choose(to[lane] + bodies.hold[lane] >= left[lane], opened, 1.0);
+            let is_near = bodies.farther(lane, behind[lane], bodies.farther(lane, jaw[lane], opened));
+            choose(force[lane].abs() < f64::INFINITY, is_near, 1.0)
+        });
+        let wrong = each(|lane| bodies.misfit(lane, to[lane], wrong[lane]));
+        let least = each(|lane| choose(bodies.hold[lane] > 0.0, f64::NEG_INFINITY, 0.0));
+        Moved {
+            jaw: *to,
+            behind: left,
+            force: each(|lane| choose(strain[lane] > least[lane], force[lane], 0.0)),
+            wrong: each(|lane| misdated(dt[lane], wrong[lane])),
         }
-        moved
     }
 
     /// Forces (N) and stiffnesses dF/dd (N/m) of states, as `ContactState` has them.

@@ -4,11 +4,12 @@
 use std::borrow::Cow;
 
 use super::alone::{check_move, finite, forced_alone, is_extreme, moved_alone};
-use super::block::{Block, Lanes, Moved, between, lanes, store};
+use super::block::{Block, Lanes, Moved, all_right, between, lanes, misdated, store};
 use super::parameters::{ContactParameter, Parameters, Value, ValueProblem, of_model, own_model};
 use super::part::{Column, ContactsStep, Imposed, OneStepError, Part, Refusal};
+use crate::latency::lanes::each;
 use crate::simulate::{ContactModel, ContactState};
-use crate::vector::{LANES, accelerated};
+use crate::vector::{LANES, accelerated_by_four};
 
 /// Contacts of the latency law.
 #[derive(Debug, Clone, PartialEq)]
@@ -87,7 +88,7 @@ impl LatencyModels {
 
     /// Why the first contact cannot take a step of its displacement, if one cannot.
     pub(super) fn check(&self, part: &Part<'_>, step: &ContactsStep<'_>) -> Result<(), OneStepError> {
-        accelerated(
+        accelerated_by_four(
             #[inline(always)]
             || self.checked(part, step),
         )
@@ -101,19 +102,17 @@ impl LatencyModels {
             let from = part.from + at;
             let (block, dt, to) = (self.block(from), dt.lanes(from), to.lanes(from));
             let (jaw, behind) = (lanes(jaw, at), lanes(behind, at));
-            let mut sound = [false; LANES];
-            for lane in 0..LANES {
-                let bodies = &block.bodies;
-                let u = to[lane] * bodies.share[lane];
-                let first = between(jaw[lane], u, (1, step.parts()));
-                sound[lane] = bodies.fits(lane, u)
-                    & bodies.fits(lane, first)
-                    & bodies.is_near(lane, jaw[lane])
-                    & bodies.is_near(lane, behind[lane])
-                    & (dt[lane] >= 0.0)
-                    & (dt[lane] < f64::INFINITY);
+            let bodies = &block.bodies;
+            let u = each(|lane| to[lane] * bodies.share[lane]);
+            let first = each(|lane| between(jaw[lane], u[lane], (1, step.parts())));
+            let wrong = each(|lane| {
+                let wrong = bodies.farther(lane, behind[lane], bodies.farther(lane, jaw[lane], 0.0));
+                misdated(dt[lane], bodies.misfit(lane, u[lane], bodies.misfit(lane, first[lane], wrong)))
+            });
+            if all_right(&wrong) {
+                continue;
             }
-            for lane in (0..LANES.min(part.results.len() - at)).filter(|lane| !sound[*lane]) {
+            for lane in (0..LANES.min(part.results.len() - at)).filter(|lane| wrong[*lane] > 0.0) {
                 let state = ContactState {
                     jaw: jaw[lane],
                     behind: behind[lane],
@@ -129,7 +128,7 @@ impl LatencyModels {
     /// Steps the contacts of a part; returns how many failed.
     pub(super) fn step(&self, part: Part<'_>, step: &ContactsStep<'_>) -> Result<usize, OneStepError> {
         match step.imposed {
-            Imposed::Displacement => accelerated(
+            Imposed::Displacement => accelerated_by_four(
                 #[inline(always)]
                 || self.step_displacement(part, step),
             ),
@@ -156,7 +155,7 @@ impl LatencyModels {
                 }
             };
             let mut moved = block.moved((&old_jaw, &old_behind), &dt, &to, step.parts());
-            if moved.stays.contains(&false) {
+            if !all_right(&moved.wrong) {
                 let failed = &mut part.failed[at..count.min(at + LANES)];
                 failures += self.alone(from, (&old_jaw, &old_behind), step, &mut moved, failed)?;
             }
@@ -177,8 +176,8 @@ impl LatencyModels {
         moved: &mut Moved,
         failed: &mut [bool],
     ) -> Result<usize, OneStepError> {
-        let (stays, mut failures) = (moved.stays, 0);
-        for (lane, failed) in failed.iter_mut().enumerate().filter(|(lane, _)| !stays[*lane]) {
+        let (wrong, mut failures) = (moved.wrong, 0);
+        for (lane, failed) in failed.iter_mut().enumerate().filter(|(lane, _)| wrong[*lane] > 0.0) {
             let (index, before) = (
                 from + lane,
                 ContactState {
@@ -233,7 +232,7 @@ impl LatencyModels {
         state: (&[f64], &[f64]),
         (forces, slopes): (&mut [f64], &mut [f64]),
     ) {
-        accelerated(
+        accelerated_by_four(
             #[inline(always)]
             || {
                 for at in (0..forces.len()).step_by(LANES) {

@@ -5,14 +5,14 @@ use std::borrow::Cow;
 use smallvec::SmallVec;
 
 use super::alone::{check_result, check_state, finite, is_extreme};
-use super::block::{Lanes, between, lanes, store};
+use super::block::{Lanes, all_right, between, lanes, misdated, store};
 use super::linear_block::{Fadings, LinearBlock, Moving};
 use super::parameters::{ContactParameter, Parameters, Value, ValueProblem, of_specimen, own_contact};
 use super::part::{Column, ContactsStep, Imposed, OneStepError, Part, Refusal};
 use crate::simulate::linear::{LinearStepper, Memories};
 use crate::simulate::step::check_step;
 use crate::simulate::{LinearContact, StepError};
-use crate::vector::{LANES, accelerated};
+use crate::vector::{LANES, accelerated_by_four};
 
 /// Contacts of linear laws.
 #[derive(Debug, Clone, PartialEq)]
@@ -103,7 +103,7 @@ impl LinearModels {
     pub(super) fn step(&self, mut part: Part<'_>, step: &ContactsStep<'_>) -> Result<usize, OneStepError> {
         part.failed.fill(false);
         match step.imposed {
-            Imposed::Displacement => accelerated(
+            Imposed::Displacement => accelerated_by_four(
                 #[inline(always)]
                 || self.step_displacement(&mut part, step),
             ),
@@ -139,7 +139,7 @@ impl LinearModels {
                 is_of_force: &shared.is_of_force,
                 jaw,
                 force: [0.0; LANES],
-                stays: dt.map(|dt| (0.0..f64::INFINITY).contains(&dt)),
+                wrong: dt.map(|dt| misdated(dt, 0.0)),
             };
             for part in 1..=step.parts() {
                 let mut next = [0.0; LANES];
@@ -148,9 +148,9 @@ impl LinearModels {
                 }
                 moving.press(&mut memory, &fadings, &next);
             }
-            let Moving { jaw, force, stays, .. } = moving;
-            if stays.contains(&false) {
-                failures += self.some_alone(part, at, step, (&jaw, &memory, &force, &stays))?;
+            let Moving { jaw, force, wrong, .. } = moving;
+            if !all_right(&wrong) {
+                failures += self.some_alone(part, at, step, (&jaw, &memory, &force, &wrong))?;
                 continue;
             }
             store(part.rows[0], at, &jaw);
@@ -167,11 +167,11 @@ impl LinearModels {
         part: &mut Part<'_>,
         at: usize,
         step: &ContactsStep<'_>,
-        (jaw, memory, force, stays): (&Lanes, &[Lanes], &Lanes, &[bool; LANES]),
+        (jaw, memory, force, wrong): (&Lanes, &[Lanes], &Lanes, &Lanes),
     ) -> Result<usize, OneStepError> {
         let mut failures = 0;
         for lane in 0..LANES.min(part.results.len() - at) {
-            if !stays[lane] {
+            if wrong[lane] > 0.0 {
                 failures += self.alone(part, at + lane, step)?;
                 continue;
             }

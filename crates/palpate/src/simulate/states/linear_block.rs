@@ -2,7 +2,8 @@
 
 use smallvec::SmallVec;
 
-use super::block::{Bodies, Lanes};
+use super::block::{Bodies, Lanes, choose};
+use crate::latency::lanes::each;
 use crate::simulate::Memory;
 use crate::simulate::linear::LinearStepper;
 use crate::vector::LANES;
@@ -59,7 +60,8 @@ pub(super) struct Moving<'a> {
     pub(super) is_of_force: &'a [bool; LANES],
     pub(super) jaw: Lanes,
     pub(super) force: Lanes,
-    pub(super) stays: [bool; LANES],
+    /// 0 where the contact was closed all along, at values that can be; more elsewhere.
+    pub(super) wrong: Lanes,
 }
 
 impl Moving<'_> {
@@ -91,18 +93,20 @@ impl Moving<'_> {
                 sums[lane] += x[lane];
             }
         }
-        for lane in 0..LANES {
-            let hold = self.bodies.hold[lane];
-            let force = scales[lane] * sums[lane];
-            self.force[lane] = if sums[lane] <= 0.0 && hold == 0.0 { 0.0 } else { force };
-            let is_on = !self.is_of_force[lane] | ((to[lane] >= 0.0) & (self.jaw[lane] >= 0.0));
-            self.stays[lane] &= (before[lane] + hold >= 0.0)
-                & (sums[lane] + hold >= 0.0)
-                & (is_on | (self.bodies.section[lane] > 0.0))
-                & self.bodies.fits(lane, to[lane])
-                & self.bodies.is_near(lane, self.jaw[lane])
-                & (force.abs() < f64::INFINITY);
-            self.jaw[lane] = to[lane];
-        }
+        let hold = &self.bodies.hold;
+        let force = each(|lane| scales[lane] * sums[lane]);
+        let least = each(|lane| choose(hold[lane] > 0.0, f64::NEG_INFINITY, 0.0));
+        self.force = each(|lane| choose(sums[lane] > least[lane], force[lane], 0.0));
+        let wrong = each(|lane| {
+            let wrong = choose(before[lane] + hold[lane] >= 0.0, self.wrong[lane], 1.0);
+            let wrong = choose(sums[lane] + hold[lane] >= 0.0, wrong, 1.0);
+            // Beyond first touch a body whose contact grows has no force to remember.
+            let lowest = if to[lane] < self.jaw[lane] { to[lane] } else { self.jaw[lane] };
+            let can_be = !self.is_of_force[lane] | (self.bodies.section[lane] > 0.0) | (lowest >= 0.0);
+            choose(force[lane].abs() < f64::INFINITY, choose(can_be, wrong, 1.0), 1.0)
+        });
+        let wrong = each(|lane| self.bodies.farther(lane, self.jaw[lane], wrong[lane]));
+        self.wrong = each(|lane| self.bodies.misfit(lane, to[lane], wrong[lane]));
+        self.jaw = *to;
     }
 }
