@@ -19,6 +19,7 @@ __all__ = [
     "__version__",
     "_BUILD",
     "_SI_ENDINGS",
+    "_card",
     "_checked",
     "_found",
     "_run_slice",
@@ -1968,6 +1969,21 @@ def read_all(
     RecordError, OptionError, OSError
         As for `read`, for the first test that makes no record.
     """
+    ...
+def _card(
+    material: Material,
+    engine: str,
+    *,
+    depth_m: float | None,
+    speed_m_per_s: float | None,
+    slowest_m_per_s: float | None,
+    hold_s: float,
+    mass_kg: float | None,
+    friction: float | None,
+    poisson_ratio: float | None,
+    terms_per_decade: float,
+) -> str:
+    """The document of ``palpate export --format json`` as text; its notes are warnings."""
     ...
 def fit_hold(
     time_s: ArrayLike, signal: ArrayLike, weights: ArrayLike | None, keywords: Mapping[str, Any]
