@@ -76,7 +76,7 @@ fn a_card_states_its_range_its_error_and_what_is_missing() {
         let flat = flat.collect::<Vec<_>>().join(" ");
         for stated in [
             "Fitted to:",
-            "15 mm of jaw travel",
+            "15.0 mm of jaw travel",
             "mm/s",
             "at 1 s",
             "at 10 s",
@@ -238,6 +238,7 @@ fn an_exponent_below_one_has_no_prony_series() {
     let text = std::fs::read_to_string(ball()).unwrap();
     let exponent = "5.042530085014389";
     assert_eq!(text.matches(exponent).count(), 2);
+    let text = text.replace("0.010927785007268907", "0.00195");
     std::fs::write(
         folder.path().join("m.toml"),
         text.replace(exponent, "0.9")

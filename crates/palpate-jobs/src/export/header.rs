@@ -83,8 +83,7 @@ impl Card {
             })),
         }
         let at = HOLD_TIMES.iter().zip(self.model.hold_error());
-        let at: Vec<String> =
-            at.map(|(time, error)| format!("{} % at {} s", signed(100.0 * error), short(*time))).collect();
+        let at: Vec<String> = at.map(|(time, error)| format!("{} % at {time} s", signed(100.0 * error))).collect();
         errors.push(format!(
             "Error in a hold at {} mm after loading at {} mm/s, in % of the peak force: {}",
             short(1e3 * self.conditions.depth),

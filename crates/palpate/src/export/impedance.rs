@@ -45,16 +45,17 @@ type Curve = [f64; 4];
 const RANGES: [(f64, f64); 4] = [(-4.5, 4.5), (0.002, 0.998), (1.0, 6.0), (-3.0, 3.0)];
 
 /// Values of each on the grid of the search.
-const GRID: [usize; 4] = [9, 4, 4, 4];
+const GRID: [usize; 4] = [9, 5, 5, 6];
 
 /// Points of the grid from which the search goes on.
-const STARTS: usize = 5;
+const STARTS: usize = 15;
 
 /// First steps of the search, and the share of them at which it ends.
 const STEPS: Curve = [0.4, 0.12, 0.6, 0.3];
 const ENOUGH: f64 = 2e-3;
 
-/// Rounds of the fit that a curve is compared by.
+/// Rounds of the fit that a curve is compared by, on the grid and in the search.
+const FIRST_ROUNDS: usize = 3;
 const ROUNDS: usize = 8;
 
 impl SoftConstraint {
@@ -165,7 +166,7 @@ fn searched(loading: &Loading) -> Option<Curve> {
             left /= GRID[axis];
             value(axis, at)
         });
-        (curve, largest_error(loading, curve, 1))
+        (curve, largest_error(loading, curve, FIRST_ROUNDS))
     };
     let mut starts: Vec<(Curve, f64)> = (0..GRID.iter().product()).map(start).collect();
     starts.sort_by(|(_, a), (_, b)| a.total_cmp(b));
