@@ -64,7 +64,7 @@ def drake_forces(card: palpate.Card, depths_m: np.ndarray, speed_m_per_s: float,
     Parser(plant).AddModelsFromString(card.text, "sdf")
     body = plant.GetBodyByName("palpate_body")
     plant.WeldFrames(plant.world_frame(), body.body_frame())
-    jaw = plant.AddRigidBody("jaw", SpatialInertia.SolidBoxWithMass(1.0, 0.1, 0.4, 0.4))
+    jaw = plant.AddRigidBody("jaw", plant.AddModelInstance("jaw"), SpatialInertia.SolidBoxWithMass(1.0, 0.1, 0.4, 0.4))
     properties = ProximityProperties()
     AddRigidHydroelasticProperties(0.4, properties)
     AddContactMaterial(dissipation=0.0, point_stiffness=1e12, friction=CoulombFriction(0.5, 0.5), properties=properties)
@@ -189,7 +189,9 @@ def felupe_relaxation(card: palpate.Card, times_s: list[float]) -> list[float]:
         umat.kwargs["time_step_s"] = time - before
         before = time
         felupe.newtonrhapson(items=[solid], dof0=dof0, dof1=dof1, ext0=ext0, verbose=False)
-        forces.append(float(solid.assemble.vector().toarray().reshape(-1, 3)[fixed["move"].points, 0].sum()))
+        # As it was assembled last: another assembly would be another time step.
+        force = solid.results.force.toarray().reshape(-1, 3)
+        forces.append(float(force[fixed["move"].points, 0].sum()))
     return [force / forces[0] for force in forces[1:]]
 
 

@@ -11,8 +11,8 @@ use super::super::card::Card;
 use super::super::numbers::plain;
 use super::xml_comment;
 
-/// Edge of the mesh of the pressure field as a share of the radius.
-const MESH: f64 = 0.1;
+/// Edge of the mesh of the pressure field as a share of the radius; a polyhedron of such edges has 0.2 % less force than the ball.
+const MESH: f64 = 0.05;
 
 pub(super) fn text(card: &Card, fit: &HuntCrossley) -> String {
     let notes = [
