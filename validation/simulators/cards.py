@@ -91,7 +91,7 @@ def drake_forces(card: palpate.Card, depths_m: np.ndarray, speed_m_per_s: float,
 def spring_forces(card: palpate.Card, depths_m: np.ndarray, speed_m_per_s: float, share: float) -> np.ndarray:
     """Force in N of stiffness and damping read back from the text of the card."""
     patterns = {
-        "physx": (r"\b-([0-9.e+-]+)f\);", r"setDamping\(([0-9.e+-]+)f\)"),
+        "physx": (r", -([0-9.e+-]+)f\);", r"setDamping\(([0-9.e+-]+)f\)"),
         "isaac": (r"compliantContactStiffness = (\S+)", r"compliantContactDamping = (\S+)"),
         "newton": (r"ke=([0-9.e+-]+)", r"kd=([0-9.e+-]+)"),
     }

@@ -61,9 +61,9 @@ def test_xml_is_well_formed(engine: Engine) -> None:
     found = ET.fromstring(card.text)
     assert found.tag == {"mujoco": "mujoco", "drake": "sdf", "febio": "febio_spec"}[engine]
     if engine == "mujoco":
-        geom = found.find("default/default/geom")
-        assert geom is not None
-        stiffness, damping = map(float, geom.attrib["solref"].split())
+        pair = found.find("default/default/pair")
+        assert pair is not None
+        stiffness, damping = map(float, pair.attrib["solref"].split())
         expected = card.parameters["solref_stiffness_per_s2"], card.parameters["solref_damping_per_s"]
         assert (-stiffness, -damping) == pytest.approx(expected, rel=1e-9)
     if engine == "drake":

@@ -1,7 +1,10 @@
-//! MuJoCo: an MJCF model with the body, its contact in `solref` and `solimp`.
+//! MuJoCo: an MJCF model of the body between two jaws, its contacts as pairs with `solref`, `solreffriction` and `solimp`.
 //!
-//! Documentation: "XML Reference", default/geom attributes `solref`, `solimp`, `priority`, `condim`, `friction`, and option attributes
+//! Documentation: "XML Reference", contact/pair attributes `solref`, `solreffriction`, `solimp`, `condim`, `friction`, and option attributes
 //! `cone`, `impratio`; "Modeling", section "Solver parameters"; "Computation", section "Constraint model" (mujoco.readthedocs.io).
+//!
+//! Pairs, not geoms, because friction would otherwise have the damping of the normal force: with an impedance of 0.01 its rate is a hundred
+//! times B, which no usual time step integrates.
 
 use palpate::contact::Shape;
 use palpate::export::SoftConstraint;
@@ -10,81 +13,99 @@ use super::super::card::Card;
 use super::super::numbers::{plain, short};
 use super::xml_comment;
 
-/// Ratio of the impedances of friction and normal force: with it friction is nearly as stiff as that of a default contact, although the
-/// impedance of the normal force is small.
-const IMPRATIO: f64 = 2000.0;
+/// Ratio of the impedances of friction and normal force: friction is stiff, although the normal force has a small impedance.
+const IMPRATIO: f64 = 1e6;
 
-/// Least damping, 1/s: friction has the damping of the normal force, and none would hold nothing.
-const LEAST_DAMPING: f64 = 1.0;
+/// Rate of friction, 1/s: the damping of `solreffriction` is this times the impedance at the width. Time steps below 2/rate are stable.
+const FRICTION_RATE: f64 = 400.0;
+
+/// Mass of a jaw over that of the body.
+const JAW: f64 = 1000.0;
 
 /// Standard gravity, m/s².
 const GRAVITY: f64 = 9.80665;
 
 pub(super) fn text(card: &Card, fit: &SoftConstraint) -> String {
-    let damping = fit.damping.max(LEAST_DAMPING);
-    let head = card.head(&notes(card, fit, damping));
-    let friction = card
-        .options
-        .friction
-        .map_or(String::new(), |mu| format!(" friction=\"{} 0.005 0.0001\"", plain(mu)));
+    let head = card.head(&notes(card, fit));
+    let friction = card.options.friction.map_or(String::new(), |mu| {
+        let mu = plain(mu);
+        format!(" friction=\"{mu} {mu} 0.005 0.0001 0.0001\"")
+    });
     let numbers = |values: &[f64]| values.iter().map(|value| plain(*value)).collect::<Vec<_>>().join(" ");
-    let solref = numbers(&[-fit.stiffness, -damping]);
+    let solref = numbers(&[-fit.stiffness, -fit.damping]);
     let solimp = numbers(&[fit.first, fit.last, fit.width, fit.midpoint, fit.power]);
-    let mass = plain(fit.mass);
-    let (geometry, height) = geometry(card.shape());
+    let sliding = numbers(&[-1.0, -FRICTION_RATE * fit.last]);
+    let (geometry, half, height) = geometry(card.shape());
+    let jaw = |side: &str, sign: f64| {
+        let (thickness, height) = (0.2 * half, plain(height));
+        let size = numbers(&[thickness, 2.0 * half, 2.0 * half]);
+        let place = plain(sign * (half + thickness));
+        format!(
+            r#"    <body name="palpate_{side}_jaw" pos="0 0 {height}">
+      <joint name="palpate_{side}_jaw" type="slide" axis="1 0 0"/>
+      <geom name="palpate_{side}_jaw" type="box" size="{size}" pos="{place} 0 0" mass="{mass}"/>
+    </body>
+"#,
+            mass = plain(JAW * fit.mass)
+        )
+    };
     format!(
         r#"{comment}<mujoco model="palpate contact">
   <option cone="elliptic" impratio="{IMPRATIO}"/>
   <default>
     <default class="palpate">
-      <geom solref="{solref}" solimp="{solimp}" priority="1" condim="4"{friction}/>
+      <pair solref="{solref}" solreffriction="{sliding}" solimp="{solimp}" condim="4"{friction}/>
     </default>
   </default>
   <worldbody>
     <body name="palpate_body" pos="0 0 {height}">
       <freejoint/>
-      <geom name="palpate_body" class="palpate" {geometry} mass="{mass}"/>
+      <geom name="palpate_body" {geometry} mass="{mass}"/>
     </body>
-  </worldbody>
+{jaws}  </worldbody>
+  <contact>
+    <pair class="palpate" geom1="palpate_body" geom2="palpate_left_jaw"/>
+    <pair class="palpate" geom1="palpate_body" geom2="palpate_right_jaw"/>
+  </contact>
 </mujoco>
 "#,
-        comment = xml_comment(&head)
+        comment = xml_comment(&head),
+        height = plain(height),
+        mass = plain(fit.mass),
+        jaws = jaw("left", -1.0) + &jaw("right", 1.0)
     )
 }
 
-/// Attributes of the geom, and the height of its centre on the floor; a jaw closes along x.
-fn geometry(shape: &Shape) -> (String, String) {
+/// Attributes of the geom, half its width between the jaws, which close along x, and the height of its centre on the floor (m).
+fn geometry(shape: &Shape) -> (String, f64, f64) {
     match shape {
         Shape::Prism { area, length } => {
-            let half = 0.5 * area.sqrt();
-            let size = [0.5 * length, half, half].map(plain).join(" ");
-            (format!("type=\"box\" size=\"{size}\""), plain(half))
+            let (half, side) = (0.5 * length, 0.5 * area.sqrt());
+            let size = [half, side, side].map(plain).join(" ");
+            (format!("type=\"box\" size=\"{size}\""), half, side)
         }
         shape => {
-            let radius = super::super::model::radius(shape).map_or_else(|| plain(0.01), plain);
-            (format!("type=\"sphere\" size=\"{radius}\""), radius)
+            let radius = super::super::model::radius(shape).unwrap_or(0.01);
+            (format!("type=\"sphere\" size=\"{}\"", plain(radius)), radius, radius)
         }
     }
 }
 
-fn notes(card: &Card, fit: &SoftConstraint, damping: f64) -> Vec<String> {
+fn notes(card: &Card, fit: &SoftConstraint) -> Vec<String> {
     let u = card.loading.indentation;
     let by = |du: f64, speed: f64| fit.force(u * (1.0 - du), speed);
-    let stiffness = (by(0.0, 0.0) - by(1e-4, 0.0)) / (1e-4 * u);
-    let resistance = fit.force(u, 1.0) - fit.force(u, 0.0);
-    let stable = (2.0 * fit.mass / stiffness.max(f64::MIN_POSITIVE))
-        .sqrt()
-        .min(fit.mass / resistance.max(f64::MIN_POSITIVE));
-    // Friction carries half the weight at each jaw: R_t f = b v with R_t = (1 − d)/(d m impratio), b = B/d_w.
+    let stiffness = ((by(0.0, 0.0) - by(1e-4, 0.0)) / (1e-4 * u)).max(f64::MIN_POSITIVE);
+    let resistance = (fit.force(u, 1.0) - fit.force(u, 0.0)).max(f64::MIN_POSITIVE);
+    let stable = (2.0 * fit.mass / stiffness).sqrt().min(fit.mass / resistance).min(2.0 / FRICTION_RATE);
+    // Friction carries half the weight at each jaw: R_t f = rate v with R_t = (1 − d)/(d m impratio).
     let impedance = fit.impedance(u);
-    let creep = 0.5 * GRAVITY * (1.0 - impedance) * fit.last / (impedance * IMPRATIO * damping);
+    let creep = 0.5 * GRAVITY * (1.0 - impedance) / (impedance * IMPRATIO * FRICTION_RATE);
+    let mass = short(fit.mass);
     vec![
         format!(
-            "Use: include this model or copy class and body. priority=1 makes this geom's solref and solimp count, whatever those of the \
-             jaws. The force is per mass: keep the mass of {} kg. The jaws must be much heavier; with jaws of mass M multiply both \
-             numbers of solref by 1 + {}/M",
-            short(fit.mass),
-            short(fit.mass)
+            "Use: the pairs are the contact; give them the names of your geoms, and your model the option cone and impratio. The force is \
+             per mass: keep the mass of {mass} kg. The jaws must be much heavier; with jaws of mass M multiply both numbers of solref by \
+             1 + {mass}/M"
         ),
         format!(
             "The impedance is small, at most {}, so that the contact is a spring and a damper in a grip between two jaws; a contact \
@@ -94,9 +115,8 @@ fn notes(card: &Card, fit: &SoftConstraint, damping: f64) -> Vec<String> {
         ),
         format!("Time steps above {} s are unstable for this body between two jaws at this depth", short(stable)),
         format!(
-            "Under its weight between two vertical jaws the body creeps by at most {} mm/s at this depth; raise impratio, or give a \
-             contact pair a solreffriction of its own, for less",
-            short(1e3 * creep)
+            "Under its weight between two vertical jaws the body creeps by {} mm/min at this depth",
+            short(60e3 * creep)
         ),
     ]
 }
