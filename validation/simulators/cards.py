@@ -184,11 +184,13 @@ def felupe_relaxation(card: palpate.Card, times_s: list[float]) -> list[float]:
     }
     dof0, dof1 = felupe.dof.partition(field, fixed)
     ext0 = felupe.dof.apply(field, fixed, dof0)
+    # Renamed in FElupe 10.2.
+    solve = felupe.newtonraphson if hasattr(felupe, "newtonraphson") else felupe.newtonrhapson
     forces, before = [], 0.0
     for time in [1e-9, *times_s]:
         umat.kwargs["time_step_s"] = time - before
         before = time
-        felupe.newtonrhapson(items=[solid], dof0=dof0, dof1=dof1, ext0=ext0, verbose=False)
+        solve(items=[solid], dof0=dof0, dof1=dof1, ext0=ext0, verbose=False)
         # As it was assembled last: another assembly would be another time step.
         force = solid.results.force.toarray().reshape(-1, 3)
         forces.append(float(force[fixed["move"].points, 0].sum()))

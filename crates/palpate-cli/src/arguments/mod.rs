@@ -26,7 +26,9 @@ use palpate_report::study::FileOptions;
 use schemars::{JsonSchema, schema_for};
 use serde_json::Value;
 
-pub(crate) use contacts::{ExportArguments, GripArguments, PredictArguments, ReproduceArguments, SimulateArguments, SweepArguments};
+pub(crate) use contacts::{
+    ExportArguments, GripArguments, PredictArguments, ReproduceArguments, SimulateArguments, SweepArguments,
+};
 pub(crate) use files::FilesArguments;
 pub(crate) use records::{
     AnalyzeArguments, BatchArguments, CalibrateArguments, CompareArguments, ConvertArguments, InspectArguments,

@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 
 use super::card::Card;
 use super::engines;
-use super::model::{Continuum, Model};
+use super::model::{Continuum, Model, contact_points};
 use super::options::Engine;
 
 /// `palpate.card/1`: a material in the terms of another simulator.
@@ -110,7 +110,7 @@ impl CardDocument {
             fastest_m_per_s: conditions.fastest,
             hold_s: conditions.hold,
             peak_force_n: peak,
-            parameters: parameters(&card.model),
+            parameters: parameters(card),
             prony: solid.map_or(Vec::new(), |solid| solid.series.terms().iter().map(term).collect()),
             loading_error: error.map(|error| error.loading),
             loading_rms_error: error.map(|error| error.loading_rms),
@@ -129,11 +129,12 @@ impl CardDocument {
     }
 }
 
-fn parameters(model: &Model) -> Vec<CardParameter> {
-    let named: Vec<(&str, f64)> = match model {
+fn parameters(card: &Card) -> Vec<CardParameter> {
+    let points = contact_points(card.shape());
+    let named: Vec<(&str, f64)> = match &card.model {
         Model::Soft(fit) => vec![
-            ("solref_stiffness_per_s2", fit.stiffness),
-            ("solref_damping_per_s", fit.damping),
+            ("solref_stiffness_per_s2", fit.stiffness / points),
+            ("solref_damping_per_s", fit.damping / points),
             ("solimp_first", fit.first),
             ("solimp_last", fit.last),
             ("solimp_width_m", fit.width),

@@ -103,6 +103,11 @@ pub(super) fn radius(shape: &Shape) -> Option<f64> {
     }
 }
 
+/// Contact points of a body on a jaw in MuJoCo: the corners of the face of a block, each with a contact of its own.
+pub(super) fn contact_points(shape: &Shape) -> f64 {
+    if matches!(shape, Shape::Prism { .. }) { 4.0 } else { 1.0 }
+}
+
 /// Refuses bodies whose geometry a rigid-body engine has no primitive for.
 fn geometry(engine: Engine, shape: &Shape) -> Result<(), JobError> {
     let found = match shape {

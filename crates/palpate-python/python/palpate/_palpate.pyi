@@ -1982,9 +1982,7 @@ def _card(
     friction: float | None,
     poisson_ratio: float | None,
     terms_per_decade: float,
-) -> str:
-    """The document of ``palpate export --format json`` as text; its notes are warnings."""
-    ...
+) -> str: ...
 def fit_hold(
     time_s: ArrayLike, signal: ArrayLike, weights: ArrayLike | None, keywords: Mapping[str, Any]
 ) -> Fit: ...

@@ -10,6 +10,7 @@ use palpate::contact::Shape;
 use palpate::export::SoftConstraint;
 
 use super::super::card::Card;
+use super::super::model::contact_points;
 use super::super::numbers::{plain, short};
 use super::xml_comment;
 
@@ -32,7 +33,8 @@ pub(super) fn text(card: &Card, fit: &SoftConstraint) -> String {
         format!(" friction=\"{mu} {mu} 0.005 0.0001 0.0001\"")
     });
     let numbers = |values: &[f64]| values.iter().map(|value| plain(*value)).collect::<Vec<_>>().join(" ");
-    let solref = numbers(&[-fit.stiffness, -fit.damping]);
+    let points = contact_points(card.shape());
+    let solref = numbers(&[-fit.stiffness / points, -fit.damping / points]);
     let solimp = numbers(&[fit.first, fit.last, fit.width, fit.midpoint, fit.power]);
     let sliding = numbers(&[-1.0, -FRICTION_RATE * fit.last]);
     let (geometry, half, height) = geometry(card.shape());
@@ -99,9 +101,11 @@ fn notes(card: &Card, fit: &SoftConstraint) -> Vec<String> {
     let stable = (2.0 * fit.mass / stiffness).sqrt().min(fit.mass / resistance).min(2.0 / FRICTION_RATE);
     // Friction carries half the weight at each jaw: R_t f = rate v with R_t = (1 − d)/(d m impratio).
     let impedance = fit.impedance(u);
-    let creep = 0.5 * GRAVITY * (1.0 - impedance) / (impedance * IMPRATIO * FRICTION_RATE);
+    let points = contact_points(card.shape());
+    let creep = 0.5 * GRAVITY * (1.0 - impedance) / (points * impedance * IMPRATIO * FRICTION_RATE);
     let mass = short(fit.mass);
-    vec![
+    let corners = format!("The face of the block has {points} contacts with a jaw, which share its force");
+    let mut notes = vec![
         format!(
             "Use: the pairs are the contact; give them the names of your geoms, and your model the option cone and impratio. The force is \
              per mass: keep the mass of {mass} kg. The jaws must be much heavier; with jaws of mass M multiply both numbers of solref by \
@@ -118,5 +122,7 @@ fn notes(card: &Card, fit: &SoftConstraint) -> Vec<String> {
             "Under its weight between two vertical jaws the body creeps by {} mm/min at this depth",
             short(60e3 * creep)
         ),
-    ]
+    ];
+    notes.extend((points > 1.0).then_some(corners));
+    notes
 }
