@@ -81,6 +81,7 @@ where
         Command::Calibrate(arguments) => commands::calibrate::run(&arguments),
         Command::Predict(arguments) => commands::predict::run(&arguments),
         Command::Grip(arguments) => commands::grip::run(&arguments),
+        Command::Export(arguments) => commands::export::run(&arguments),
         Command::Watch(arguments) => commands::watch::run(&arguments),
         Command::Schema(arguments) => commands::schema::run(&arguments),
         Command::Completions(arguments) => commands::completions::run(&arguments),

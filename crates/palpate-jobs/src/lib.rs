@@ -32,6 +32,7 @@ mod compare;
 mod convert;
 mod depends;
 mod error;
+mod export;
 mod grip;
 mod inspect;
 mod merge;
@@ -57,6 +58,7 @@ pub use compare::{Compare, Compared};
 pub use convert::{Convert, Converted};
 pub use depends::BUILD;
 pub use error::{ErrorKind, JobError};
+pub use export::{Card, CardDocument, CardHoldError, CardParameter, CardPronyTerm, Engine, Export};
 pub use grip::{MaterialSource, PlanGrip, RegripFor};
 pub use inspect::{
     ColumnRole, Inspect, Inspected, InspectedColumn, InspectedRecord, InspectedTest, InspectionDocument, PhaseDocument,

@@ -68,6 +68,7 @@ mod _palpate {
         fits::laws::{latency, law_names},
         mappings::mapping_text,
         materials::calibration::Calibration,
+        materials::card::card,
         materials::grip::Grip,
         materials::grip_parts::{BackOff, ForceHold, PositionHold, Schedule},
         materials::material::Material,

@@ -26,6 +26,7 @@
 //! | [`instrument`] | the uncertainty of the instrument and of the body |
 //! | [`analysis`] | the complete analysis of one record, with findings |
 //! | [`observe`] | a contact observed tick by tick: holds, their equilibrium, time to slip |
+//! | [`export`] | a calibrated contact in the terms of other simulators: Prony series, contacts without memory |
 //! | [`paper`] | the paper claim by claim, each with a verdict |
 //!
 //! | feature | what |
@@ -93,6 +94,8 @@ pub mod budget;
 #[cfg(feature = "std")]
 pub mod calibrate;
 pub mod contact;
+#[cfg(feature = "std")]
+pub mod export;
 #[cfg(feature = "std")]
 pub mod fit;
 #[cfg(feature = "std")]

@@ -205,6 +205,35 @@ pub(crate) struct GripArguments {
     pub(crate) format: Format,
 }
 
+/// Export a material as a card of another simulator: native text with its range, its error, and what it cannot show.
+///
+/// Rigid-body engines get a contact without memory, fitted to the loading that the law predicts. Finite elements get a Prony series of the
+/// hold: the latency law is a mixture of exponentials, and two terms in each decade reproduce it to 0.2 % of the force.
+#[derive(Debug, Args)]
+#[command(after_help = "\
+Engines: mujoco, drake, physx, isaac, newton (contacts); abaqus, openradioss, febio, felupe (Prony series).
+A card begins with comments: the range of depth, speed and time it is fitted to, its error in loading
+and at 1, 10 and 60 s of a hold. What lies beyond the test of the material is noted on standard error.
+
+Examples:
+  palpate export mujoco ball.toml --mass 250g --friction 0.6 --out ball.xml
+  palpate export drake ball.toml --depth \"10 mm\" --speed \"20 mm/s\" --out ball.sdf
+  palpate export abaqus ball.toml --hold \"10 min\" --terms-per-decade 3
+  palpate export isaac ball.toml --format json          parameters and errors for programs")]
+pub(crate) struct ExportArguments {
+    #[command(flatten)]
+    pub(crate) job: jobs::Export,
+    /// Material file of palpate calibrate
+    #[arg(value_name = "MATERIAL.toml")]
+    pub(crate) material: PathBuf,
+    /// File for the card; standard output if not given
+    #[arg(long, value_name = "FILE")]
+    pub(crate) out: Option<PathBuf>,
+    /// Format of standard output
+    #[arg(long, value_enum, default_value_t = Format::Text)]
+    pub(crate) format: Format,
+}
+
 /// What drives a simulated contact.
 const DRIVES: &[Choice<jobs::DriveBy>] = &[
     ("displacement", "The measured displacement of the jaw", jobs::DriveBy::Displacement),

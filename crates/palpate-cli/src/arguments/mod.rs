@@ -26,7 +26,9 @@ use palpate_report::study::FileOptions;
 use schemars::{JsonSchema, schema_for};
 use serde_json::Value;
 
-pub(crate) use contacts::{GripArguments, PredictArguments, ReproduceArguments, SimulateArguments, SweepArguments};
+pub(crate) use contacts::{
+    ExportArguments, GripArguments, PredictArguments, ReproduceArguments, SimulateArguments, SweepArguments,
+};
 pub(crate) use files::FilesArguments;
 pub(crate) use records::{
     AnalyzeArguments, BatchArguments, CalibrateArguments, CompareArguments, ConvertArguments, InspectArguments,
@@ -73,6 +75,7 @@ Examples:
   palpate calibrate batch-*.csv --test ball.toml --shared exponent  a batch, with its spread
   palpate predict material.toml --protocol grip.toml --at \"60 s\"    force at 60 s, with its interval
   palpate grip material.toml --mass 150g --friction 0.6   the least squeeze that holds, time to slip
+  palpate export drake material.toml             the same contact for a simulator, with its error
   palpate watch gripper.csv --slip-force \"2 N\"    holds and time to slip from a log, as if live
   palpate simulate squeeze.toml --out force.csv  force of a squeeze protocol
   palpate sweep sweep.toml --figure peak.svg     the same over many parameter values
@@ -94,6 +97,7 @@ pub(crate) enum Command {
     Calibrate(CalibrateArguments),
     Predict(PredictArguments),
     Grip(GripArguments),
+    Export(ExportArguments),
     Watch(WatchArguments),
     Convert(ConvertArguments),
     Schema(SchemaArguments),
@@ -170,6 +174,7 @@ const SCHEMAS: &[Choice<fn() -> Value>] = &[
     ("specimens", "specimens.json of `palpate analyze` of several records", schema::<SpecimensDocument>),
     ("comparison", "Result of `palpate compare --format json`", schema::<ComparisonDocument>),
     ("grip", "Result of `palpate grip --format json`", schema::<GripDocument>),
+    ("card", "Result of `palpate export --format json`", schema::<jobs::CardDocument>),
     ("watch", "A line of `palpate watch --format jsonl`", schema::<WatchDocument>),
     ("reproduction", "summary.json of `palpate reproduce`", schema::<ReproductionDocument>),
     (
@@ -189,6 +194,7 @@ const SCHEMAS: &[Choice<fn() -> Value>] = &[
     ),
     ("job-predict", "Options of `palpate predict` as a job", schema::<jobs::Predict>),
     ("job-grip", "Options of `palpate grip` as a job", schema::<jobs::PlanGrip>),
+    ("job-export", "Options of `palpate export` as a job", schema::<jobs::Export>),
     ("job-watch", "Options of `palpate watch` as a job", schema::<jobs::WatchLog>),
     ("job-simulate", "Options of `palpate simulate` as a job", schema::<jobs::Simulate>),
     ("job-sweep", "Options of `palpate sweep` as a job", schema::<jobs::Sweep>),
@@ -224,6 +230,8 @@ mod tests {
         assert!(matches!(parsed(&["simulate", "p"]), Command::Simulate(a) if a.job() == jobs::Simulate::default()));
         assert!(matches!(parsed(&["sweep", "p"]), Command::Sweep(a) if a.job == jobs::Sweep::default()));
         assert!(matches!(parsed(&["batch", "r", "--out", "t"]), Command::Batch(a) if a.job == jobs::Batch::default()));
+        let export = ["export", "mujoco", "m"];
+        assert!(matches!(parsed(&export), Command::Export(a) if a.job == jobs::Export::default()));
         let grip = jobs::PlanGrip {
             mass_kg: 1.0,
             friction: 0.5,

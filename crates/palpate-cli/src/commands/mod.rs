@@ -6,6 +6,7 @@ pub(crate) mod calibrate;
 pub(crate) mod compare;
 pub(crate) mod completions;
 pub(crate) mod convert;
+pub(crate) mod export;
 pub(crate) mod grip;
 pub(crate) mod inspect;
 #[cfg(feature = "lab")]

@@ -8,6 +8,7 @@ mod common;
 mod compare;
 mod conditions;
 mod depends;
+mod export;
 mod files;
 mod grip;
 mod inspect;

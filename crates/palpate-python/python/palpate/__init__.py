@@ -14,6 +14,7 @@ from __future__ import annotations
 
 from palpate import _results, laws, protocols
 from palpate._contacts import energy, simulate, simulate_many
+from palpate._export import Card, export
 from palpate._fits import fit_hold, fit_many
 from palpate._palpate import (
     Analysis,
@@ -67,6 +68,7 @@ __all__ = [
     "BackOff",
     "BatchResult",
     "Calibration",
+    "Card",
     "Comparison",
     "ContactState",
     "ContactStates",
@@ -101,6 +103,7 @@ __all__ = [
     "compare",
     "convert",
     "energy",
+    "export",
     "fit_hold",
     "fit_many",
     "forecast",

@@ -19,6 +19,7 @@ __all__ = [
     "__version__",
     "_BUILD",
     "_SI_ENDINGS",
+    "_card",
     "_checked",
     "_contact_numbers",
     "_found",
@@ -2082,6 +2083,19 @@ def read_all(
         As for `read`, for the first test that makes no record.
     """
     ...
+def _card(
+    material: Material,
+    engine: str,
+    *,
+    depth_m: float | None,
+    speed_m_per_s: float | None,
+    slowest_m_per_s: float | None,
+    hold_s: float,
+    mass_kg: float | None,
+    friction: float | None,
+    poisson_ratio: float | None,
+    terms_per_decade: float,
+) -> str: ...
 def fit_hold(
     time_s: ArrayLike, signal: ArrayLike, weights: ArrayLike | None, keywords: Mapping[str, Any]
 ) -> Fit: ...

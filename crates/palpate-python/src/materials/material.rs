@@ -68,6 +68,11 @@ impl Material {
         self.source.file.material.clone()
     }
 
+    /// The file that it is from, or as it would be.
+    pub(crate) fn source(&self) -> &MaterialSource {
+        &self.source
+    }
+
     fn warn_of_open(&self, py: Python<'_>) -> PyResult<()> {
         if self.source.file.material.uncertainty().is_none() { warn(py, OPEN) } else { Ok(()) }
     }

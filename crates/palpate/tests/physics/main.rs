@@ -7,6 +7,7 @@ mod contact_properties;
 mod creep;
 mod crossval;
 mod energy;
+mod export;
 mod linear_contact;
 mod paper;
 mod properties;

@@ -1,0 +1,106 @@
+//! A material as a card of another simulator: native text with its range and its error.
+//!
+//! | file | what |
+//! |---|---|
+//! | `options.rs` | the engines, and the options of the job |
+//! | `model.rs` | the contact or the Prony series of an engine, fitted to a material |
+//! | `card.rs` | a card: the fit with all that its text says |
+//! | `header.rs` | the comment at the head of a card |
+//! | `numbers.rs` | numbers as plain ASCII |
+//! | `engines/` | the text of each engine |
+//! | `document.rs` | a card for programs |
+
+mod card;
+mod document;
+mod engines;
+mod header;
+mod model;
+mod numbers;
+mod options;
+
+use palpate::calibrate::Material;
+use palpate::export::{Conditions, ExportError, Loading};
+use palpate::simulate::{Motion, Sampling};
+use palpate::watch::{Progress, Watch};
+
+pub use card::Card;
+pub use document::{CardDocument, CardHoldError, CardParameter, CardPronyTerm};
+pub use options::{Engine, Export};
+
+use crate::{ErrorKind, JobError, MaterialSource, Outcome, Results};
+use model::Model;
+
+/// Largest error in loading, as a share of the peak force, that needs no note.
+const NOTED: f64 = 0.02;
+
+impl Export {
+    /// The conditions, where they are not given those of the test.
+    fn conditions(&self, material: &Material) -> Result<Conditions, JobError> {
+        /// Share of the fastest speed that is the slowest where the test has one speed.
+        const SLOWEST: f64 = 0.5;
+        let range = material.range();
+        let fastest = self.speed_m_per_s.unwrap_or(range.fastest);
+        let tested = if range.slowest < 0.95 * fastest { range.slowest } else { SLOWEST * fastest };
+        let slowest = self.slowest_m_per_s.unwrap_or(tested);
+        let depth = self.depth_m.unwrap_or(range.deepest);
+        Conditions::new(depth, (slowest, fastest), self.hold_s).map_err(|error| refused(&error))
+    }
+
+    /// The card of a material.
+    ///
+    /// # Errors
+    /// [`JobError`] where an option is wrong, the body does not have the depth, or the engine's contact does not take the body.
+    pub fn run(&self, source: &MaterialSource, watch: &mut dyn Watch) -> Result<Outcome<Card>, JobError> {
+        self.check()?;
+        let material = &source.file.material;
+        let conditions = self.conditions(material)?;
+        let duration = conditions.depth / conditions.fastest;
+        let motion =
+            Motion::new(vec![0.0, duration, duration + conditions.hold], vec![0.0, conditions.depth, conditions.depth])
+                .map_err(|error| refused(&error.into()))?;
+        let at_end = Sampling::Times(vec![duration + conditions.hold]);
+        let predicted = material
+            .predict_watched(&motion, &at_end, 0.95, watch)
+            .map_err(|error| JobError::simulation(error).of(&source.name))?;
+        watch.report(Progress::open("fitting", 0))?;
+        let loading = Loading::of(material.contact(), conditions).map_err(|error| refused(&error))?;
+        let model = Model::fit(self, material, conditions, &loading)?;
+        let extrapolations: Vec<String> = predicted.extrapolations.iter().map(ToString::to_string).collect();
+        let card = Card::new(self, source, (conditions, loading), model, extrapolations);
+        let mut notes: Vec<String> =
+            card.extrapolations.iter().map(|text| format!("beyond the test: {text}")).collect();
+        if let Some(error) = card.model.contact_error().filter(|error| error.loading > NOTED) {
+            notes.push(format!(
+                "the contact of {} has an error of up to {} % of the peak force in loading",
+                self.engine.title(),
+                numbers::short(100.0 * error.loading)
+            ));
+        }
+        Ok(Outcome::of(card).noted(notes))
+    }
+}
+
+impl Results for Card {
+    type Document = CardDocument;
+
+    fn document(&self) -> CardDocument {
+        CardDocument::new(self)
+    }
+
+    fn text(&self) -> String {
+        engines::text(self)
+    }
+}
+
+/// What the library refuses.
+fn refused(error: &ExportError) -> JobError {
+    let (kind, hint) = match error {
+        ExportError::Condition { .. } | ExportError::Motion(_) => (ErrorKind::Option, None),
+        ExportError::NoMixture { .. } => {
+            (ErrorKind::Model, Some("calibrate with ⟨law=latency:2⟩ or another exponent above 1".to_owned()))
+        }
+        ExportError::NoRelaxation => (ErrorKind::Model, Some("an elastic card needs the modulus alone".to_owned())),
+        _ => (ErrorKind::Model, None),
+    };
+    JobError::new(kind, error, hint)
+}
