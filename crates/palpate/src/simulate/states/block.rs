@@ -234,18 +234,33 @@ impl Block {
 
     #[inline(always)]
     fn moved_by(&self, power: Power, (jaw, behind): (&Lanes, &Lanes), dt: &Lanes, to: &Lanes, substeps: u32) -> Moved {
-        let target = each(|lane| to[lane] * self.bodies.share[lane]);
+        let target = each(
+            #[inline(always)]
+            |lane| to[lane] * self.bodies.share[lane],
+        );
         if substeps == 1 {
             return self.pressed(power, (jaw, behind), dt, &target);
         }
-        let part_dt = each(|lane| dt[lane] / f64::from(substeps));
-        let first = each(|lane| between(jaw[lane], target[lane], (1, substeps)));
+        let part_dt = each(
+            #[inline(always)]
+            |lane| dt[lane] / f64::from(substeps),
+        );
+        let first = each(
+            #[inline(always)]
+            |lane| between(jaw[lane], target[lane], (1, substeps)),
+        );
         let mut moved = self.pressed(power, (jaw, behind), &part_dt, &first);
         for step in 2..=substeps {
-            let next = each(|lane| between(jaw[lane], target[lane], (step, substeps)));
+            let next = each(
+                #[inline(always)]
+                |lane| between(jaw[lane], target[lane], (step, substeps)),
+            );
             let before = moved;
             moved = self.pressed(power, (&before.jaw, &before.behind), &part_dt, &next);
-            moved.wrong = each(|lane| moved.wrong[lane] + before.wrong[lane]);
+            moved.wrong = each(
+                #[inline(always)]
+                |lane| moved.wrong[lane] + before.wrong[lane],
+            );
         }
         moved
     }
@@ -255,27 +270,60 @@ impl Block {
     fn pressed(&self, power: Power, (jaw, behind): (&Lanes, &Lanes), dt: &Lanes, to: &Lanes) -> Moved {
         let bodies = &self.bodies;
         // A loop for each line becomes vectors; one loop with conditions does not.
-        let kick = each(|lane| 0.5 * ((to[lane] - jaw[lane]) * (self.layers[lane] - 1.0) * bodies.per_depth[lane]));
-        let excess = each(|lane| {
-            (jaw[lane] - behind[lane]) * self.per_thickness[lane] - jaw[lane] * bodies.per_depth[lane] + kick[lane]
-        });
-        let excess = each(|lane| self.relaxed(power, lane, excess[lane], dt[lane]) + kick[lane]);
-        let left = each(|lane| to[lane] - self.thickness[lane] * (excess[lane] + to[lane] * bodies.per_depth[lane]));
-        let strain = each(|lane| (to[lane] - left[lane]) / self.thickness[lane]);
-        let force = each(|lane| bodies.modulus[lane] * strain[lane] * bodies.area(lane, to[lane]).0);
-        let wrong = each(|lane| {
-            let opened = choose(jaw[lane] + bodies.hold[lane] >= behind[lane], 0.0, 1.0);
-            let opened = choose(to[lane] + bodies.hold[lane] >= left[lane], opened, 1.0);
-            let is_near = bodies.farther(lane, behind[lane], bodies.farther(lane, jaw[lane], opened));
-            choose(force[lane].abs() < f64::INFINITY, is_near, 1.0)
-        });
-        let wrong = each(|lane| bodies.misfit(lane, to[lane], wrong[lane]));
-        let least = each(|lane| choose(bodies.hold[lane] > 0.0, f64::NEG_INFINITY, 0.0));
+        let kick = each(
+            #[inline(always)]
+            |lane| 0.5 * ((to[lane] - jaw[lane]) * (self.layers[lane] - 1.0) * bodies.per_depth[lane]),
+        );
+        let excess = each(
+            #[inline(always)]
+            |lane| {
+                (jaw[lane] - behind[lane]) * self.per_thickness[lane] - jaw[lane] * bodies.per_depth[lane] + kick[lane]
+            },
+        );
+        let excess = each(
+            #[inline(always)]
+            |lane| self.relaxed(power, lane, excess[lane], dt[lane]) + kick[lane],
+        );
+        let left = each(
+            #[inline(always)]
+            |lane| to[lane] - self.thickness[lane] * (excess[lane] + to[lane] * bodies.per_depth[lane]),
+        );
+        let strain = each(
+            #[inline(always)]
+            |lane| (to[lane] - left[lane]) / self.thickness[lane],
+        );
+        let force = each(
+            #[inline(always)]
+            |lane| bodies.modulus[lane] * strain[lane] * bodies.area(lane, to[lane]).0,
+        );
+        let wrong = each(
+            #[inline(always)]
+            |lane| {
+                let opened = choose(jaw[lane] + bodies.hold[lane] >= behind[lane], 0.0, 1.0);
+                let opened = choose(to[lane] + bodies.hold[lane] >= left[lane], opened, 1.0);
+                let is_near = bodies.farther(lane, behind[lane], bodies.farther(lane, jaw[lane], opened));
+                choose(force[lane].abs() < f64::INFINITY, is_near, 1.0)
+            },
+        );
+        let wrong = each(
+            #[inline(always)]
+            |lane| bodies.misfit(lane, to[lane], wrong[lane]),
+        );
+        let least = each(
+            #[inline(always)]
+            |lane| choose(bodies.hold[lane] > 0.0, f64::NEG_INFINITY, 0.0),
+        );
         Moved {
             jaw: *to,
             behind: left,
-            force: each(|lane| choose(strain[lane] > least[lane], force[lane], 0.0)),
-            wrong: each(|lane| misdated(dt[lane], wrong[lane])),
+            force: each(
+                #[inline(always)]
+                |lane| choose(strain[lane] > least[lane], force[lane], 0.0),
+            ),
+            wrong: each(
+                #[inline(always)]
+                |lane| misdated(dt[lane], wrong[lane]),
+            ),
         }
     }
 

@@ -103,12 +103,21 @@ impl LatencyModels {
             let (block, dt, to) = (self.block(from), dt.lanes(from), to.lanes(from));
             let (jaw, behind) = (lanes(jaw, at), lanes(behind, at));
             let bodies = &block.bodies;
-            let u = each(|lane| to[lane] * bodies.share[lane]);
-            let first = each(|lane| between(jaw[lane], u[lane], (1, step.parts())));
-            let wrong = each(|lane| {
-                let wrong = bodies.farther(lane, behind[lane], bodies.farther(lane, jaw[lane], 0.0));
-                misdated(dt[lane], bodies.misfit(lane, u[lane], bodies.misfit(lane, first[lane], wrong)))
-            });
+            let u = each(
+                #[inline(always)]
+                |lane| to[lane] * bodies.share[lane],
+            );
+            let first = each(
+                #[inline(always)]
+                |lane| between(jaw[lane], u[lane], (1, step.parts())),
+            );
+            let wrong = each(
+                #[inline(always)]
+                |lane| {
+                    let wrong = bodies.farther(lane, behind[lane], bodies.farther(lane, jaw[lane], 0.0));
+                    misdated(dt[lane], bodies.misfit(lane, u[lane], bodies.misfit(lane, first[lane], wrong)))
+                },
+            );
             if all_right(&wrong) {
                 continue;
             }

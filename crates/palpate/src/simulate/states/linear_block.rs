@@ -94,19 +94,37 @@ impl Moving<'_> {
             }
         }
         let hold = &self.bodies.hold;
-        let force = each(|lane| scales[lane] * sums[lane]);
-        let least = each(|lane| choose(hold[lane] > 0.0, f64::NEG_INFINITY, 0.0));
-        self.force = each(|lane| choose(sums[lane] > least[lane], force[lane], 0.0));
-        let wrong = each(|lane| {
-            let wrong = choose(before[lane] + hold[lane] >= 0.0, self.wrong[lane], 1.0);
-            let wrong = choose(sums[lane] + hold[lane] >= 0.0, wrong, 1.0);
-            // Beyond first touch a body whose contact grows has no force to remember.
-            let lowest = if to[lane] < self.jaw[lane] { to[lane] } else { self.jaw[lane] };
-            let can_be = !self.is_of_force[lane] | (self.bodies.section[lane] > 0.0) | (lowest >= 0.0);
-            choose(force[lane].abs() < f64::INFINITY, choose(can_be, wrong, 1.0), 1.0)
-        });
-        let wrong = each(|lane| self.bodies.farther(lane, self.jaw[lane], wrong[lane]));
-        self.wrong = each(|lane| self.bodies.misfit(lane, to[lane], wrong[lane]));
+        let force = each(
+            #[inline(always)]
+            |lane| scales[lane] * sums[lane],
+        );
+        let least = each(
+            #[inline(always)]
+            |lane| choose(hold[lane] > 0.0, f64::NEG_INFINITY, 0.0),
+        );
+        self.force = each(
+            #[inline(always)]
+            |lane| choose(sums[lane] > least[lane], force[lane], 0.0),
+        );
+        let wrong = each(
+            #[inline(always)]
+            |lane| {
+                let wrong = choose(before[lane] + hold[lane] >= 0.0, self.wrong[lane], 1.0);
+                let wrong = choose(sums[lane] + hold[lane] >= 0.0, wrong, 1.0);
+                // Beyond first touch a body whose contact grows has no force to remember.
+                let lowest = if to[lane] < self.jaw[lane] { to[lane] } else { self.jaw[lane] };
+                let can_be = !self.is_of_force[lane] | (self.bodies.section[lane] > 0.0) | (lowest >= 0.0);
+                choose(force[lane].abs() < f64::INFINITY, choose(can_be, wrong, 1.0), 1.0)
+            },
+        );
+        let wrong = each(
+            #[inline(always)]
+            |lane| self.bodies.farther(lane, self.jaw[lane], wrong[lane]),
+        );
+        self.wrong = each(
+            #[inline(always)]
+            |lane| self.bodies.misfit(lane, to[lane], wrong[lane]),
+        );
         self.jaw = *to;
     }
 }
