@@ -162,7 +162,7 @@ mod tests {
 
     #[test]
     fn no_name_of_a_file_ends_a_comment() {
-        assert_eq!(plain("a--b---c\n*/ \"\"\" −1 é"), "a- -b- - -c?* / ''' -1 ?");
+        assert_eq!(plain("a--b---c\n*/ \"\"\" −1 é"), "a- -b- - -c * / ''' -1 ?");
         assert!(!plain("-----").contains("--"));
     }
 
