@@ -140,7 +140,7 @@ def test_an_action_of_nan_leaves_the_command_and_one_beyond_is_the_most(control:
         if k > 5:
             other[1] = np.nan
         expected, found = plain.step(action), odd.step(other)
-        assert all(np.array_equal(a, b) for a, b in zip(expected[:4], found[:4], strict=True))
+        assert all(np.array_equal(np.asarray(a), np.asarray(b)) for a, b in zip(expected[:4], found[:4], strict=True))
     expected, found = plain.step(pushed(plain, 1.0)), odd.step(np.full((4, 1), np.inf))
     assert np.array_equal(expected[0], found[0])
     for wrong in (np.zeros(4), np.zeros((3, 1)), np.zeros((4, 2))):
