@@ -69,7 +69,7 @@ def test_a_changed_base_of_the_state_is_refused() -> None:
 def test_substeps_are_steps() -> None:
     for model in (MODEL, PRONY):
         contacts, plain = palpate.ContactStates(model, 9), palpate.ContactStates(model, 9)
-        to = np.linspace(1e-3, 5e-3, 9)
+        to, forces = np.linspace(1e-3, 5e-3, 9), np.empty(0)
         for k in range(1, 11):
             forces = plain.step(0.01, to * k / 10)
         np.testing.assert_allclose(contacts.step(0.1, to, substeps=10), forces, rtol=1e-12)

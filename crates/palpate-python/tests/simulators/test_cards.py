@@ -4,11 +4,10 @@ from __future__ import annotations
 
 from pathlib import Path
 
-import mujoco
 import numpy as np
 import palpate
 import pytest
-from mujoco_cards import mujoco_forces, mujoco_model, squeeze
+from mujoco_cards import mujoco, mujoco_forces, mujoco_model, squeeze
 
 ROOT = Path(__file__).resolve().parents[4]
 BALL = ROOT / "examples/records/ball-material.toml"

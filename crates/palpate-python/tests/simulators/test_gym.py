@@ -86,7 +86,8 @@ def test_the_force_that_is_needed_holds_and_less_does_not(mass_kg: float) -> Non
     for share, holds in ((1.05, True), (0.95, False)):
         envs = SoftGripVectorEnv(2, max_episode_steps=None, control="force", mass_kg=mass_kg)
         envs.reset(seed=0)
-        lost = np.zeros(2, np.bool_)
+        lost, infos = np.zeros(2, np.bool_), dict[str, Any]()
+        observations: Any = None
         for _ in range(250):
             observations, _, terminations, _, infos = envs.step(pushed(envs, share * task.needed_force_n() / task.force_n))
             lost |= terminations
@@ -103,7 +104,7 @@ def test_a_squeeze_relaxes_until_it_lets_go() -> None:
     squeeze_m = 5.5e-3
     envs = SoftGripVectorEnv(1, max_episode_steps=None, mass_kg=0.2, lift_s=0.3, lift_takes_s=0.01)
     envs.reset(seed=0)
-    alone, place, forces = palpate.ContactState(envs.task.model), 0.0, []
+    alone, place, forces, infos = palpate.ContactState(envs.task.model), 0.0, [], dict[str, Any]()
     for _ in range(1000):
         _, _, terminations, _, infos = envs.step(pushed(envs, squeeze_m / envs.task.travel_m))
         forces.append(float(infos["force_n"][0]))
@@ -121,6 +122,7 @@ def test_a_squeeze_relaxes_until_it_lets_go() -> None:
 def test_too_much_force_crushes() -> None:
     envs = SoftGripVectorEnv(4, crush_force_n=3.0)
     envs.reset(seed=0)
+    rewards, infos = np.empty(0), dict[str, Any]()
     for _ in range(50):
         _, rewards, terminations, _, infos = envs.step(pushed(envs, 1.0))
         if terminations.any():
