@@ -3,7 +3,7 @@
     python validation/simulators/measure.py [--only NAME,...] [--write]
 
 Each part is a module beside this file that can be run alone. Python needs `requirements.txt`, the package palpate as a release wheel, and,
-for the plug-in, a C compiler. A part whose simulator is not installed is left out by name, and the page states so. The tables are printed;
+for the plug-in, cargo and a C compiler. A part whose simulator is not installed is left out by name, and the page states so. The tables are printed;
 with --write they go to docs/validation/simulators.md, where those of the other parts stay.
 """
 
@@ -15,6 +15,8 @@ import importlib.util
 import os
 import pathlib
 import platform
+import re
+import subprocess
 import sys
 
 import palpate
@@ -43,6 +45,12 @@ def sections(text: str) -> dict[str, str]:
     return {part.split("\n", 1)[0]: part.split("\n", 1)[1].strip("\n") for part in parts}
 
 
+def below_its_title(text: str) -> str:
+    """A part as a section: without a title of its own, its headings one level lower."""
+    text = re.sub(r"\A#+ .*\n", "", text.strip())
+    return re.sub(r"^(#+ )", r"#\1", text, flags=re.MULTILINE).strip()
+
+
 def page(found: dict[str, str]) -> str:
     return "\n".join([HEAD, *(f"## {title}\n\n{found[title]}\n" for title, _ in PARTS.values() if title in found)])
 
@@ -65,9 +73,12 @@ def main() -> int:
         if name == "gpu" and not importlib.import_module("warp").get_cuda_device_count():
             print("gpu: left out, no CUDA device", file=sys.stderr)
             continue
-        text = importlib.import_module(name).page()
+        if name == "mujoco_plugin" and "PALPATE_MUJOCO_PLUGIN" not in os.environ:
+            build = [sys.executable, str(ROOT / "simulators" / "mujoco" / "build.py")]
+            os.environ["PALPATE_MUJOCO_PLUGIN"] = subprocess.run(build, check=True, capture_output=True, text=True).stdout.strip()
+        text = below_its_title(importlib.import_module(name).page())
         machine = f"palpate {palpate.__version__}, {platform.system()} {platform.release()}, {os.cpu_count()} processors"
-        found[title] = f"{text.strip()}\n\n`measure.py --only {name}`: {machine}."
+        found[title] = f"{text}\n\n`measure.py --only {name}`: {machine}."
         if wanted.write:
             PAGE.write_text(page(found))
     print(page(found))
