@@ -46,9 +46,9 @@ def sections(text: str) -> dict[str, str]:
 
 
 def below_its_title(text: str) -> str:
-    """A part as a section: without a title of its own, its headings one level lower."""
+    """A part as a section: without a title of its own, and its headings below that of the section."""
     text = re.sub(r"\A#+ .*\n", "", text.strip())
-    return re.sub(r"^(#+ )", r"#\1", text, flags=re.MULTILINE).strip()
+    return re.sub(r"^## ", "### ", text, flags=re.MULTILINE).strip()
 
 
 def page(found: dict[str, str]) -> str:
