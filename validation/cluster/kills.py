@@ -162,7 +162,7 @@ class Kills:
                 os.kill(pid, signal.SIGKILL)
             except ProcessLookupError:
                 continue
-        time.sleep(self.chance.uniform(0, 2))
+        time.sleep(self.chance.uniform(2, 4))
         log = (conf.parent / f"{node[0]}.out").open("ab")
         self.daemons.append(subprocess.Popen(["slurmd", "-D", "-c", "-N", node[0]], stdout=log, stderr=log))
         return bool(steps)

@@ -86,6 +86,9 @@ MaxArraySize=100001
 MaxJobCount=100000
 JobRequeue=1
 KillWait=5
+# A node that registers anew within this time after the start of a job is not checked for it, 10 s by default.
+BatchStartTimeout=1
+SlurmdTimeout=10
 InactiveLimit=0
 NodeName=one NodeHostname=$(hostname) NodeAddr=127.0.0.1 Port=${ports[1]} CPUs=1 RealMemory=2000
 NodeName=two NodeHostname=$(hostname) NodeAddr=127.0.0.1 Port=${ports[2]} CPUs=1 RealMemory=2000
