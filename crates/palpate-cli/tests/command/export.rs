@@ -202,6 +202,8 @@ fn a_question_beyond_the_test_is_noted_and_stands_in_the_card() {
         "the largest displacement is 20.0 mm",
         "the fastest ramp is 50.0 mm/s",
         "the longest hold lasts 60.0 s",
+        // That at the end of loading, not that at the end of the hold.
+        "the largest force is 25.1 N",
     ] {
         assert!(error.contains(&format!("beyond the test: {beyond}")), "{error}");
         assert!(text.contains(&format!("Beyond the test: {beyond}")), "{text}");

@@ -58,9 +58,10 @@ impl Export {
         let motion =
             Motion::new(vec![0.0, duration, duration + conditions.hold], vec![0.0, conditions.depth, conditions.depth])
                 .map_err(|error| refused(&error.into()))?;
-        let at_end = Sampling::Times(vec![duration + conditions.hold]);
+        // What is beyond the test: the largest force is that at the end of loading.
+        let both_ends = Sampling::Times(vec![duration, duration + conditions.hold]);
         let predicted = material
-            .predict_watched(&motion, &at_end, 0.95, watch)
+            .predict_watched(&motion, &both_ends, 0.95, watch)
             .map_err(|error| JobError::simulation(error).of(&source.name))?;
         watch.report(Progress::open("fitting", 0))?;
         let loading = Loading::of(material.contact(), conditions).map_err(|error| refused(&error))?;
