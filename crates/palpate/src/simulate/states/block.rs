@@ -1,8 +1,9 @@
 //! Contacts of the latency law that stay in contact, side by side in vectors.
 
-use super::parameters::{ContactParameter, Parameters};
+use super::alone::is_extreme;
+use super::part::Column;
 use crate::contact::{Equilibrium, Shape, Specimen};
-use crate::latency::lanes::{Power, by_power, each};
+use crate::latency::lanes::Power;
 use crate::simulate::{ContactModel, Separation};
 use crate::vector::LANES;
 use crate::vector::elementary::{exp, ln, ln_1p};
@@ -13,11 +14,13 @@ pub(super) type Lanes = [f64; LANES];
 /// Values from a position on; the last of them also in place of those that are not there.
 #[inline(always)]
 pub(super) fn lanes(all: &[f64], from: usize) -> Lanes {
-    let some = all.get(from..).unwrap_or_default();
+    all.get(from..).and_then(<[f64]>::first_chunk).copied().unwrap_or_else(|| some_lanes(all, from))
+}
+
+#[inline(never)]
+fn some_lanes(all: &[f64], from: usize) -> Lanes {
     let last = all.len() - 1;
-    some.first_chunk()
-        .copied()
-        .unwrap_or_else(|| std::array::from_fn(|lane| all[(from + lane).min(last)]))
+    std::array::from_fn(|lane| all[(from + lane).min(last)])
 }
 
 /// Writes values from a position on, as many as there is room for.
@@ -26,8 +29,13 @@ pub(super) fn store(all: &mut [f64], from: usize, values: &Lanes) {
     let Some(some) = all.get_mut(from..) else { return };
     match some.first_chunk_mut() {
         Some(chunk) => *chunk = *values,
-        None => some.iter_mut().zip(values).for_each(|(slot, value)| *slot = *value),
+        None => store_some(some, values),
     }
+}
+
+#[inline(never)]
+fn store_some(some: &mut [f64], values: &Lanes) {
+    some.iter_mut().zip(values).for_each(|(slot, value)| *slot = *value);
 }
 
 /// The bodies of contacts side by side: E ε A(u) of a ball, a pad or a prism, and where others begin that are stepped alone.
@@ -40,8 +48,6 @@ pub(super) struct Bodies {
     pub(super) modulus: Lanes,
     /// Twice the radius of a ball or a pad, 0 of another body.
     pub(super) diameter: Lanes,
-    /// Whether the radius is the depth.
-    is_ball: [bool; LANES],
     /// The contact area of a prism.
     pub(super) section: Lanes,
     /// Contact displacements from which on there is no body, and below which nothing holds on to it.
@@ -75,41 +81,21 @@ impl Bodies {
                 Shape::Ball { radius } | Shape::Pad { radius, .. } => 2.0 * radius,
                 _ => 0.0,
             }),
-            is_ball: std::array::from_fn(|lane| {
-                matches!(bodies[lane.min(bodies.len() - 1)].0.shape(), Shape::Ball { .. })
-            }),
             section: of_each(&|specimen, _| match specimen.shape() {
                 Shape::Prism { area, .. } => *area,
                 _ => 0.0,
             }),
-            limit: of_each(&|specimen, bonded| match (is_plain(specimen), bonded && specimen.has_constant_section()) {
-                // A body of another form is stepped alone.
-                (false, _) => f64::NEG_INFINITY,
-                (true, true) => f64::INFINITY,
-                (true, false) => specimen.limit().at,
+            limit: of_each(&|specimen, bonded| match bonded && specimen.has_constant_section() {
+                // A body of another form, or of no size that there is, is stepped alone.
+                _ if !is_plain(specimen) || is_extreme(specimen) => f64::NEG_INFINITY,
+                true => FARTHEST * specimen.depth(),
+                false => specimen.limit().at.min(FARTHEST * specimen.depth()),
             }),
-            lowest: of_each(&|specimen, bonded| {
-                if bonded && !specimen.has_constant_section() { 0.0 } else { f64::NEG_INFINITY }
+            lowest: of_each(&|specimen, bonded| match bonded && !specimen.has_constant_section() {
+                true => 0.0,
+                false => -FARTHEST * specimen.depth(),
             }),
             hold: of_each(&|_, bonded| if bonded { f64::INFINITY } else { 0.0 }),
-        }
-    }
-
-    /// With the values of parameters from contact `from` on.
-    #[inline(always)]
-    pub(super) fn set(&mut self, parameters: &Parameters, from: usize) {
-        if let Some(modulus) = parameters.values(ContactParameter::Modulus) {
-            self.modulus = lanes(modulus, from);
-        }
-        if let Some(radius) = parameters.values(ContactParameter::Radius) {
-            for (lane, radius) in lanes(radius, from).into_iter().enumerate() {
-                self.diameter[lane] = 2.0 * radius;
-                if self.is_ball[lane] {
-                    self.depth[lane] = radius;
-                    self.per_depth[lane] = 1.0 / radius;
-                    self.limit[lane] = if self.limit[lane] > 0.0 { radius } else { self.limit[lane] };
-                }
-            }
         }
     }
 
@@ -117,46 +103,44 @@ impl Bodies {
     #[inline(always)]
     pub(super) fn area(&self, lane: usize, u: f64) -> (f64, f64) {
         let inside = if u > 0.0 { u } else { 0.0 };
+        // Both are loaded before the choice: a load behind it is one under a mask.
         let (diameter, section) = (self.diameter[lane], self.section[lane]);
         let round = std::f64::consts::PI * inside * (diameter - inside);
         let growth = std::f64::consts::PI * (diameter - 2.0 * inside);
-        let is_round = diameter > 0.0;
-        (choose(is_round, round, section), choose(is_round, growth, 0.0))
+        if diameter > 0.0 { (round, growth) } else { (section, 0.0) }
     }
 
-    /// `wrong`, or 1 where a contact displacement is none that vector code takes.
+    /// Whether vector code takes a contact displacement.
     #[inline(always)]
-    pub(super) fn misfit(&self, lane: usize, u: f64, wrong: f64) -> f64 {
-        let wrong = choose(u < self.limit[lane], wrong, 1.0);
-        let wrong = choose(u >= self.lowest[lane], wrong, 1.0);
-        self.farther(lane, u, wrong)
+    pub(super) fn fits(&self, lane: usize, u: f64) -> bool {
+        (u < self.limit[lane]) & (u >= self.lowest[lane])
     }
 
-    /// `wrong`, or 1 where a position is beyond [`FARTHEST`], or NaN.
+    /// Whether the sum of some distances is below [`FARTHEST`], and a number.
     #[inline(always)]
-    pub(super) fn farther(&self, lane: usize, position: f64, wrong: f64) -> f64 {
-        choose(position.abs() < FARTHEST * self.depth[lane], wrong, 1.0)
+    pub(super) fn is_near(&self, lane: usize, distances: f64) -> bool {
+        distances < FARTHEST * self.depth[lane]
+    }
+
+    /// Strains, or sums of them, from which on a contact pulls or presses.
+    #[inline(always)]
+    pub(super) fn least(&self, lane: usize) -> f64 {
+        if self.hold[lane] > 0.0 { f64::NEG_INFINITY } else { 0.0 }
     }
 }
 
-/// One of two numbers, without a branch.
+/// Whether there is such a time step.
 #[inline(always)]
-pub(super) fn choose(first: bool, yes: f64, no: f64) -> f64 {
-    if first { yes } else { no }
+pub(super) fn is_step(dt: f64) -> bool {
+    // A bound that is no infinity: with one the compiler looks at the bits, which takes four times as long.
+    (0.0..=f64::MAX).contains(&dt)
 }
 
-/// `wrong`, or 1 where a time step is none.
-#[inline(always)]
-pub(super) fn misdated(dt: f64, wrong: f64) -> f64 {
-    choose(dt < f64::INFINITY, choose(dt >= 0.0, wrong, 1.0), 1.0)
-}
+/// Which contacts are to be stepped alone.
+pub(super) type Marks = [bool; LANES];
 
-/// Whether none of the lanes is wrong.
-#[inline(always)]
-pub(super) fn all_right(wrong: &Lanes) -> bool {
-    let [a, b, c, d, e, f, g, h] = *wrong;
-    ((a + b) + (c + d)) + ((e + f) + (g + h)) == 0.0
-}
+/// Layers that no body has.
+pub(super) const MOST_LAYERS: f64 = 1e50;
 
 /// Positions beyond so many depths of a body are refused: their forces might not be finite.
 pub(super) const FARTHEST: f64 = 1e6;
@@ -165,7 +149,7 @@ pub(super) const FARTHEST: f64 = 1e6;
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Block {
     pub(super) bodies: Bodies,
-    power: Power,
+    pub(super) power: Power,
     exponent: Lanes,
     rate_coefficient: Lanes,
     thickness: Lanes,
@@ -175,12 +159,15 @@ pub(super) struct Block {
 }
 
 /// Contacts after a step.
+#[derive(Clone, Copy)]
 pub(super) struct Moved {
     pub(super) jaw: Lanes,
     pub(super) behind: Lanes,
     pub(super) force: Lanes,
-    /// 0 where the contact was closed all along, at values that can be; 1 elsewhere.
-    pub(super) wrong: Lanes,
+    /// Whether all were closed all along, at values that can be.
+    pub(super) is_right: bool,
+    /// Those that were not.
+    pub(super) wrong: Marks,
 }
 
 impl Block {
@@ -191,8 +178,13 @@ impl Block {
         };
         let exponent = of_each(&|model| model.law.exponent());
         let bodies: Vec<_> = models.iter().map(|model| (&model.specimen, model.separation)).collect();
+        let mut bodies = Bodies::new(&bodies);
+        for (lane, limit) in bodies.limit.iter_mut().enumerate() {
+            let layers = models[lane.min(models.len() - 1)].layers.count();
+            *limit = if layers > MOST_LAYERS { f64::NEG_INFINITY } else { *limit };
+        }
         Self {
-            bodies: Bodies::new(&bodies),
+            bodies,
             power: Power::of(&exponent),
             exponent,
             rate_coefficient: of_each(&|model| model.law.rate_coefficient()),
@@ -202,128 +194,138 @@ impl Block {
         }
     }
 
-    /// With the values of parameters from contact `from` on.
+    /// Steps blocks one after the other as long as all of their contacts stay in contact and have this power; returns how many.
+    ///
+    /// Nothing else is in the loop, so that all of it is in registers.
     #[inline(always)]
-    pub(super) fn with(&self, parameters: &Parameters, from: usize) -> Self {
-        let mut block = self.clone();
-        block.bodies.set(parameters, from);
-        if let Some(exponent) = parameters.values(ContactParameter::Exponent) {
-            block.exponent = lanes(exponent, from);
-            block.power = Power::of(&block.exponent);
-        }
-        if let Some(rate_coefficient) = parameters.values(ContactParameter::RateCoefficient) {
-            block.rate_coefficient = lanes(rate_coefficient, from);
-        }
-        if let Some(thickness) = parameters.values(ContactParameter::LayerThickness) {
-            for (lane, thickness) in lanes(thickness, from).into_iter().enumerate() {
-                block.layers[lane] = block.bodies.depth[lane] / thickness;
+    pub(super) fn moved_in_row<'a>(
+        block: impl Fn(usize) -> &'a Self,
+        power: Power,
+        (jaws, behinds, forces): (&mut [Lanes], &mut [Lanes], &mut [Lanes]),
+        (dt, to): (Column<'_>, Column<'_>),
+        parts: u32,
+    ) -> usize {
+        let count = jaws.len();
+        for (index, ((jaw, behind), force)) in jaws.iter_mut().zip(behinds).zip(forces).enumerate() {
+            let block = block(index);
+            if block.power != power {
+                return index;
             }
+            let moved = block.moved(power, (*jaw, *behind), (*dt.block(index), *to.block(index)), parts);
+            if !moved.is_right {
+                return index;
+            }
+            (*jaw, *behind, *force) = (moved.jaw, moved.behind, moved.force);
         }
+        count
+    }
+
+    /// A step in equal parts, in contact all along, in code for vectors; `to` is a displacement of the jaw (m), `power` that of the block.
+    #[inline(always)]
+    pub(super) fn moved(&self, power: Power, state: (Lanes, Lanes), (dt, to): (Lanes, Lanes), parts: u32) -> Moved {
+        let mut target = [0.0; LANES];
         for lane in 0..LANES {
-            block.thickness[lane] = block.bodies.depth[lane] / block.layers[lane];
-            block.per_thickness[lane] = 1.0 / block.thickness[lane];
+            target[lane] = to[lane] * self.bodies.share[lane];
         }
-        block
-    }
-
-    /// A step in equal parts, in contact all along, in code for vectors; `to` is a displacement of the jaw (m).
-    #[inline(always)]
-    pub(super) fn moved(&self, (jaw, behind): (&Lanes, &Lanes), dt: &Lanes, to: &Lanes, substeps: u32) -> Moved {
-        by_power!(self.power, power => self.moved_by(power, (jaw, behind), dt, to, substeps))
-    }
-
-    #[inline(always)]
-    fn moved_by(&self, power: Power, (jaw, behind): (&Lanes, &Lanes), dt: &Lanes, to: &Lanes, substeps: u32) -> Moved {
-        let target = each(
-            #[inline(always)]
-            |lane| to[lane] * self.bodies.share[lane],
-        );
-        if substeps == 1 {
-            return self.pressed(power, (jaw, behind), dt, &target);
+        if parts == 1 {
+            return self.pressed(power, state, dt, target);
         }
-        let part_dt = each(
-            #[inline(always)]
-            |lane| dt[lane] / f64::from(substeps),
-        );
-        let first = each(
-            #[inline(always)]
-            |lane| between(jaw[lane], target[lane], (1, substeps)),
-        );
-        let mut moved = self.pressed(power, (jaw, behind), &part_dt, &first);
-        for step in 2..=substeps {
-            let next = each(
-                #[inline(always)]
-                |lane| between(jaw[lane], target[lane], (step, substeps)),
-            );
+        let part_dt = dt.map(|dt| dt / f64::from(parts));
+        let mut moved = Moved {
+            jaw: state.0,
+            behind: state.1,
+            force: [0.0; LANES],
+            is_right: true,
+            wrong: [false; LANES],
+        };
+        for part in 1..=parts {
+            let mut next = [0.0; LANES];
+            for lane in 0..LANES {
+                next[lane] = between(state.0[lane], target[lane], (part, parts));
+            }
             let before = moved;
-            moved = self.pressed(power, (&before.jaw, &before.behind), &part_dt, &next);
-            moved.wrong = each(
-                #[inline(always)]
-                |lane| moved.wrong[lane] + before.wrong[lane],
-            );
+            moved = self.pressed(power, (before.jaw, before.behind), part_dt, next);
+            moved.is_right &= before.is_right;
+            for (mark, before) in moved.wrong.iter_mut().zip(before.wrong) {
+                *mark |= before;
+            }
         }
         moved
     }
 
+    /// A step of contacts of which some are closed all along and some open all along, in equal parts.
+    #[inline(always)]
+    pub(super) fn moved_or_freed(&self, power: Power, state: (Lanes, Lanes), to: (Lanes, Lanes), parts: u32) -> Moved {
+        let mut moved = self.moved(power, state, to, parts);
+        if (0..LANES).any(|lane| moved.wrong[lane] && state.0[lane] < state.1[lane]) {
+            let freed = self.freed(power, state, to, parts);
+            for lane in 0..LANES {
+                if moved.wrong[lane] && !freed.wrong[lane] {
+                    (moved.jaw[lane], moved.behind[lane], moved.force[lane]) =
+                        (freed.jaw[lane], freed.behind[lane], 0.0);
+                    moved.wrong[lane] = false;
+                }
+            }
+        }
+        moved
+    }
+
+    /// As [`moved`](Self::moved) for jaws that are off their bodies all along: the surfaces relax on their own.
+    #[inline(always)]
+    fn freed(&self, power: Power, (jaw, behind): (Lanes, Lanes), (dt, to): (Lanes, Lanes), parts: u32) -> Moved {
+        let bodies = &self.bodies;
+        let (mut jaws, mut surfaces, mut wrong) = (jaw, behind, [false; LANES]);
+        for part in 1..=parts {
+            for lane in 0..LANES {
+                let (from, before, depth) = (jaws[lane], surfaces[lane], bodies.depth[lane]);
+                let u = between(jaw[lane], to[lane] * bodies.share[lane], (part, parts));
+                let time = dt[lane] / f64::from(parts) / self.layers[lane];
+                let after = depth * self.relaxed(power, lane, before / depth, time);
+                // Where the jaw ends as `ContactState` has it.
+                let is_off = (from < before) & (after > from + (u - from)) & (after >= u) & (bodies.hold[lane] == 0.0);
+                let is_near = bodies.is_near(lane, from.abs() + before.abs()) & bodies.fits(lane, u);
+                wrong[lane] |= !(is_off & is_near & is_step(dt[lane]));
+                (jaws[lane], surfaces[lane]) = (u, after);
+            }
+        }
+        Moved {
+            jaw: jaws,
+            behind: surfaces,
+            force: [0.0; LANES],
+            is_right: !wrong.contains(&true),
+            wrong,
+        }
+    }
+
     /// In contact all along, as `ContactState` has it, to contact displacements `to` (m).
     #[inline(always)]
-    fn pressed(&self, power: Power, (jaw, behind): (&Lanes, &Lanes), dt: &Lanes, to: &Lanes) -> Moved {
+    fn pressed(&self, power: Power, (jaw, behind): (Lanes, Lanes), dt: Lanes, to: Lanes) -> Moved {
         let bodies = &self.bodies;
-        // A loop for each line becomes vectors; one loop with conditions does not.
-        let kick = each(
-            #[inline(always)]
-            |lane| 0.5 * ((to[lane] - jaw[lane]) * (self.layers[lane] - 1.0) * bodies.per_depth[lane]),
-        );
-        let excess = each(
-            #[inline(always)]
-            |lane| {
-                (jaw[lane] - behind[lane]) * self.per_thickness[lane] - jaw[lane] * bodies.per_depth[lane] + kick[lane]
-            },
-        );
-        let excess = each(
-            #[inline(always)]
-            |lane| self.relaxed(power, lane, excess[lane], dt[lane]) + kick[lane],
-        );
-        let left = each(
-            #[inline(always)]
-            |lane| to[lane] - self.thickness[lane] * (excess[lane] + to[lane] * bodies.per_depth[lane]),
-        );
-        let strain = each(
-            #[inline(always)]
-            |lane| (to[lane] - left[lane]) / self.thickness[lane],
-        );
-        let force = each(
-            #[inline(always)]
-            |lane| bodies.modulus[lane] * strain[lane] * bodies.area(lane, to[lane]).0,
-        );
-        let wrong = each(
-            #[inline(always)]
-            |lane| {
-                let opened = choose(jaw[lane] + bodies.hold[lane] >= behind[lane], 0.0, 1.0);
-                let opened = choose(to[lane] + bodies.hold[lane] >= left[lane], opened, 1.0);
-                let is_near = bodies.farther(lane, behind[lane], bodies.farther(lane, jaw[lane], opened));
-                choose(force[lane].abs() < f64::INFINITY, is_near, 1.0)
-            },
-        );
-        let wrong = each(
-            #[inline(always)]
-            |lane| bodies.misfit(lane, to[lane], wrong[lane]),
-        );
-        let least = each(
-            #[inline(always)]
-            |lane| choose(bodies.hold[lane] > 0.0, f64::NEG_INFINITY, 0.0),
-        );
+        let (mut left, mut forces, mut wrong) = ([0.0; LANES], [0.0; LANES], [false; LANES]);
+        let mut is_right = true;
+        for lane in 0..LANES {
+            let (from, held, u) = (jaw[lane], behind[lane], to[lane]);
+            let (per_depth, thickness, hold) = (bodies.per_depth[lane], self.thickness[lane], bodies.hold[lane]);
+            let kick = 0.5 * ((u - from) * (self.layers[lane] - 1.0) * per_depth);
+            let excess = (from - held) * self.per_thickness[lane] - from * per_depth + kick;
+            let excess = self.relaxed(power, lane, excess, dt[lane]) + kick;
+            let node = u - thickness * (excess + u * per_depth);
+            let strain = (u - node) / thickness;
+            let is_closed = (from + hold >= held) & (u + hold >= node);
+            let is_near = bodies.is_near(lane, from.abs() + held.abs()) & bodies.fits(lane, u);
+            // The force is finite where all of this is: bodies and layers beyond all measure are stepped alone. At no strain it is 0.
+            let is_fine = is_closed & is_near & is_step(dt[lane]);
+            left[lane] = node;
+            forces[lane] = bodies.modulus[lane] * strain * bodies.area(lane, u).0;
+            is_right &= is_fine;
+            wrong[lane] = !is_fine;
+        }
         Moved {
-            jaw: *to,
+            jaw: to,
             behind: left,
-            force: each(
-                #[inline(always)]
-                |lane| choose(strain[lane] > least[lane], force[lane], 0.0),
-            ),
-            wrong: each(
-                #[inline(always)]
-                |lane| misdated(dt[lane], wrong[lane]),
-            ),
+            force: forces,
+            is_right,
+            wrong,
         }
     }
 

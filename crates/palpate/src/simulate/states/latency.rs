@@ -2,12 +2,13 @@
 //! meets it.
 
 use std::borrow::Cow;
+use std::mem;
 
 use super::alone::{check_move, finite, forced_alone, is_extreme, moved_alone};
-use super::block::{Block, Lanes, Moved, all_right, between, lanes, misdated, store};
-use super::parameters::{ContactParameter, Parameters, Value, ValueProblem, of_model, own_model};
+use super::block::{Block, Lanes, MOST_LAYERS, Marks, Moved, between, is_step, lanes, store};
+use super::parameters::{ContactParameter, Parameters, Value, ValueProblem, of_model, own_model, renew};
 use super::part::{Column, ContactsStep, Imposed, OneStepError, Part, Refusal};
-use crate::latency::lanes::each;
+use crate::latency::lanes::{Power, by_power};
 use crate::simulate::{ContactModel, ContactState};
 use crate::vector::{LANES, accelerated_by_four};
 
@@ -16,7 +17,7 @@ use crate::vector::{LANES, accelerated_by_four};
 pub(super) struct LatencyModels {
     /// One for all contacts, or one each.
     models: Vec<ContactModel>,
-    /// Their numbers: one block for all contacts, or one for as many as go side by side.
+    /// Their numbers, with those parameters: one block for all contacts, or one for as many as go side by side.
     blocks: Vec<Block>,
     /// Parameters that each contact has a value of.
     parameters: Parameters,
@@ -51,8 +52,17 @@ impl LatencyModels {
         own_model(&self.models[0], value).err()
     }
 
-    pub(super) fn parameters_mut(&mut self) -> &mut Parameters {
-        &mut self.parameters
+    /// Puts values of parameters in the place of those of the contacts that `mask` marks; see [`Parameters::replace`].
+    pub(super) fn replace(&mut self, values: &[(ContactParameter, &[f64])], mask: &[bool]) {
+        for (parameter, values) in values {
+            let base = self.value(*parameter).unwrap_or_default();
+            self.parameters.replace(*parameter, base, values, mask);
+        }
+        let mut blocks = mem::take(&mut self.blocks);
+        renew(&mut blocks, mask, |some| {
+            Block::new(&some.map(|index| self.model(index).into_owned()).collect::<Vec<_>>())
+        });
+        self.blocks = blocks;
     }
 
     /// The model of a contact.
@@ -65,25 +75,16 @@ impl LatencyModels {
         own_model(base, &|parameter| self.parameters.value(parameter, index)).map_or(Cow::Borrowed(base), Cow::Owned)
     }
 
-    /// The numbers of the models of contacts from `from` on, without parameters of each.
-    #[inline(always)]
-    fn shared_block(&self, from: usize) -> &Block {
-        if self.models.len() == 1 { &self.blocks[0] } else { &self.blocks[from / LANES] }
-    }
-
     /// The numbers of the contacts from `from` on.
     #[inline(always)]
-    fn block(&self, from: usize) -> Cow<'_, Block> {
-        match self.parameters.is_empty() {
-            true => Cow::Borrowed(self.shared_block(from)),
-            false => Cow::Owned(self.shared_block(from).with(&self.parameters, from)),
-        }
+    fn block(&self, from: usize) -> &Block {
+        if self.blocks.len() == 1 { &self.blocks[0] } else { &self.blocks[from / LANES] }
     }
 
     /// Whether forces of a contact may overflow although positions are near the body: parameters of no body that there is.
     pub(super) fn is_extreme(&self, index: usize) -> bool {
         let model = self.model(index);
-        is_extreme(&model.specimen) || model.layers.count() > 1e50
+        is_extreme(&model.specimen) || model.layers.count() > MOST_LAYERS
     }
 
     /// Why the first contact cannot take a step of its displacement, if one cannot.
@@ -102,26 +103,20 @@ impl LatencyModels {
             let from = part.from + at;
             let (block, dt, to) = (self.block(from), dt.lanes(from), to.lanes(from));
             let (jaw, behind) = (lanes(jaw, at), lanes(behind, at));
-            let bodies = &block.bodies;
-            let u = each(
-                #[inline(always)]
-                |lane| to[lane] * bodies.share[lane],
-            );
-            let first = each(
-                #[inline(always)]
-                |lane| between(jaw[lane], u[lane], (1, step.parts())),
-            );
-            let wrong = each(
-                #[inline(always)]
-                |lane| {
-                    let wrong = bodies.farther(lane, behind[lane], bodies.farther(lane, jaw[lane], 0.0));
-                    misdated(dt[lane], bodies.misfit(lane, u[lane], bodies.misfit(lane, first[lane], wrong)))
-                },
-            );
-            if all_right(&wrong) {
+            let (bodies, mut wrong, mut is_right): (_, Marks, _) = (&block.bodies, [false; LANES], true);
+            for lane in 0..LANES {
+                let u = to[lane] * bodies.share[lane];
+                let first = between(jaw[lane], u, (1, step.parts()));
+                let is_near = bodies.is_near(lane, jaw[lane].abs() + behind[lane].abs());
+                let fits = bodies.fits(lane, u) & bodies.fits(lane, first);
+                let is_fine = is_near & fits & is_step(dt[lane]);
+                is_right &= is_fine;
+                wrong[lane] = !is_fine;
+            }
+            if is_right {
                 continue;
             }
-            for lane in (0..LANES.min(part.results.len() - at)).filter(|lane| wrong[*lane] > 0.0) {
+            for lane in (0..LANES.min(part.results.len() - at)).filter(|lane| wrong[*lane]) {
                 let state = ContactState {
                     jaw: jaw[lane],
                     behind: behind[lane],
@@ -146,32 +141,55 @@ impl LatencyModels {
     }
 
     #[inline(always)]
-    fn step_displacement(&self, part: Part<'_>, step: &ContactsStep<'_>) -> Result<usize, OneStepError> {
-        let (count, mut rows, mut failures) = (part.results.len(), part.rows, 0);
-        let [jaw, behind] = &mut rows[..] else { return Ok(0) };
-        let (dt, to) = (Column::new(step.dt), Column::new(step.to));
+    fn step_displacement(&self, mut part: Part<'_>, step: &ContactsStep<'_>) -> Result<usize, OneStepError> {
         part.failed.fill(false);
-        for at in (0..count).step_by(LANES) {
-            let from = part.from + at;
-            let (dt, to) = (dt.lanes(from), to.lanes(from));
-            let (old_jaw, old_behind) = (lanes(jaw, at), lanes(behind, at));
-            let own;
-            let block = match self.parameters.is_empty() {
-                true => self.shared_block(from),
-                false => {
-                    own = self.shared_block(from).with(&self.parameters, from);
-                    &own
-                }
-            };
-            let mut moved = block.moved((&old_jaw, &old_behind), &dt, &to, step.parts());
-            if !all_right(&moved.wrong) {
-                let failed = &mut part.failed[at..count.min(at + LANES)];
-                failures += self.alone(from, (&old_jaw, &old_behind), step, &mut moved, failed)?;
+        let (count, mut at, mut failures) = (part.results.len(), 0, 0);
+        while at < count {
+            if at + LANES <= count {
+                at += LANES * self.step_in_row(&mut part, at, step);
             }
-            store(jaw, at, &moved.jaw);
-            store(behind, at, &moved.behind);
-            store(part.results, at, &moved.force);
+            if at < count {
+                failures += self.step_block(&mut part, at, step)?;
+                at += LANES;
+            }
         }
+        Ok(failures)
+    }
+
+    /// Steps complete blocks from contact `at` on until one has contacts that leave or meet their bodies, or another power; returns how many.
+    #[inline(always)]
+    fn step_in_row(&self, part: &mut Part<'_>, at: usize, step: &ContactsStep<'_>) -> usize {
+        let [jaw, behind] = &mut part.rows[..] else { return 0 };
+        let from = part.from + at;
+        let rows = (jaw[at..].as_chunks_mut().0, behind[at..].as_chunks_mut().0, part.results[at..].as_chunks_mut().0);
+        let columns = (Column::new(step.dt).from(from), Column::new(step.to).from(from));
+        let blocks = if self.blocks.len() == 1 { &self.blocks[..] } else { &self.blocks[from / LANES..] };
+        let is_one = blocks.len() == 1;
+        // One part is a loop of its own, and so is one block.
+        by_power!(blocks[0].power, power => match (step.parts(), is_one) {
+            (1, true) => Block::moved_in_row(#[inline(always)] |_| &blocks[0], power, rows, columns, 1),
+            (1, false) => Block::moved_in_row(#[inline(always)] |index| &blocks[index], power, rows, columns, 1),
+            (parts, _) => {
+                let block = |index: usize| &blocks[if is_one { 0 } else { index }];
+                Block::moved_in_row(block, power, rows, columns, parts)
+            }
+        })
+    }
+
+    /// Steps a block of which some contacts leave or meet their bodies, or that is not complete.
+    #[inline(always)]
+    fn step_block(&self, part: &mut Part<'_>, at: usize, step: &ContactsStep<'_>) -> Result<usize, OneStepError> {
+        let [jaw, behind] = &mut part.rows[..] else {
+            return Ok(0);
+        };
+        let (from, end) = (part.from + at, part.failed.len().min(at + LANES));
+        let (dt, to) = (Column::new(step.dt).lanes(from), Column::new(step.to).lanes(from));
+        let (block, before) = (self.block(from), (lanes(jaw, at), lanes(behind, at)));
+        let moved = by_power!(block.power, power => block.moved_or_freed(power, before, (dt, to), step.parts()));
+        let (moved, failures) = self.alone(from, before, step, moved, &mut part.failed[at..end])?;
+        store(jaw, at, &moved.jaw);
+        store(behind, at, &moved.behind);
+        store(part.results, at, &moved.force);
         Ok(failures)
     }
 
@@ -180,13 +198,13 @@ impl LatencyModels {
     fn alone(
         &self,
         from: usize,
-        (jaw, behind): (&Lanes, &Lanes),
+        (jaw, behind): (Lanes, Lanes),
         step: &ContactsStep<'_>,
-        moved: &mut Moved,
+        mut moved: Moved,
         failed: &mut [bool],
-    ) -> Result<usize, OneStepError> {
-        let (wrong, mut failures) = (moved.wrong, 0);
-        for (lane, failed) in failed.iter_mut().enumerate().filter(|(lane, _)| wrong[*lane] > 0.0) {
+    ) -> Result<(Moved, usize), OneStepError> {
+        let mut failures = 0;
+        for (lane, failed) in failed.iter_mut().enumerate().filter(|(lane, _)| moved.wrong[*lane]) {
             let (index, before) = (
                 from + lane,
                 ContactState {
@@ -205,7 +223,7 @@ impl LatencyModels {
             };
             (moved.jaw[lane], moved.behind[lane], moved.force[lane]) = (state.jaw, state.behind, force);
         }
-        Ok(failures)
+        Ok((moved, failures))
     }
 
     fn step_force(&self, part: Part<'_>, step: &ContactsStep<'_>) -> Result<usize, OneStepError> {

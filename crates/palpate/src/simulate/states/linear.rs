@@ -1,13 +1,14 @@
 //! Many contacts of linear laws: side by side in vectors where they stay in contact, one by one elsewhere.
 
 use std::borrow::Cow;
+use std::mem;
 
 use smallvec::SmallVec;
 
 use super::alone::{check_result, check_state, finite, is_extreme};
-use super::block::{Lanes, all_right, between, lanes, misdated, store};
+use super::block::{Lanes, Marks, between, is_step, lanes, store};
 use super::linear_block::{Fadings, LinearBlock, Moving};
-use super::parameters::{ContactParameter, Parameters, Value, ValueProblem, of_specimen, own_contact};
+use super::parameters::{ContactParameter, Parameters, Value, ValueProblem, of_specimen, own_contact, renew};
 use super::part::{Column, ContactsStep, Imposed, OneStepError, Part, Refusal};
 use crate::simulate::linear::{LinearStepper, Memories};
 use crate::simulate::step::check_step;
@@ -19,7 +20,7 @@ use crate::vector::{LANES, accelerated_by_four};
 pub(super) struct LinearModels {
     /// One for all contacts, or one each.
     steppers: Vec<LinearStepper>,
-    /// Their numbers: one block for all contacts, or one for as many as go side by side.
+    /// Their numbers, with those parameters: one block for all contacts, or one for as many as go side by side.
     blocks: Vec<LinearBlock>,
     /// Terms of the law that has most.
     terms: usize,
@@ -63,8 +64,18 @@ impl LinearModels {
         own_contact(self.steppers[0].contact(), value).err()
     }
 
-    pub(super) fn parameters_mut(&mut self) -> &mut Parameters {
-        &mut self.parameters
+    /// Puts values of parameters in the place of those of the contacts that `mask` marks; see [`Parameters::replace`].
+    pub(super) fn replace(&mut self, values: &[(ContactParameter, &[f64])], mask: &[bool]) {
+        for (parameter, values) in values {
+            let base = self.value(*parameter).unwrap_or_default();
+            self.parameters.replace(*parameter, base, values, mask);
+        }
+        let mut blocks = mem::take(&mut self.blocks);
+        renew(&mut blocks, mask, |some| {
+            let steppers: Vec<_> = some.map(|index| self.stepper(index).into_owned()).collect();
+            LinearBlock::new(&steppers, self.terms)
+        });
+        self.blocks = blocks;
     }
 
     /// Whether forces of a contact may overflow although positions are near the body: parameters of no body that there is.
@@ -85,7 +96,7 @@ impl LinearModels {
 
     #[inline(always)]
     fn block(&self, from: usize) -> &LinearBlock {
-        if self.steppers.len() == 1 { &self.blocks[0] } else { &self.blocks[from / LANES] }
+        if self.blocks.len() == 1 { &self.blocks[0] } else { &self.blocks[from / LANES] }
     }
 
     /// Why the first contact cannot take a step of its displacement, if one cannot.
@@ -119,14 +130,10 @@ impl LinearModels {
         let (count, mut failures) = (part.results.len(), 0);
         let (dt, to) = (Column::new(step.dt), Column::new(step.to));
         let (mut fadings, mut memory) = (Fadings::new(), SmallVec::<[Lanes; 8]>::new());
-        let is_shared = self.steppers.len() == 1 && matches!(dt, Column::Shared(_));
+        let is_shared = self.steppers.len() == 1 && dt.is_shared();
         for at in (0..count).step_by(LANES) {
             let from = part.from + at;
             let (shared, to) = (self.block(from), to.lanes(from));
-            let mut bodies = Cow::Borrowed(&shared.bodies);
-            if !self.parameters.is_empty() {
-                bodies.to_mut().set(&self.parameters, from);
-            }
             let dt = dt.lanes(from);
             if fadings.is_empty() || !is_shared {
                 shared.fadings(&dt.map(|dt| dt / f64::from(step.parts())), &mut fadings);
@@ -135,21 +142,21 @@ impl LinearModels {
             memory.extend(part.rows[1..].iter().map(|row| lanes(row, at)));
             let jaw = lanes(part.rows[0], at);
             let mut moving = Moving {
-                bodies: &bodies,
+                bodies: &shared.bodies,
                 is_of_force: &shared.is_of_force,
                 jaw,
                 force: [0.0; LANES],
-                wrong: dt.map(|dt| misdated(dt, 0.0)),
+                wrong: dt.map(|dt| !is_step(dt)),
             };
             for part in 1..=step.parts() {
                 let mut next = [0.0; LANES];
                 for lane in 0..LANES {
-                    next[lane] = between(jaw[lane], to[lane] * bodies.share[lane], (part, step.parts()));
+                    next[lane] = between(jaw[lane], to[lane] * shared.bodies.share[lane], (part, step.parts()));
                 }
                 moving.press(&mut memory, &fadings, &next);
             }
             let Moving { jaw, force, wrong, .. } = moving;
-            if !all_right(&wrong) {
+            if wrong.contains(&true) {
                 failures += self.some_alone(part, at, step, (&jaw, &memory, &force, &wrong))?;
                 continue;
             }
@@ -167,11 +174,11 @@ impl LinearModels {
         part: &mut Part<'_>,
         at: usize,
         step: &ContactsStep<'_>,
-        (jaw, memory, force, wrong): (&Lanes, &[Lanes], &Lanes, &Lanes),
+        (jaw, memory, force, wrong): (&Lanes, &[Lanes], &Lanes, &Marks),
     ) -> Result<usize, OneStepError> {
         let mut failures = 0;
         for lane in 0..LANES.min(part.results.len() - at) {
-            if wrong[lane] > 0.0 {
+            if wrong[lane] {
                 failures += self.alone(part, at + lane, step)?;
                 continue;
             }

@@ -2,8 +2,7 @@
 
 use smallvec::SmallVec;
 
-use super::block::{Bodies, Lanes, choose};
-use crate::latency::lanes::each;
+use super::block::{Bodies, Lanes, Marks};
 use crate::simulate::Memory;
 use crate::simulate::linear::LinearStepper;
 use crate::vector::LANES;
@@ -60,8 +59,8 @@ pub(super) struct Moving<'a> {
     pub(super) is_of_force: &'a [bool; LANES],
     pub(super) jaw: Lanes,
     pub(super) force: Lanes,
-    /// 0 where the contact was closed all along, at values that can be; more elsewhere.
-    pub(super) wrong: Lanes,
+    /// Those that were not closed all along, at values that can be.
+    pub(super) wrong: Marks,
 }
 
 impl Moving<'_> {
@@ -93,38 +92,18 @@ impl Moving<'_> {
                 sums[lane] += x[lane];
             }
         }
-        let hold = &self.bodies.hold;
-        let force = each(
-            #[inline(always)]
-            |lane| scales[lane] * sums[lane],
-        );
-        let least = each(
-            #[inline(always)]
-            |lane| choose(hold[lane] > 0.0, f64::NEG_INFINITY, 0.0),
-        );
-        self.force = each(
-            #[inline(always)]
-            |lane| choose(sums[lane] > least[lane], force[lane], 0.0),
-        );
-        let wrong = each(
-            #[inline(always)]
-            |lane| {
-                let wrong = choose(before[lane] + hold[lane] >= 0.0, self.wrong[lane], 1.0);
-                let wrong = choose(sums[lane] + hold[lane] >= 0.0, wrong, 1.0);
-                // Beyond first touch a body whose contact grows has no force to remember.
-                let lowest = if to[lane] < self.jaw[lane] { to[lane] } else { self.jaw[lane] };
-                let can_be = !self.is_of_force[lane] | (self.bodies.section[lane] > 0.0) | (lowest >= 0.0);
-                choose(force[lane].abs() < f64::INFINITY, choose(can_be, wrong, 1.0), 1.0)
-            },
-        );
-        let wrong = each(
-            #[inline(always)]
-            |lane| self.bodies.farther(lane, self.jaw[lane], wrong[lane]),
-        );
-        self.wrong = each(
-            #[inline(always)]
-            |lane| self.bodies.misfit(lane, to[lane], wrong[lane]),
-        );
+        for lane in 0..LANES {
+            let (bodies, u, from) = (self.bodies, to[lane], self.jaw[lane]);
+            let (force, hold) = (scales[lane] * sums[lane], bodies.hold[lane]);
+            let is_closed = (before[lane] + hold >= 0.0) & (sums[lane] + hold >= 0.0);
+            // Beyond first touch a body whose contact grows has no force to remember.
+            let lowest = if u < from { u } else { from };
+            let can_be = !self.is_of_force[lane] | (bodies.section[lane] > 0.0) | (lowest >= 0.0);
+            let is_near = bodies.is_near(lane, from.abs()) & bodies.fits(lane, u);
+            let is_right = is_closed & can_be & is_near & (force.abs() < f64::INFINITY);
+            self.force[lane] = if sums[lane] > bodies.least(lane) { force } else { 0.0 };
+            self.wrong[lane] |= !is_right;
+        }
         self.jaw = *to;
     }
 }

@@ -150,12 +150,9 @@ impl ContactModels {
                 return Err(ContactModelsError::Value { name, index, problem });
             }
         }
-        for (parameter, values) in values {
-            let base = self.value(*parameter).unwrap_or_default();
-            match &mut self.law {
-                Law::Latency(models) => models.parameters_mut().replace(*parameter, base, values, mask),
-                Law::Linear(models) => models.parameters_mut().replace(*parameter, base, values, mask),
-            }
+        match &mut self.law {
+            Law::Latency(models) => models.replace(values, mask),
+            Law::Linear(models) => models.replace(values, mask),
         }
         self.is_extreme |= (0..count).filter(|index| mask[*index]).any(|index| match &self.law {
             Law::Latency(models) => models.is_extreme(index),

@@ -1,8 +1,11 @@
 //! Parameters that differ between contacts of one description, as columns.
 
+use std::ops::Range;
+
 use crate::contact::{Equilibrium, Layers, LayersError, ShapeDimension, Specimen, SpecimenError};
 use crate::latency::{LatencyLaw, LawError};
 use crate::simulate::{ContactModel, LinearContact};
+use crate::vector::LANES;
 
 /// A parameter of a contact that may have a value for every contact.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -216,6 +219,21 @@ impl Parameters {
         let marked = column.into_iter().flat_map(|(_, column)| column.iter_mut().zip(mask).enumerate());
         for (index, (slot, _)) in marked.filter(|(_, (_, marked))| **marked) {
             *slot = values[index.min(values.len() - 1)];
+        }
+    }
+}
+
+/// Makes blocks of contacts anew: those with contacts that `mask` marks, or all where there was one for all contacts.
+pub(super) fn renew<B>(blocks: &mut Vec<B>, mask: &[bool], block: impl Fn(Range<usize>) -> B) {
+    let count = mask.len().div_ceil(LANES);
+    let of = |index: usize| block(index * LANES..mask.len().min((index + 1) * LANES));
+    if blocks.len() != count {
+        *blocks = (0..count).map(of).collect();
+        return;
+    }
+    for (index, marks) in mask.chunks(LANES).enumerate() {
+        if marks.contains(&true) {
+            blocks[index] = of(index);
         }
     }
 }
