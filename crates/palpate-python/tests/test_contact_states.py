@@ -56,6 +56,19 @@ def test_the_state_is_an_array_in_place() -> None:
     assert np.array_equal(other.force_n, contacts.force_n[::-1])
 
 
+def test_one_contact_shows_what_contacts_show() -> None:
+    one, many = palpate.ContactState(MODEL), palpate.ContactStates(MODEL, 9)
+    one.step(0.0, 7e-3)
+    many.step(0.0, 7e-3)
+    # 3.5 mm of each contact over a layer of 35/8 mm, of which 3.5/35 stays.
+    assert one.excess_strain == pytest.approx(0.7, abs=1e-14)
+    assert one.stiffness_n_per_m == pytest.approx(many.stiffness_n_per_m[8], rel=1e-14)
+    assert one.force_n == many.force_n[8]
+    step_m = 1e-7
+    slope = (copy.copy(one).step(0.0, 7e-3 + step_m) - copy.copy(one).step(0.0, 7e-3 - step_m)) / (2 * step_m)
+    assert one.stiffness_n_per_m == pytest.approx(slope, rel=1e-6)
+
+
 def test_a_changed_base_of_the_state_is_refused() -> None:
     contacts = palpate.ContactStates(MODEL, 4)
     base: Any = contacts.state.base

@@ -1836,6 +1836,10 @@ class ContactState(_Moved):
         ...
     force_n: Final[float]
     """Force now, N."""
+    stiffness_n_per_m: Final[float]
+    """Tangent stiffness dF/dd against the displacement of the jaw now, N/m."""
+    excess_strain: Final[float]
+    """Excess strain of the contact layer, which drives the law."""
     surface_m: Final[float]
     """Displacement of the surface of the body at one contact, m."""
     is_touching: Final[bool]

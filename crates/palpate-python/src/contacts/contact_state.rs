@@ -55,6 +55,10 @@ shown! {
     copied getters {
         /// Force now, N.
         force_n: f64 = self.state.force(&self.model),
+        /// Tangent stiffness dF/dd against the displacement of the jaw now, N/m.
+        stiffness_n_per_m: f64 = self.state.stiffness(&self.model),
+        /// Excess strain of the contact layer, which drives the law.
+        excess_strain: f64 = self.state.excess_strain(&self.model),
         /// Displacement of the surface of the body at one contact, m.
         surface_m: f64 = self.state.surface(&self.model),
         /// Whether the jaw touches the body.

@@ -157,6 +157,57 @@ fn substeps_are_steps_along_a_straight_line() {
 }
 
 #[test]
+fn contacts_that_are_open_or_leave_within_substeps_are_contacts_alone() {
+    for exponents in [&[5.0][..], &[1.0], &[2.7]] {
+        let models = models(exponents, 19);
+        let (mut together, mut alone) = (ContactStates::of_each(models.clone()), vec![ContactState::default(); 19]);
+        let (mut random, mut forces, mut open) = (Rng::new(21), vec![0.0; 19], 0);
+        let mut places = vec![0.004; 19];
+        for tick in 0..200 {
+            // Half of the time far from the body, so that blocks are closed, open and both.
+            let swing = 3e-3 * (0.05 * f64::from(tick)).sin();
+            for (index, place) in places.iter_mut().enumerate() {
+                let is_bonded = models[index].separation == Separation::Bonded;
+                *place = if is_bonded { 1e-3 } else { 1e-3 * random.uniform() + swing };
+            }
+            together.advance(&of_displacement(&[0.04], &places, 4, Refusal::Masked), &mut forces).unwrap();
+            for (index, (state, model)) in alone.iter_mut().zip(&models).enumerate() {
+                let (from, mut force) = (state.jaw, 0.0);
+                for part in 1..=4 {
+                    let u = super::block::between(from, model.specimen.contact_displacement(places[index]), (part, 4));
+                    force = state.step(model, 0.01, u / model.specimen.contact_displacement(1.0)).unwrap();
+                }
+                open += usize::from(!state.is_touching(model));
+                let (found, depth) = (together.state(index), model.specimen.depth());
+                assert!(
+                    found.jaw == state.jaw && (found.behind - state.behind).abs() < 1e-13 * depth,
+                    "{tick} {index}"
+                );
+                assert!((forces[index] - force).abs() <= 1e-10, "{tick} {index}: {} {force}", forces[index]);
+                if exponents == [5.0] {
+                    assert_eq!((found, forces[index]), (*state, force), "{tick} {index}");
+                }
+            }
+        }
+        assert!(open > 500, "{exponents:?}: {open} open contacts");
+    }
+}
+
+#[test]
+fn bodies_beyond_all_measure_are_refused_and_show_numbers() {
+    let mut models = models(&[5.0], 9);
+    models[1].specimen = Specimen::new(Shape::Ball { radius: 0.03 }, 1e308, Sides::Two).unwrap();
+    models[4].layers = Layers::new(1e306).unwrap();
+    let mut contacts = ContactStates::of_each(models);
+    let mut forces = vec![0.0; 9];
+    for _ in 0..3 {
+        contacts.advance(&of_displacement(&[1e-3], &[0.02], 1, Refusal::Masked), &mut forces).unwrap();
+        assert!(contacts.failed()[4] && !contacts.failed()[0], "{:?}", contacts.failed());
+        assert!(forces.iter().chain(contacts.states()).all(|number| number.is_finite()), "{forces:?}");
+    }
+}
+
+#[test]
 fn all_contacts_are_stepped_or_none() {
     let mut contacts = ContactStates::of_each(models(&[5.0], 11));
     contacts.step(&[1e-3], &[5e-4]).unwrap();
