@@ -204,6 +204,18 @@ def test_columns_are_named_by_a_keyword_as_on_the_command_line(tmp_path: Path) -
         palpate.read(path, columns="Kraft")
 
 
+def test_the_deflection_of_a_cantilever_times_its_stiffness_is_the_force(tmp_path: Path) -> None:
+    path = tmp_path / "afm.csv"
+    path.write_text("t,h,d\n0,3,0\n1,2,40\n2,1,100\n")
+    of = {"time": "t:s", "displacement": "h:-um", "deflection": "d:nm:0.04 N/m"}
+    record = palpate.read(path, columns=of)
+    assert list(record.force_n) == pytest.approx([0.0, 1.6e-9, 4e-9])
+    assert record.displacement_m is not None and list(record.displacement_m) == pytest.approx([-3e-6, -2.04e-6, -1.1e-6])
+    assert record == palpate.read(path, columns=",".join(f"{quantity}={column}" for quantity, column in of.items()))
+    with pytest.raises(palpate.OptionError, match="the height of the cantilever's base"):
+        palpate.read(path, columns="deflection=d:nm:0.04 N/m")
+
+
 def test_quantities_of_rheometers_become_force_and_displacement(tmp_path: Path) -> None:
     path = tmp_path / "relaxation.csv"
     path.write_text("Time,Relaxation Modulus\n0,200\n1,150\n2,125\n")

@@ -81,6 +81,10 @@ pub(crate) const AXIAL: &str = "normal normale axial axiale normalkraft axialkra
 pub(crate) const SHEAR: &str = "shear cisaillement scherung schub schubspannung scherdeformation torque couple drehmoment cizalla \
     cizallamiento";
 
+/// Words that make a rate of shear of a name with one of those, and those that say it alone.
+pub(crate) const RATES_OF_SHEAR: &str = "rate gradient vitesse taux velocidad geschwindigkeit";
+pub(crate) const SHEAR_RATES: &str = "scherrate schergeschwindigkeit schergefälle";
+
 /// Words of the modulus that an oscillation gives: strain and stress beside it are its amplitudes.
 pub(crate) const STORAGE: &str = "storage speichermodul stockage conservation almacenamiento";
 

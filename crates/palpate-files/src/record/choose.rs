@@ -5,6 +5,7 @@ use super::{
     column_use::ColumnUse,
     conversion::{self, Conversion},
     error::ColumnError,
+    named::NamedColumn,
     signals::Time,
 };
 use crate::{
@@ -22,6 +23,8 @@ pub(super) struct Plan {
     pub(super) conversion: Conversion,
     /// The file has no time: so many rows a second, Hz.
     pub(super) rate: Option<f64>,
+    /// A column of shear rates, which may show that the test is no hold, with the factor to 1/s.
+    pub(super) shear_rate: Option<(NamedColumn, f64)>,
 }
 
 /// Chooses the columns of one test.
@@ -80,5 +83,9 @@ pub(super) fn choose(part: &Part, test: &TestDescription) -> Result<Plan, Column
         columns,
         conversion,
         rate,
+        // Who names the columns decides.
+        shear_rate: recognise::shear_rate(&part.columns)
+            .filter(|_| !is_stated)
+            .map(|(column, factor)| (column.into(), factor)),
     })
 }

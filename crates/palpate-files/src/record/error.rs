@@ -91,6 +91,16 @@ pub enum ColumnError {
     /// A test of a rheometer in oscillation, by its storage modulus.
     #[error("{0}: expected a test with a hold, found amplitudes of an oscillation")]
     Oscillation(NamedColumn),
+    /// A test of a rheometer in rotation, by its shear rate, which goes from one value to another.
+    #[error("{rate}: expected a test with a hold, found a flow curve from {from} to {to} 1/s")]
+    FlowCurve {
+        /// The column of the shear rate.
+        rate: NamedColumn,
+        /// Its first value, 1/s.
+        from: String,
+        /// Its last value, 1/s.
+        to: String,
+    },
     /// Torque or angle, and no sizes of the sample that would turn them into force and displacement.
     #[error(
         "{0}: expected the sizes of the sample, which turn torque and angle into force and displacement, found none"
@@ -179,7 +189,7 @@ impl ColumnError {
             Self::NoSection(..) => {
                 "choose a column of force, or describe the body as a strip, cylinder or block".to_owned()
             }
-            Self::Oscillation(..) => {
+            Self::Oscillation(..) | Self::FlowCurve { .. } => {
                 "choose a test of relaxation or creep; if this is one, name its columns, such as columns.stress and columns.strain"
                     .to_owned()
             }

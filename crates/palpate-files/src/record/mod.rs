@@ -7,6 +7,7 @@
 //! | `signals.rs` | which column becomes the force, the displacement and the time |
 //! | `choose.rs`, `chooser.rs`, `choose_units.rs` | chooses the columns and their units, from a description or by the header |
 //! | `conversion.rs`, `rate.rs` | strain, stress, torque and curves of a material made force and displacement; rows made time |
+//! | `flow.rs` | flow curves, which are no tests |
 //! | `column_use.rs`, `named.rs` | a column that was chosen, and one as messages name it |
 //! | `position.rs` | where in a map a curve was measured ([`MapPosition`]) |
 //! | `describe.rs`, `describe_body.rs` | a first description of a test ([`describe`]) |
@@ -20,6 +21,7 @@ mod conversion;
 mod describe;
 mod describe_body;
 mod error;
+mod flow;
 mod lever;
 mod named;
 mod parts;

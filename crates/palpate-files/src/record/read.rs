@@ -3,6 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use palpate::{
+    number::significant,
     record::{Correction, LabelledSegment, RawColumns, Record, RecordError, SignalReport},
     units,
 };
@@ -10,7 +11,9 @@ use palpate::{
 use super::{
     choose,
     column_use::{ColumnUse, Role},
-    error::{Counted, ReadError},
+    error::{ColumnError, Counted, ReadError},
+    flow,
+    named::NamedColumn,
     parts,
 };
 use crate::{
@@ -144,6 +147,7 @@ pub fn read_part(
     series.extend(time.into_iter().chain(force));
     let (raw, bent) = assemble(series);
     let signals = raw.report_heard(&mut || progress(read.bytes, read.bytes)).map_err(FileError::from)?;
+    refuse_flow((contents, part), plan.shear_rate.as_ref(), &raw.force, progress)?;
     let has_displacement = raw.displacement.is_some();
     let averaged = (read.averaged > 1).then(|| Correction::RowsAveraged {
         rows: read.rows(),
@@ -177,6 +181,33 @@ pub fn read_part(
         per_unit_area: conversion.per_unit_area,
         rate: plan.rate,
         bytes: read.bytes,
+    })
+}
+
+/// Refuses a test of a rheometer whose shear rate is swept: a strain that comes to rest at the lowest rates is no hold.
+fn refuse_flow(
+    (contents, part): (&Contents, usize),
+    rate: Option<&(NamedColumn, f64)>,
+    stress: &[f64],
+    progress: &mut Heard<'_>,
+) -> Result<(), ReadError> {
+    let Some((column, factor)) = rate else {
+        return Ok(());
+    };
+    // A column with cells that are no numbers is not needed.
+    let Ok(read) = contents.read(part, &[column.number], progress) else {
+        return Ok(());
+    };
+    let swept = read.values.first().and_then(|rates| flow::swept(rates, stress));
+    swept.map_or(Ok(()), |(from, to)| {
+        let shown = |rate: f64| significant(rate * factor, 3);
+        let source = ColumnError::FlowCurve {
+            rate: column.clone(),
+            from: shown(from),
+            to: shown(to),
+        };
+        let path = contents.input.name.clone();
+        Err(ReadError::Column { path, source })
     })
 }
 

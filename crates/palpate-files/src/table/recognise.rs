@@ -4,8 +4,9 @@ use palpate::units::Dimension;
 
 use super::part::{ColumnInfo, ColumnKind};
 use crate::naming::{
-    AXIAL, BENDING, OTHER, OTHER_CHARACTERS, Quantity, SHEAR, SIGNS_OF_LENGTH, STORAGE, STRAINS, VOCABULARY, is_listed,
-    measured, measures_another, names_another, own_topics, rank_in_rheometry, rank_of_name, unit_factor, words,
+    AXIAL, BENDING, OTHER, OTHER_CHARACTERS, Quantity, RATES_OF_SHEAR, SHEAR, SHEAR_RATES, SIGNS_OF_LENGTH, STORAGE,
+    STRAINS, VOCABULARY, is_listed, measured, measures_another, names_another, own_topics, rank_in_rheometry,
+    rank_of_name, unit_factor, words,
 };
 
 /// The columns that name `quantity` best: one if it is clear, several if it is not, none if none does.
@@ -161,6 +162,17 @@ pub(crate) fn storage_modulus(columns: &[ColumnInfo]) -> Option<&ColumnInfo> {
     let is_modulus = |unit: &str| unit_factor(unit, Dimension::Pressure).is_some();
     let is_storage = |column: &&ColumnInfo| has_word(column, STORAGE) && column.unit.as_deref().is_some_and(is_modulus);
     columns.iter().filter(|column| column.kind == ColumnKind::Number).find(is_storage)
+}
+
+/// A shear rate in numbers, and the factor of its unit to 1/s.
+pub(crate) fn shear_rate(columns: &[ColumnInfo]) -> Option<(&ColumnInfo, f64)> {
+    let is_rate = |column: &&ColumnInfo| {
+        has_word(column, SHEAR_RATES) || has_word(column, SHEAR) && has_word(column, RATES_OF_SHEAR)
+    };
+    let numbers = columns.iter().filter(|column| column.kind == ColumnKind::Number);
+    numbers
+        .filter(is_rate)
+        .find_map(|column| Some((column, unit_factor(column.unit.as_deref()?, Dimension::Rate)?)))
 }
 
 /// Whether a column is the gap between the plates of a rheometer.

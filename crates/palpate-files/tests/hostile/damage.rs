@@ -1,9 +1,17 @@
 //! Every file of the corpus, changed at random: always in the same way.
+//!
+//! Without cargo-fuzz, `PALPATE_CHANGES=20000 PALPATE_CHANGED=igor` asks for so many changes of each file in one folder of the corpus, and
+//! `PALPATE_SEED` for others than the usual ones.
 
 use crate::corpus;
 
 /// Changes of each file.
 const CHANGES: u64 = 32;
+
+/// What a variable of the environment states.
+fn stated<T: std::str::FromStr>(name: &str) -> Option<T> {
+    std::env::var(name).ok()?.parse().ok()
+}
 
 /// Longest file that is changed: longer ones are there to unpack to much.
 const LONGEST: usize = 16 << 10;
@@ -69,12 +77,15 @@ fn what_fuzzing_found_does_no_harm_any_more() {
 
 #[test]
 fn files_changed_at_random_do_no_harm() {
-    let all: Vec<_> = corpus::all().into_iter().filter(|example| example.bytes.len() <= LONGEST).collect();
-    let (mut chance, mut harm) = (Chance(7), Vec::new());
+    let changes = stated("PALPATE_CHANGES").unwrap_or(CHANGES);
+    let folder = std::env::var("PALPATE_CHANGED").unwrap_or_default();
+    let is_chosen = |example: &corpus::Example| example.bytes.len() <= LONGEST && example.place.starts_with(&folder);
+    let all: Vec<_> = corpus::all().into_iter().filter(is_chosen).collect();
+    let (mut chance, mut harm) = (Chance(stated("PALPATE_SEED").unwrap_or(7)), Vec::new());
     for (index, example) in all.iter().enumerate() {
         // A neighbour, which is mostly of the same format.
         let other = &all[(index + 1) % all.len()];
-        for _ in 0..CHANGES {
+        for _ in 0..changes {
             let bytes = changed(&example.bytes, &other.bytes, &mut chance);
             if std::panic::catch_unwind(|| example.fuzz(&bytes)).is_err() {
                 harm.push((&example.place, bytes.escape_ascii().to_string()));

@@ -2045,7 +2045,8 @@ def read(
         The one test of a file that holds several: its name (a sheet, a curve, a ``test_id``), or its number from 1.
     columns
         Columns with their units, before what ``test`` says of them: "force=Kraft:N,displacement=Weg:mm,time=Zeit:s", or a mapping
-        ``{"force": "Kraft:N", ...}``.
+        ``{"force": "Kraft:N", ...}``. A minus before a unit turns the sign; "deflection=2:nm:0.04 N/m" names the deflection and
+        the spring constant of a cantilever, whose product is the force.
     then
         A second file in which the test goes on, such as the hold after a ramp. A clock that restarts there continues one sample
         interval after the first file; times that already follow stay as they are.

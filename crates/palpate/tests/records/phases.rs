@@ -180,6 +180,40 @@ fn labels_of_a_file_go_before_what_is_found() {
     assert_eq!((check.labelled, check.missed, check.extra), (1, 0, 1));
 }
 
+/// A rheometer whose rotor swings up to its strain stood for a moment on the way, which was a hold of its own; the file calls the
+/// whole step a relaxation.
+#[test]
+fn a_step_that_its_file_calls_a_relaxation_is_one_hold() {
+    let time: Vec<f64> = (0..600).map(|i| 1e-3 * f64::from(i) + 1e-3 * 1.028f64.powi(i)).collect();
+    let strain = |t: f64| 4.5e-3 * (1.0 - (-60.0 * t).exp() * (300.0 * t).cos());
+    let torque = |t: f64| 1.0 / (1.0 + 30.0 * t).powf(0.3) + 8.0 * (-60.0 * t).exp() * (300.0 * t).sin();
+    let displacement = time.iter().map(|t| strain(*t)).collect();
+    let step = Record::new(time.clone(), Some(displacement), time.iter().map(|t| torque(*t)).collect()).unwrap();
+    let labelled = |name| step.clone().labelled(vec![LabelledSegment::new(name, time[0], time[599]).unwrap()]);
+    for name in ["Stress relaxation - 7", "Step (Transient) - Stress Relaxation", "relaxation"] {
+        let found = phases(&labelled(name)).unwrap();
+        let holds: Vec<_> = found.holds().map(|hold| (hold.end, hold.mode, hold.after)).collect();
+        assert_eq!(holds, [(600, Some(HoldMode::DisplacementHeld), Some(After::Loading))], "{name}");
+        let start = found.holds().next().unwrap().start;
+        assert!((0.05..0.3).contains(&time[start]), "{name}: {}", time[start]);
+    }
+    // What only waits may wait before anything is touched, and is taken as labelled.
+    let waits = phases(&labelled("pause")).map(|found| found.holds().count());
+    assert!(waits.is_err() || waits == Ok(1), "{waits:?}");
+}
+
+/// A label names one hold: another inside it is one more of the search.
+#[test]
+fn a_search_that_parts_a_labelled_hold_disagrees_with_its_label() {
+    let (shape, _) = path(&[(10.0, 10.0, 5.0), (11.0, 10.0, 5.0), (0.0, 10.0, 5.0)]);
+    let press = record(shape, 18.0, 100.0, 0.3, 0.0);
+    let label = |name, from, to| LabelledSegment::new(name, from, to).unwrap();
+    let press =
+        press.labelled(vec![label("extend", 0.0, 0.99), label("pause", 1.0, 10.5), label("retract", 10.51, 18.0)]);
+    let check = phases(&press).unwrap().labels.unwrap();
+    assert_eq!((check.labelled, check.missed, check.extra), (1, 0, 2));
+}
+
 /// A ramp alone has no hold, and a hold alone no loading.
 #[test]
 fn a_ramp_and_its_hold_are_one_test() {

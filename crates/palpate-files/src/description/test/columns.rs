@@ -97,6 +97,12 @@ impl ColumnChoices {
 
     /// What is stated about each column of which anything is, and what it measures.
     pub(crate) fn all(&self) -> Vec<(Quantity, &ColumnChoice)> {
+        let deflection = self.deflection.iter().map(|choice| (Quantity::Displacement, choice));
+        self.measured().chain(deflection).collect()
+    }
+
+    /// The same without the deflection, which is taken off a displacement.
+    pub(super) fn measured(&self) -> impl Iterator<Item = (Quantity, &ColumnChoice)> {
         let stated = [
             (Quantity::Time, &self.time),
             (Quantity::Displacement, &self.displacement),
@@ -107,8 +113,7 @@ impl ColumnChoices {
             (Quantity::Compliance, &self.compliance),
             (Quantity::Torque, &self.torque),
             (Quantity::Angle, &self.angle),
-            (Quantity::Displacement, &self.deflection),
         ];
-        stated.into_iter().filter_map(|(quantity, choice)| Some((quantity, choice.as_ref()?))).collect()
+        stated.into_iter().filter_map(|(quantity, choice)| Some((quantity, choice.as_ref()?)))
     }
 }

@@ -11,9 +11,15 @@ use crate::{
     table::{ColumnRef, EPOCH},
 };
 
-const COLUMNS: &str = "a list of time, displacement, force, stress, strain, modulus, compliance, torque or angle, each as \
+const COLUMNS: &str = "a list of time, displacement, force, stress, strain, modulus, compliance, torque, angle or deflection, each as \
     QUANTITY=COLUMN:UNIT, such as \"force=Kraft:N,displacement=Weg:mm,time=Zeit:s\" (a column by its name or its number from 1; a unit in \
-    the header may be left out; \"time=:10 kHz\" counts rows)";
+    the header may be left out; a minus before it turns the sign; \"time=:10 kHz\" counts rows; \"deflection=2:nm:0.04 N/m\" makes the \
+    force of a cantilever)";
+/// A deflection is taken off the height of the cantilever's base, which a header may call by other names than the indentation.
+const HEIGHT: &str = "the height of the cantilever's base beside its deflection, such as \
+    \"displacement=height:-um,deflection=deflection:nm:0.04 N/m\"";
+/// The name of the deflection of a cantilever among the quantities.
+const DEFLECTION: &str = "deflection";
 
 /// Columns of a record as they were typed.
 #[derive(Debug, Clone, PartialEq)]
@@ -52,9 +58,14 @@ fn parsed(text: &str) -> Result<ColumnChoices, ChoiceError> {
     };
     let mut columns = ColumnChoices::default();
     for entry in entries(text) {
-        let (quantity, stated) = entry.split_once('=').ok_or_else(|| error(None))?;
-        let quantity = quantity_of(quantity).ok_or_else(|| error(None))?;
+        let (named, stated) = entry.split_once('=').ok_or_else(|| error(None))?;
+        let quantity = quantity_of(named).ok_or_else(|| error(None))?;
+        let is_deflection = named.trim() == DEFLECTION;
+        let (stated, spring_constant) = if is_deflection { with_stiffness(stated) } else { (stated, None) };
         let (name, unit) = stated.rsplit_once(':').map_or((stated, ""), |(name, unit)| (name.trim(), unit.trim()));
+        // A minus alone is the unit of a ratio.
+        let turned = unit.strip_prefix('-').map(str::trim_start).filter(|unit| !unit.is_empty());
+        let (unit, sign) = turned.map_or((unit, 1.0), |unit| (unit, -1.0));
         let rate = Some(unit).filter(|_| quantity == Quantity::Time);
         let rate = rate.and_then(|unit| units::parse(unit, Dimension::Frequency).ok()).filter(|rate| *rate > 0.0);
         let since_1970 = quantity == Quantity::Time && unit.eq_ignore_ascii_case(EPOCH);
@@ -70,23 +81,44 @@ fn parsed(text: &str) -> Result<ColumnChoices, ChoiceError> {
                 _ => ColumnRef::Name(name.to_owned()),
             }),
         };
-        let place = columns.place(quantity);
-        if place.is_some() {
+        let place = if is_deflection { &mut columns.deflection } else { columns.place(quantity) };
+        if place.is_some() || sign < 0.0 && quantity == Quantity::Time {
             return Err(error(None));
         }
         *place = Some(ColumnChoice {
             column,
             unit: Some(unit.to_owned()).filter(|unit| !unit.is_empty() && rate.is_none()),
             rate,
+            sign,
             ..ColumnChoice::default()
         });
+        columns.spring_constant = columns.spring_constant.or(spring_constant);
     }
-    for is_one in [Quantity::is_load, Quantity::is_travel] {
-        if columns.all().into_iter().filter(|(quantity, _)| is_one(*quantity)).count() > 1 {
-            return Err(error(None));
-        }
+    let count = |is_one: fn(Quantity) -> bool| {
+        let measured = columns.measured();
+        measured.filter(|(quantity, _)| is_one(*quantity)).count()
+    };
+    // The spring constant makes the force.
+    let loads = count(Quantity::is_load) + usize::from(columns.spring_constant.is_some());
+    if loads > 1 || count(Quantity::is_travel) > 1 {
+        return Err(error(None));
+    }
+    if columns.deflection.is_some() && columns.displacement.is_none() {
+        return Err(ChoiceError {
+            expected: HEIGHT,
+            ..error(None)
+        });
     }
     Ok(columns)
+}
+
+/// What is said of a deflection, and behind the last colon the spring constant of its cantilever, N/m.
+fn with_stiffness(stated: &str) -> (&str, Option<f64>) {
+    let parts = stated.rsplit_once(':').and_then(|(stated, last)| {
+        let stiffness = units::parse(last.trim(), Dimension::Stiffness).ok()?;
+        (stiffness > 0.0).then_some((stated, Some(stiffness)))
+    });
+    parts.unwrap_or((stated, None))
 }
 
 /// The parts of a list between commas; a comma in the name of a column parts nothing.
@@ -102,7 +134,11 @@ fn entries(text: &str) -> Vec<String> {
     entries
 }
 
+/// The quantity of a name; a deflection is a displacement.
 fn quantity_of(name: &str) -> Option<Quantity> {
+    if name.trim() == DEFLECTION {
+        return Some(Quantity::Displacement);
+    }
     Quantity::ALL.into_iter().find(|quantity| quantity.to_string() == name.trim())
 }
 
@@ -123,23 +159,43 @@ impl ColumnChoices {
 
     /// Takes the columns of `upper`, and their units where it says any, in place of its own.
     pub fn lay_over(&mut self, upper: &Self) {
-        for (quantity, stated) in upper.all() {
+        for (quantity, stated) in upper.measured() {
             for other in Quantity::ALL.into_iter().filter(|other| *other != quantity) {
                 if quantity.is_load() && other.is_load() || quantity.is_travel() && other.is_travel() {
                     *self.place(other) = None;
                 }
             }
-            let own = self.place(quantity).get_or_insert_default();
-            own.column.clone_from(&stated.column);
-            own.rate = stated.rate;
-            if stated.rate.is_some() {
-                own.unit = None;
+            if quantity.is_load() {
+                self.spring_constant = None;
             }
-            if stated.unit.is_some() {
-                own.unit.clone_from(&stated.unit);
-                (own.unit_by, own.scale, own.travel_per_unit) = (None, None, None);
+            lay(self.place(quantity), stated);
+        }
+        if let Some(stated) = &upper.deflection {
+            lay(&mut self.deflection, stated);
+        }
+        if upper.spring_constant.is_some() {
+            self.spring_constant = upper.spring_constant;
+            for load in Quantity::ALL.into_iter().filter(|quantity| quantity.is_load()) {
+                *self.place(load) = None;
             }
         }
+    }
+}
+
+/// Takes a column, and its unit and sign where any is stated, in place of those of a description.
+fn lay(own: &mut Option<ColumnChoice>, stated: &ColumnChoice) {
+    let own = own.get_or_insert_default();
+    own.column.clone_from(&stated.column);
+    own.rate = stated.rate;
+    if stated.rate.is_some() {
+        own.unit = None;
+    }
+    if stated.unit.is_some() {
+        own.unit.clone_from(&stated.unit);
+        (own.unit_by, own.scale, own.travel_per_unit) = (None, None, None);
+    }
+    if stated.sign < 0.0 {
+        own.sign = stated.sign;
     }
 }
 
@@ -166,6 +222,48 @@ mod tests {
         }
         let error = parsed("force=Kraft:mm").unwrap_err();
         assert!(error.hint().contains("mm") && error.hint().contains("kN"), "{}", error.hint());
+    }
+
+    #[test]
+    fn the_deflection_of_a_cantilever_is_named_with_its_height_and_spring_constant() {
+        let columns = parsed("displacement=height:-um,deflection=bend: x:nm:0.04 N/m,time=1:s").unwrap();
+        let (height, bend) = (columns.displacement.unwrap(), columns.deflection.unwrap());
+        assert_eq!((height.sign, height.unit.as_deref()), (-1.0, Some("um")));
+        assert_eq!(bend.column, Some(ColumnRef::Name("bend: x".to_owned())));
+        assert_eq!((bend.sign, bend.unit.as_deref(), columns.spring_constant), (1.0, Some("nm"), Some(0.04)));
+        // The unit stands in the header; or the force in a column of its own.
+        let columns = parsed("displacement=1,deflection=2:40 mN/m").unwrap();
+        assert_eq!((columns.deflection.unwrap().unit, columns.spring_constant), (None, Some(0.04)));
+        let columns = parsed("displacement=1:nm,deflection=2:nm,force=3:nN").unwrap();
+        assert_eq!((columns.spring_constant, columns.force.is_some()), (None, true));
+        // A minus alone is a unit.
+        assert_eq!(parsed("strain=2:-").unwrap().strain.unwrap().unit.as_deref(), Some("-"));
+        for (text, expected) in [
+            ("deflection=2:nm:0.04 N/m", "the height of the cantilever's base"),
+            ("displacement=1:nm,deflection=2:nm:0.04 N/m,force=3:nN", "a list of"),
+            ("displacement=1:nm,deflection=2:nm,deflection=3:nm", "a list of"),
+            ("time=1:-s", "a list of"),
+        ] {
+            let error = parsed(text).unwrap_err();
+            assert!(error.to_string().starts_with(&format!("expected {expected}")), "{text}: {error}");
+        }
+        // A stiffness that is none is taken for a unit.
+        let error = parsed("displacement=1:nm,deflection=2:nm:-1 N/m").unwrap_err();
+        assert!(error.hint().contains("N/m"), "{}", error.hint());
+    }
+
+    #[test]
+    fn a_typed_spring_constant_goes_before_a_described_force() {
+        let afm = parsed("displacement=1:um,deflection=2:nm:0.04 N/m").unwrap();
+        let mut described = parsed("displacement=height:-um,force=3:nN").unwrap();
+        described.lay_over(&afm);
+        let height = described.displacement.clone().unwrap();
+        assert_eq!((height.column, height.sign), (Some(ColumnRef::Number(1)), -1.0));
+        assert_eq!((described.spring_constant, described.force.is_some()), (Some(0.04), false));
+        assert_eq!(described.deflection.as_ref().unwrap().column, Some(ColumnRef::Number(2)));
+        described.lay_over(&parsed("force=3:nN").unwrap());
+        assert_eq!((described.spring_constant, described.force.is_some()), (None, true));
+        assert!(described.deflection.is_some());
     }
 
     #[test]

@@ -11,14 +11,16 @@
 
 use std::{collections::HashMap, ops::Range};
 
+use palpate::record::LabelledSegment;
+
 use super::{columns::read_columns, detect};
 use crate::{
     cell::{Cell, Delimiter, Fields, cells, number},
     error::{FileError, FileProblem},
     input::{Encoding, Input, lines},
     table::{
-        Block, Columns, Found, Heard, Layout, Metadata, Part, ReadOptions, ReadPart, RowKind, SkippedPart, Starts,
-        names_time,
+        Block, Columns, Found, Heard, Label, Layout, Metadata, Part, ReadOptions, ReadPart, RowKind, SkippedPart,
+        Starts, names_time,
     },
 };
 
@@ -37,6 +39,8 @@ const ACTION: &str = "Action Name";
 struct Section {
     /// What the file calls it.
     title: Option<String>,
+    /// Rows of a step that its title says to be a hold.
+    held: Option<usize>,
     /// Bytes of the line of names, where it does not stand among the lines of the test.
     head: Range<usize>,
     /// Bytes of its lines.
@@ -176,6 +180,8 @@ fn first(line: &str, delimiter: Delimiter) -> &str {
 /// A test by the indices of its lines: that of its names, where these stand elsewhere, and its own.
 struct Place {
     title: Option<String>,
+    /// Whether the title is that of these rows alone, and not of a result of several intervals.
+    is_step: bool,
     names: Option<usize>,
     lines: Range<usize>,
 }
@@ -191,15 +197,24 @@ fn stacked(all: &[Line<'_>], skip: usize, delimiter: Delimiter) -> Vec<Place> {
         let lines = pair[0]..pair[1];
         let head = all[lines.clone()].iter().map(|(_, line)| *line);
         let head = head.take_while(|line| kind(line, delimiter) != RowKind::Data);
-        let title = title(head, delimiter, &mut result);
-        let names = None;
-        Place { title, names, lines }
+        let (title, is_step) = title(head, delimiter, &mut result);
+        Place {
+            title,
+            is_step,
+            names: None,
+            lines,
+        }
     };
     bounds.windows(2).map(place).collect()
 }
 
-/// What the lines above a table call it: the name of a step, or the number of an interval and the result that it belongs to.
-fn title<'t>(head: impl Iterator<Item = &'t str>, delimiter: Delimiter, result: &mut Option<String>) -> Option<String> {
+/// What the lines above a table call it, and whether that is the name of a step; else it is the number of an interval and the result that it
+/// belongs to.
+fn title<'t>(
+    head: impl Iterator<Item = &'t str>,
+    delimiter: Delimiter,
+    result: &mut Option<String>,
+) -> (Option<String>, bool) {
     let (mut step, mut interval, mut behind_mark) = (None, None, false);
     for line in head {
         let filled: Vec<&str> = cells(line, delimiter).into_iter().filter(|cell| !cell.is_empty()).collect();
@@ -213,11 +228,13 @@ fn title<'t>(head: impl Iterator<Item = &'t str>, delimiter: Delimiter, result: 
         }
         behind_mark = is_step(line);
     }
-    step.or_else(|| match (result, interval) {
+    let is_step = step.is_some();
+    let title = step.or_else(|| match (result, interval) {
         (Some(result), Some(interval)) => Some(format!("{result}, interval {interval}")),
         (None, Some(interval)) => Some(format!("interval {interval}")),
         _ => None,
-    })
+    });
+    (title, is_step)
 }
 
 fn is_integer(cell: &str) -> bool {
@@ -236,6 +253,7 @@ fn by_action(all: &[Line<'_>], delimiter: Delimiter) -> Vec<Place> {
             Some(place) if action.is_empty() || place.title.as_deref() == Some(action) => place.lines.end = index + 1,
             _ => places.push(Place {
                 title: Some(action.to_owned()),
+                is_step: true,
                 names: Some(names),
                 lines: index..index + 1,
             }),
@@ -258,6 +276,10 @@ fn laid_out(
         let layout = detect::rows(&lines, options);
         match layout.and_then(|block| detect::of_rows(&lines, block, encoding, options)) {
             Ok(layout) => sections.push(Section {
+                held: place.title.as_deref().filter(|title| place.is_step && is_held(title)).map(|_| {
+                    let rows = own.iter().skip((layout.first_data_line - 1).saturating_sub(head.len()));
+                    rows.filter(|(_, line)| !line.trim().is_empty()).count()
+                }),
                 title: place.title,
                 head: bytes(head),
                 body: bytes(own),
@@ -271,6 +293,11 @@ fn laid_out(
         }
     }
     (sections, skipped)
+}
+
+/// Whether a step is a hold by its name.
+fn is_held(title: &str) -> bool {
+    LabelledSegment::new(title, 0.0, 0.0).is_some_and(|label| label.holds)
 }
 
 /// The bytes of successive lines.
@@ -295,6 +322,11 @@ fn parts(sections: &[Section], encoding: Encoding) -> Vec<Part> {
         let mut metadata: Vec<Metadata> = common.iter().chain(own).take(room).cloned().collect();
         room -= metadata.len();
         metadata.shrink_to_fit();
+        let labels = section.title.iter().zip(section.held).map(|(title, rows)| Label {
+            name: title.clone(),
+            start: 0,
+            end: rows,
+        });
         let name = match section.title.as_deref() {
             Some(title) if times[title] == 1 => title.to_owned(),
             Some(title) => format!("{title}, table {number}"),
@@ -310,6 +342,7 @@ fn parts(sections: &[Section], encoding: Encoding) -> Vec<Part> {
             written: layout.to_string(),
             columns: layout.columns,
             metadata,
+            labels: labels.collect(),
             ..Part::default()
         }
     };

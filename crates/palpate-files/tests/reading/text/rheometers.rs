@@ -57,6 +57,21 @@ fn every_step_of_trios_is_a_test_with_the_geometry_of_all() {
     }
 }
 
+/// The name of a step says that it is a hold; that of a result of several intervals does not.
+#[test]
+fn a_step_that_is_a_relaxation_labels_its_rows() {
+    let contents = open(trios("\t"));
+    let labels = |contents: &Contents| -> Vec<Vec<(String, usize, usize)>> {
+        let of = |part: &Part| part.labels.iter().map(|label| (label.name.clone(), label.start, label.end)).collect();
+        contents.parts.iter().map(of).collect()
+    };
+    let label = |name: &str, rows| vec![(name.to_owned(), 0, rows)];
+    assert_eq!(labels(&contents), [label("Stress relaxation - 1", 3), vec![], label("Stress relaxation - 3", 2)]);
+    let step = &record(&contents, 2).record;
+    assert_eq!((step.labels()[0].from, step.labels()[0].to, step.labels()[0].holds), (0.25, 0.5, true));
+    assert_eq!(labels(&open(rheocompass())), [vec![], vec![]]);
+}
+
 /// Torque and angle by the constants that TRIOS states of its geometry: Pa for each N m, strain for each rad.
 #[test]
 fn torque_and_angle_of_trios_follow_from_its_constants() {
@@ -121,6 +136,39 @@ fn an_oscillation_of_rheocompass_is_no_test() {
         palpate_files::description::parse_test(stated, std::path::Path::new("test.toml")).expect("a description");
     let read = read_part(&contents, 1, Some(&test), &mut |_, _| Ok(())).unwrap_or_else(|error| panic!("{error}"));
     assert_eq!(read.record.force(), [80.0, 40.0, 26.0, 20.0]);
+}
+
+/// An interval of RheoCompass in which the shear rate falls from 300 to 0.005 1/s: its strain comes to rest with it.
+fn flow_curve(unit: &str) -> String {
+    let names = format!(
+        "Interval data:\tPoint No.\tTime\tShear Stress\tShear Rate\tShear Strain\n\t\t[s]\t[Pa]\t[{unit}]\t[%]\n"
+    );
+    let (mut strain, mut rows) = (0.0, String::new());
+    for point in 1..=50 {
+        let rate = 300.0 * 0.8f64.powi(point);
+        strain += 400.0 * rate;
+        rows += &format!("\t{point}\t{}\t{:.3}\t{rate:.3e}\t{strain:.0}\n", 4 * point, 12.0 + 3.0 * rate.sqrt());
+    }
+    format!("Project:\tgel\n\nTest:\tgel 1\n\nResult:\tCurve 1\n\nInterval and data points:\t1\t50\n{names}{rows}\n")
+}
+
+/// A flow curve was read, and its strain at the lowest rates was a hold.
+#[test]
+fn a_flow_curve_is_no_test() {
+    let contents = open(flow_curve("1/s"));
+    let error = read_part(&contents, 0, None, &mut |_, _| Ok(())).unwrap_err();
+    let reason = error.to_string();
+    assert!(
+        reason.contains("(Shear Rate): expected a test with a hold, found a flow curve from 240 to 0.00428 1/s"),
+        "{reason}"
+    );
+    // Who names the columns decides, and a rate without a unit says nothing.
+    let stated = "columns = { stress = { column = 4 }, strain = { column = 6 } }";
+    let test =
+        palpate_files::description::parse_test(stated, std::path::Path::new("test.toml")).expect("a description");
+    let read = read_part(&contents, 0, Some(&test), &mut |_, _| Ok(())).unwrap_or_else(|error| panic!("{error}"));
+    assert_eq!(read.rows, 50);
+    assert_eq!(record(&open(flow_curve("-")), 0).rows, 50);
 }
 
 #[test]

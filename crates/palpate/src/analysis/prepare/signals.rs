@@ -2,7 +2,7 @@
 
 use crate::analysis::{Corrected, Finding, Prepared};
 use crate::record::{Column, Correction, Record, SignalReport, Values, stray_rows};
-use crate::segment::{ContactChoice, ContactPoint, HoldMode, SegmentOptions, Segmentation, find_phases};
+use crate::segment::{ContactChoice, ContactPoint, HoldMode, Segment, SegmentOptions, Segmentation, find_phases};
 use crate::statistics::{median, noise};
 
 /// Levels between the smallest and the largest value below which rounding is worth a word.
@@ -117,7 +117,8 @@ fn rounded(column: Column, values: &Values) -> Option<Finding> {
 /// [`Finding::SignSuspicious`] for columns that fall first, where a test loads first.
 ///
 /// What counts is the first time that a column is half as far from its start as it ever comes: many small steps up and one large
-/// one down are no reason for doubt.
+/// one down are no reason for doubt. Nor is a force that swings as a mass is set in motion, or a jaw that draws back first, where what is
+/// held then lies above the start.
 pub fn suspicious_signs(record: &Record) -> Vec<Finding> {
     let force = record.force();
     let (low, high) = force.iter().fold((f64::MAX, f64::MIN), |(low, high), f| (low.min(*f), high.max(*f)));
@@ -130,16 +131,27 @@ pub fn suspicious_signs(record: &Record) -> Vec<Finding> {
         let first = values.iter().find(|value| (**value - start).abs() >= 0.5 * most)?;
         let fall = start - values.iter().copied().fold(f64::MAX, f64::min);
         // A force relaxes from the first sample of a record that is one hold, in which nothing else moves.
-        let relaxes = || {
-            let found = find_phases(record, &SegmentOptions::default());
-            (column != "force" || start > 0.0) && found.is_ok_and(|found| found.is_one_hold())
+        let is_right = || {
+            find_phases(record, &SegmentOptions::default()).is_ok_and(|found| match found.is_one_hold() {
+                true => column != "force" || start > 0.0,
+                false => holds_above_start(values, &found),
+            })
         };
-        (*first < start && fall > least && !relaxes()).then(|| Finding::SignSuspicious {
+        (*first < start && fall > least && !is_right()).then(|| Finding::SignSuspicious {
             column: column.to_owned(),
             fall,
         })
     });
     falls.collect()
+}
+
+/// Whether the first level that is held and lies as far from the start as half of the farthest lies above it.
+fn holds_above_start(values: &[f64], found: &Segmentation) -> bool {
+    // A jaw may move from the second row on.
+    let level = |hold: &Segment| median(&mut values[hold.fit_start..hold.end].to_vec()) - values[0];
+    let levels: Vec<f64> = found.holds().map(level).collect();
+    let most = levels.iter().fold(0.0, |most: f64, level| most.max(level.abs()));
+    levels.iter().find(|level| level.abs() >= 0.5 * most).is_some_and(|level| *level > 0.0)
 }
 
 /// [`Finding::RowsStray`] for rows of the force that stray alone and were not repaired.
@@ -223,5 +235,26 @@ mod tests {
         assert_eq!(suspicious_signs(&stairs(1.0)), []);
         let codes: Vec<&str> = suspicious_signs(&stairs(-1.0)).iter().map(Finding::code).collect();
         assert_eq!(codes, ["sign_suspicious", "sign_suspicious"]);
+    }
+
+    /// The torque that sets a rotor in motion, and brakes it, was a force that falls first.
+    #[test]
+    fn a_mass_that_is_set_in_motion_is_no_wrong_sign() {
+        let time: Vec<f64> = (0..600).map(|i| 1e-3 * f64::from(i) + 1e-3 * 1.028f64.powi(i)).collect();
+        let step = |sign: f64| {
+            let strain = |t: f64| 4.5e-3 * (1.0 - (-60.0 * t).exp() * (300.0 * t).cos());
+            let torque = |t: f64| {
+                1.0 / (1.0 + 30.0 * t).powf(0.3) - 1.0 / (1.0 + 3e3 * t) + 25.0 * (-60.0 * t).exp() * (600.0 * t).sin()
+            };
+            let column =
+                |shape: &dyn Fn(f64) -> f64| time.iter().map(|t| sign * shape(t - time[0])).collect::<Vec<f64>>();
+            Record::new(time.clone(), Some(column(&strain)), column(&torque)).unwrap()
+        };
+        let force = step(1.0);
+        let start = median(&mut force.force()[..5].to_vec());
+        assert!(force.force()[0] < start, "the record shows what it is to show");
+        assert_eq!(suspicious_signs(&force), []);
+        let turned = suspicious_signs(&step(-1.0));
+        assert!(turned.iter().any(|finding| finding.code() == "sign_suspicious"), "{turned:?}");
     }
 }

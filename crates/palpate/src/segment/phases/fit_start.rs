@@ -54,7 +54,7 @@ impl HoldStart {
 /// A machine that swings, overshoots or falls short at first moves the signal itself; the laws describe what follows.
 fn peak(record: &Record, wander: f64, segments: &[Segment], index: usize) -> (usize, FitStartRule) {
     let segment = &segments[index];
-    let early = early(record.time(), segment);
+    let early = segment.start + early(&record.time()[segment.start..segment.end]);
     let settled = settled(record, wander, segments, index, early);
     // A row that strays alone is no extreme.
     let signal = running_median(&record.force()[settled..segment.end]);
@@ -85,16 +85,15 @@ fn running_median(values: &[f64]) -> Vec<f64> {
     medians
 }
 
-/// The sample after the early part of a hold.
-fn early(time: &[f64], segment: &Segment) -> usize {
-    let (from, until) = (time[segment.start], time[segment.end - 1]);
-    let share = time[..segment.end].partition_point(|t| *t <= from + EARLY * (until - from));
+/// How many samples at these times are the early part of a hold.
+fn early(time: &[f64]) -> usize {
+    let (from, until) = (time[0], time[time.len() - 1]);
+    let share = time.partition_point(|t| *t <= from + EARLY * (until - from));
     // Of very few samples most must be left to fit.
-    share.max(segment.start + FEWEST.min(segment.len() / 4)).min(segment.end)
+    share.max(FEWEST.min(time.len() / 4)).min(time.len())
 }
 
-/// The first sample of the hold from which on the drive does not swing: for a while it keeps within its noise, or the share of its way
-/// by which such machines wander.
+/// The first sample of the hold from which on the drive does not swing.
 fn settled(record: &Record, wander: f64, segments: &[Segment], index: usize, early: usize) -> usize {
     let segment = &segments[index];
     let Some(drive) = record.displacement() else {
@@ -106,8 +105,22 @@ fn settled(record: &Record, wander: f64, segments: &[Segment], index: usize, ear
     let way = (level - drive[ramp.saturating_sub(1)]).abs();
     // Of a force the zero is known: what a controller holds it to is a share of the force.
     let way = if segment.mode == Some(HoldMode::ForceHeld) { way.min(level.abs()) } else { way };
-    let band = (SWINGS * noise(hold)).max(2.0 * wander * way);
-    let window = FEWEST.max((early - segment.start) / 10).min(hold.len());
-    let swings = |i: &usize| range(&drive[*i..(*i + window).min(segment.end)]) > band;
-    (segment.start..early).find(|i| !swings(i)).unwrap_or(segment.start)
+    segment.start + calm(hold, 2.0 * wander * way, early - segment.start).unwrap_or(0)
+}
+
+/// The first value, of those that are early, from which on a drive does not swing: for a while it keeps within its noise, or within a
+/// band about what it holds.
+fn calm(drive: &[f64], band: f64, early: usize) -> Option<usize> {
+    let band = band.max(SWINGS * noise(drive));
+    let window = FEWEST.max(early / 10).min(drive.len());
+    let swings = |i: &usize| range(&drive[*i..(*i + window).min(drive.len())]) > band;
+    (0..early).find(|i| !swings(i))
+}
+
+/// The sample from which on the jaw rests in a step that begins with the record, which has come from its first position and ends
+/// before sample `end`; `None` where it does not come to rest early.
+pub(super) fn rests_from(record: &Record, end: usize) -> Option<usize> {
+    let drive = &record.displacement()?[..end];
+    let way = (median(&mut drive.to_vec()) - drive[0]).abs();
+    calm(drive, 2.0 * SERVO * way, early(&record.time()[..end]))
 }

@@ -3,13 +3,13 @@
 use serde::{Deserialize, Serialize};
 
 use super::fit_start::place_fits;
+use super::labelled::labelled;
 use super::ramps::fill_gaps;
-use super::whole::{begins_in_hold, creeps_throughout, relaxes_throughout, stated, whole};
+use super::whole::{creeps_throughout, relaxes_throughout, stated, whole};
 use super::{from_both, from_force};
 use crate::record::Record;
 use crate::segment::{
-    Held, HoldMode, LabelCheck, Level, Phase, SegmentError, SegmentOptions, SegmentSettings, Segmentation, hear,
-    levels, mode, ramps_before,
+    Held, HoldMode, Level, Phase, SegmentError, SegmentOptions, SegmentSettings, Segmentation, hear, levels, mode,
 };
 use crate::statistics::{noise_in_time, range};
 use crate::watch::{Cancelled, Unwatched, Watch};
@@ -36,14 +36,15 @@ fn found(record: &Record, options: &SegmentOptions, watch: &mut dyn Watch) -> Re
             found: record.len(),
         });
     }
-    if !record.labels().is_empty() {
+    // What a record is made of says more than the name of a step.
+    if !record.labels().is_empty() && stated(record).is_none() {
         return labelled(record, options, watch);
     }
     searched_alone(record, options, watch)
 }
 
 /// The phases by the columns alone.
-fn searched_alone(
+pub(super) fn searched_alone(
     record: &Record,
     options: &SegmentOptions,
     watch: &mut dyn Watch,
@@ -74,57 +75,6 @@ fn searched_alone(
     hear(watch)?;
     place_fits(record, options, &mut segmentation.segments);
     Ok(segmentation)
-}
-
-/// The phases that the file labels, and where a search disagrees with them.
-fn labelled(record: &Record, options: &SegmentOptions, watch: &mut dyn Watch) -> Result<Segmentation, SegmentError> {
-    let labels = record.labels();
-    let holds = labels.iter().filter(|label| label.holds);
-    let given: Vec<GivenHold> = holds
-        .map(|label| GivenHold {
-            from: label.from,
-            to: label.to,
-            mode: None,
-        })
-        .collect();
-    let none = || SegmentError::NoneLabelled {
-        names: labels.iter().map(|label| label.name.clone()).collect(),
-    };
-    if given.is_empty() {
-        return Err(none());
-    }
-    let mut segmentation = with_given(record, options, &given, watch)?;
-    let force = range(record.force());
-    // A pause before anything is touched holds nothing.
-    for index in 0..segmentation.segments.len() {
-        let nothing_before = ramps_before(&segmentation.segments, index).next().is_none();
-        let segment = &mut segmentation.segments[index];
-        let is_first = segment.phase == Phase::Hold && segment.start == 0 && nothing_before;
-        if is_first && !begins_in_hold(record, segment.end, force) {
-            (segment.phase, segment.mode, segment.fit_start_rule) = (Phase::Rest, None, None);
-        }
-    }
-    if segmentation.holds().next().is_none() {
-        return Err(none());
-    }
-    let found = SegmentError::unless_cancelled(searched_alone(record, options, watch))?;
-    let found: Vec<(usize, usize)> =
-        found.iter().flat_map(Segmentation::holds).map(|hold| (hold.start, hold.end)).collect();
-    let holds: Vec<(usize, usize)> = segmentation.holds().map(|hold| (hold.start, hold.end)).collect();
-    let check = LabelCheck {
-        labelled: holds.len(),
-        missed: without_partner(&holds, &found),
-        extra: without_partner(&found, &holds),
-    };
-    segmentation.labels = (check.missed + check.extra > 0).then_some(check);
-    Ok(segmentation)
-}
-
-/// How many stretches share less than half of themselves with any of the others.
-fn without_partner(stretches: &[(usize, usize)], others: &[(usize, usize)]) -> usize {
-    let shared = |a: &(usize, usize), b: &(usize, usize)| a.1.min(b.1).saturating_sub(a.0.max(b.0));
-    let alone = |a: &&(usize, usize)| others.iter().all(|b| 2 * shared(a, b) < a.1 - a.0);
-    stretches.iter().filter(alone).count()
 }
 
 /// A hold with limits that are given and not sought.
@@ -186,7 +136,7 @@ pub fn phases_watched(
     }
 }
 
-fn with_given(
+pub(super) fn with_given(
     record: &Record,
     options: &SegmentOptions,
     given: &[GivenHold],

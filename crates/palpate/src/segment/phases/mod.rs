@@ -5,6 +5,7 @@
 //! | file | what |
 //! |---|---|
 //! | `given.rs` | phases that are sought, and holds whose limits someone gives |
+//! | `labelled.rs` | phases that a file labels |
 //! | `from_both.rs` | phases where displacement and force were recorded |
 //! | `from_force.rs` | phases where only the force was |
 //! | `nothing_held.rs` | standstills in which no body is held in place |
@@ -19,6 +20,7 @@ mod fit_start;
 mod from_both;
 mod from_force;
 mod given;
+mod labelled;
 mod nothing_held;
 mod ramps;
 mod ripple;
