@@ -171,16 +171,20 @@ def _children_s() -> float:
     return used.ru_utime + used.ru_stime
 
 
-def merge_s(job: Job, scratch: pathlib.Path, curves: int, shards: int = 4) -> tuple[float, float]:
-    """Processor time of the analysis and of the merge, per curve, from shards of one run."""
+def merge_s(job: Job, scratch: pathlib.Path, curves: int, shards: int = 4) -> tuple[float, float, float]:
+    """Processor time of a start of the command, and of the analysis and of the merge, per curve, from shards of one run."""
     out = scratch / "merged"
-    start = _children_s()
-    for number in range(1, shards + 1):
-        succeeded(job.shard(out, number, shards))
-    analysed = _children_s()
-    for _ in range(3):
-        succeeded(job.merge(out))
-    return (analysed - start) / curves, (_children_s() - analysed) / (3 * curves)
+
+    def timed(*commands: list[str]) -> float:
+        before = _children_s()
+        for command in commands:
+            succeeded(command)
+        return _children_s() - before
+
+    start_s = timed(*[[str(job.palpate), "--version"]] * 5) / 5
+    analysed_s = timed(*(job.shard(out, number, shards) for number in range(1, shards + 1)))
+    merged_s = timed(*[job.merge(out)] * 3) / 3
+    return start_s, (analysed_s - shards * start_s) / curves, (merged_s - start_s) / curves
 
 
 def efficiency(workers: int, shards: int, shard_s: float, serial_s: float, spread: float = 0.1, seed: int = 1) -> tuple[float, float]:
@@ -212,8 +216,9 @@ def page(job: Job, scratch: pathlib.Path, curves: int, most: int, shards: int) -
     client_s = max(one["client_s"] for one in runs.values()) / shards
     files_s = file_s(scratch)
     submission_s, job_s = slurm_s()
-    curve_s, merged_s = merge_s(job, scratch, curves)
+    start_s, curve_s, merged_s = merge_s(job, scratch, curves)
     costs = [
+        ("start of the command", f"{1e3 * start_s:.0f}", "once per shard, parallel"),
         ("analysis of a curve", f"{1e3 * curve_s:.2f}", "parallel"),
         ("scheduler of Dask, per shard", f"{1e3 * scheduler_s:.2f}", "serial"),
         ("client of Dask, per shard", f"{1e3 * client_s:.2f}", "serial"),
