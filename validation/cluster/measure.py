@@ -91,7 +91,10 @@ def main() -> int:
     if not set(parts) <= set(PARTS):
         parser.error(f"expected some of {', '.join(PARTS)}, found {wanted.only}")
     with_dask = importlib.util.find_spec("palpate") is not None and importlib.util.find_spec("palpate.dask") is not None
-    version = succeeded([str(palpate), "--version"]).split("\n")[0]
+    shown = succeeded([str(palpate), "--version"])
+    if with_dask and shown != succeeded([sys.executable, "-m", "palpate", "--version"]):
+        parser.error("the command and the package palpate are of two builds, whose tables differ: take the command of the package's environment")
+    version = shown.split("\n")[0]
     options = " ".join(argument for argument in sys.argv[2:] if argument != "--write")
     origin = f"`measure.py PALPATE {options}`: {version}, {platform.system()} {platform.release()}, {PROCESSORS} processors."
     left_out = "" if with_dask else " Without the parts on `palpate.dask`, which was not installed."
