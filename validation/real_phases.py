@@ -23,6 +23,13 @@ MODULUS = ["--columns", "time=1:s,modulus=2:Pa"]
 COMPLIANCE = ["--columns", "time=1:s,compliance=2:1/Pa"]
 # A step in strain after each peak; the peak holds of 3 s end with a rotor that stands.
 TRIOS = {f"{name} - {n}": "D" for name, numbers in (("Stress relaxation", (7, 11, 15, 19)), ("Peak hold", (10, 14, 18))) for n in numbers}
+TRIOS |= {f"Flow sweep - {n}": "a flow curve" for n in (3, 4)}
+# Its amplitude stands at 0 in one interval; two others are flow curves.
+ANTON_PAAR = {
+    "LAOS 1, interval 2": "the force is 0 N in all 30 rows: there is no relaxation",
+    "Flow Curve 1, interval 3": "a flow curve",
+    "Flow Curve 1, interval 4": "a flow curve",
+}
 SHEAR = ["--columns", "time=1:s,force=2:N,displacement=3:mm"]
 ZWICK = {f"230515-P002-{n}": "D F" for n in (1, 3, 4, 6, 7, 8, 9, 10, 11, 12, 13)}
 
@@ -66,7 +73,7 @@ EXPECTED = [
     ("more/mts/i8_3_1_hold.txt", [], "D"),
     ("more/mts/i8_3_1_ramp.txt", ["--then", "more/mts/i8_3_1_hold.txt"], "D"),
     ("more/nanoindentation/agilent_example.xls", [], {None: "F F"}),
-    ("more/rheometer/anton_paar.csv", [], {"LAOS 1, interval 2": "the force is 0 N in all 30 rows: there is no relaxation"}),
+    ("more/rheometer/anton_paar.csv", [], ANTON_PAAR),
     ("more/rheometer/creep_mucus.csv", COMPLIANCE, "F"),
     ("more/rheometer/relaxation_fishmuscle.csv", MODULUS, "D"),
     ("more/rheometer/relaxation_hdpe.csv", MODULUS, "D"),
@@ -98,6 +105,8 @@ def phases(text, errors):
     if re.search(r"^Phases: .*(no hold|no motion)", text, re.MULTILINE):
         return "none"
     first = next((line for line in errors.splitlines() if line.startswith("error:")), "error: no phases")
+    if "found a flow curve" in first:
+        return "a flow curve"
     return first.removeprefix("error: ").split(": ", 1)[-1][:90]
 
 

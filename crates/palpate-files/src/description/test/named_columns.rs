@@ -112,7 +112,7 @@ fn parsed(text: &str) -> Result<ColumnChoices, ChoiceError> {
     Ok(columns)
 }
 
-/// What is said of a deflection, and behind the last colon the spring constant of its cantilever, N/m.
+/// What is stated of a deflection, and behind the last colon the spring constant of its cantilever, N/m.
 fn with_stiffness(stated: &str) -> (&str, Option<f64>) {
     let parts = stated.rsplit_once(':').and_then(|(stated, last)| {
         let stiffness = units::parse(last.trim(), Dimension::Stiffness).ok()?;

@@ -4,6 +4,7 @@
 //!
 //! | file | what |
 //! |---|---|
+//! | `find.rs` | the phases of a record: given, labelled or sought |
 //! | `given.rs` | phases that are sought, and holds whose limits someone gives |
 //! | `labelled.rs` | phases that a file labels |
 //! | `from_both.rs` | phases where displacement and force were recorded |
@@ -16,6 +17,7 @@
 //! | `whole.rs` | a record that is one hold throughout |
 //! | `fit_start.rs` | from where in a hold the laws are fitted |
 
+mod find;
 mod fit_start;
 mod from_both;
 mod from_force;
@@ -28,5 +30,6 @@ mod rupture;
 mod turning;
 mod whole;
 
-pub use given::{GivenHold, find_phases, phases_watched, phases_with};
+pub use find::{find_phases, phases_watched, phases_with};
+pub use given::GivenHold;
 pub(crate) use ramps::ramps_alone;

@@ -1,15 +1,8 @@
 //! One of many contacts of the latency law, where it is not stepped in vectors; and what is checked of any contact.
 
 use super::block::{FARTHEST, between};
-use crate::contact::Specimen;
 use crate::simulate::step::check_step;
 use crate::simulate::{ContactModel, ContactState, Separation, StepError};
-
-/// Whether a body is none that there is.
-pub(super) fn is_extreme(specimen: &Specimen) -> bool {
-    let reach = specimen.depth();
-    !(specimen.force(1.0, 0.999 * reach).abs() < 1e100 && (1e-50..1e50).contains(&reach))
-}
 
 /// A number, or 0 in the place of one that is none: what a contact shows whose state is none.
 pub(super) fn finite(number: f64) -> f64 {

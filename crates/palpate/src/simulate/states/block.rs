@@ -1,42 +1,11 @@
 //! Contacts of the latency law that stay in contact, side by side in vectors.
 
-use super::alone::is_extreme;
-use super::part::Column;
+use super::lanes::{Column, Lanes};
 use crate::contact::{Equilibrium, Shape, Specimen};
 use crate::latency::lanes::Power;
 use crate::simulate::{ContactModel, Separation};
 use crate::vector::LANES;
 use crate::vector::elementary::{exp, ln, ln_1p};
-
-/// Values of contacts side by side.
-pub(super) type Lanes = [f64; LANES];
-
-/// Values from a position on; the last of them also in place of those that are not there.
-#[inline(always)]
-pub(super) fn lanes(all: &[f64], from: usize) -> Lanes {
-    all.get(from..).and_then(<[f64]>::first_chunk).copied().unwrap_or_else(|| some_lanes(all, from))
-}
-
-#[inline(never)]
-fn some_lanes(all: &[f64], from: usize) -> Lanes {
-    let last = all.len() - 1;
-    std::array::from_fn(|lane| all[(from + lane).min(last)])
-}
-
-/// Writes values from a position on, as many as there is room for.
-#[inline(always)]
-pub(super) fn store(all: &mut [f64], from: usize, values: &Lanes) {
-    let Some(some) = all.get_mut(from..) else { return };
-    match some.first_chunk_mut() {
-        Some(chunk) => *chunk = *values,
-        None => store_some(some, values),
-    }
-}
-
-#[inline(never)]
-fn store_some(some: &mut [f64], values: &Lanes) {
-    some.iter_mut().zip(values).for_each(|(slot, value)| *slot = *value);
-}
 
 /// The bodies of contacts side by side: E ε A(u) of a ball, a pad or a prism, and where others begin that are stepped alone.
 #[derive(Debug, Clone, PartialEq)]
@@ -61,6 +30,12 @@ pub(super) struct Bodies {
 pub(super) fn is_plain(specimen: &Specimen) -> bool {
     matches!(specimen.shape(), Shape::Ball { .. } | Shape::Pad { .. } | Shape::Prism { .. })
         && *specimen.equilibrium() == Equilibrium::UniformStrain
+}
+
+/// Whether a body is none that there is.
+pub(super) fn is_extreme(specimen: &Specimen) -> bool {
+    let reach = specimen.depth();
+    !(specimen.force(1.0, 0.999 * reach).abs() < 1e100 && (1e-50..1e50).contains(&reach))
 }
 
 impl Bodies {

@@ -4,10 +4,11 @@
 use std::borrow::Cow;
 use std::mem;
 
-use super::alone::{check_move, finite, forced_alone, is_extreme, moved_alone};
-use super::block::{Block, Lanes, MOST_LAYERS, Marks, Moved, between, is_step, lanes, store};
+use super::alone::{check_move, finite, forced_alone, moved_alone};
+use super::block::{Block, MOST_LAYERS, Marks, Moved, between, is_extreme, is_step};
+use super::lanes::{Column, Lanes, lanes, store};
 use super::parameters::{ContactParameter, Parameters, Value, ValueProblem, of_model, own_model, renew};
-use super::part::{Column, ContactsStep, Imposed, OneStepError, Part, Refusal};
+use super::part::{ContactsStep, Imposed, OneStepError, Part, Refusal};
 use crate::latency::lanes::{Power, by_power};
 use crate::simulate::{ContactModel, ContactState};
 use crate::vector::{LANES, accelerated_by_four};

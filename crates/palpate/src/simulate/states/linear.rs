@@ -5,11 +5,12 @@ use std::mem;
 
 use smallvec::SmallVec;
 
-use super::alone::{check_result, check_state, finite, is_extreme};
-use super::block::{Lanes, Marks, between, is_step, lanes, store};
+use super::alone::{check_result, check_state, finite};
+use super::block::{Marks, between, is_extreme, is_step};
+use super::lanes::{Column, Lanes, lanes, store};
 use super::linear_block::{Fadings, LinearBlock, Moving};
 use super::parameters::{ContactParameter, Parameters, Value, ValueProblem, of_specimen, own_contact, renew};
-use super::part::{Column, ContactsStep, Imposed, OneStepError, Part, Refusal};
+use super::part::{ContactsStep, Imposed, OneStepError, Part, Refusal};
 use crate::simulate::linear::{LinearStepper, Memories};
 use crate::simulate::step::check_step;
 use crate::simulate::{LinearContact, StepError};

@@ -2,7 +2,8 @@
 
 use smallvec::SmallVec;
 
-use super::block::{Bodies, Lanes, Marks};
+use super::block::{Bodies, Marks};
+use super::lanes::Lanes;
 use crate::simulate::Memory;
 use crate::simulate::linear::LinearStepper;
 use crate::vector::LANES;

@@ -6,12 +6,14 @@
 //! | `models.rs` | bodies and laws of the contacts; a step of states that lie in memory of the caller |
 //! | `parameters.rs` | parameters with a value for each contact |
 //! | `part.rs` | what a step imposes, its memory, and how it is spread over cores |
+//! | `lanes.rs` | columns of contacts, as many numbers at a time as go side by side |
 //! | `latency.rs`, `block.rs`, `alone.rs` | contacts of the latency law, eight of them in vectors, and one |
 //! | `linear.rs`, `linear_block.rs` | contacts of linear laws, and eight of them in vectors |
 //! | `quantity.rs` | what contacts show |
 
 mod alone;
 mod block;
+mod lanes;
 mod latency;
 mod linear;
 mod linear_block;

@@ -4,7 +4,6 @@ use std::ops::Range;
 
 use smallvec::SmallVec;
 
-use super::block::{Lanes, lanes};
 use crate::parallel::both;
 use crate::simulate::StepError;
 use crate::vector::LANES;
@@ -61,55 +60,6 @@ impl ContactsStep<'_> {
     /// Time step and target of a contact.
     pub(super) fn of(&self, index: usize) -> (f64, f64) {
         (self.dt[index.min(self.dt.len() - 1)], self.to[index.min(self.to.len() - 1)])
-    }
-}
-
-/// One value for all contacts, or one each, as lanes.
-#[derive(Clone, Copy)]
-pub(super) struct Column<'a> {
-    shared: Lanes,
-    /// Of each, where they have their own.
-    each: Option<&'a [f64]>,
-}
-
-impl<'a> Column<'a> {
-    #[inline(always)]
-    pub(super) fn new(values: &'a [f64]) -> Self {
-        match values {
-            [one] => Self {
-                shared: [*one; LANES],
-                each: None,
-            },
-            values => Self {
-                shared: [0.0; LANES],
-                each: Some(values),
-            },
-        }
-    }
-
-    pub(super) fn is_shared(&self) -> bool {
-        self.each.is_none()
-    }
-
-    /// Of the contacts from `from` on; the last of them also in place of those that are not there.
-    #[inline(always)]
-    pub(super) fn lanes(&self, from: usize) -> Lanes {
-        self.each.map_or(self.shared, |each| lanes(each, from))
-    }
-
-    /// The values from contact `from` on alone.
-    #[inline(always)]
-    pub(super) fn from(self, from: usize) -> Self {
-        Self {
-            each: self.each.and_then(|each| each.get(from..)),
-            ..self
-        }
-    }
-
-    /// A complete block of lanes.
-    #[inline(always)]
-    pub(super) fn block(&self, index: usize) -> &Lanes {
-        self.each.map_or(&self.shared, |each| each.as_chunks().0.get(index).unwrap_or(&self.shared))
     }
 }
 
