@@ -39,7 +39,7 @@ How to run a batch on a cluster: [Clusters](../guides/cluster.md).
 def measured(part: str, wanted: argparse.Namespace, scratch: pathlib.Path, with_dask: bool) -> tuple[str, bool]:
     """The text of one part, and whether all is well."""
     folder = scratch / part
-    count = {"million": wanted.million, "pairs": wanted.paired, "runs": wanted.curves, "kills": 1000, "scaling": 5000}[part]
+    count = {"million": wanted.million, "pairs": wanted.paired, "runs": wanted.curves, "kills": 1000, "scaling": 20_000}[part]
     curves.write(folder, count, min(1000, count // 10), seed=wanted.seed)
     job = Job(wanted.palpate, folder)
     if part == "million":
