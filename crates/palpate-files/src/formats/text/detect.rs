@@ -5,7 +5,10 @@ use crate::{
     cell::{Cell, Delimiter, cells, date},
     error::{FileError, FileProblem, shorten},
     input::{Encoding, Input},
-    table::{Block, ColumnInfo, ColumnKind, Header, Layout, Metadata, ReadOptions, block, decimal, header, metadata},
+    table::{
+        Block, ColumnInfo, ColumnKind, Header, Layout, Metadata, ReadOptions, RowKind, block, decimal, header,
+        metadata, names_time,
+    },
 };
 
 /// Finds out how a file of delimited text is written, from at most its first 256 KiB.
@@ -30,8 +33,39 @@ pub(super) fn rows(lines: &[&str], options: &ReadOptions) -> Result<Block, FileP
     found.or_else(|problem| find_block(lines, skip, options).map_err(|_| problem))
 }
 
-/// The layout of lines with these rows of numbers.
+/// Most tables that results may stand in above the test.
+const MOST_RESULTS: usize = 16;
+
+/// The layout of lines with these rows of numbers; or of those of a table below them, if that one names a time and they do not: results, such
+/// as a hardness, stand above the values that were measured.
 pub(super) fn of_rows(
+    lines: &[&str],
+    block: Block,
+    encoding: Encoding,
+    options: &ReadOptions,
+) -> Result<Layout, FileProblem> {
+    let first = block.first;
+    let headings: Vec<usize> = match options.header {
+        None => (first..lines.len()).filter(|line| is_heading(&block.cells[*line])).take(MOST_RESULTS).collect(),
+        Some(_) => Vec::new(),
+    };
+    let layout = layout_of(lines, block, encoding, options)?;
+    if names_time(&layout.columns) {
+        return Ok(layout);
+    }
+    let below = headings.into_iter().find_map(|heading| {
+        let block = find_block(lines, heading, options).ok()?;
+        layout_of(lines, block, encoding, options).ok().filter(|layout| names_time(&layout.columns))
+    });
+    Ok(below.unwrap_or(layout))
+}
+
+/// Whether cells are names of columns.
+fn is_heading(row: &[Cell]) -> bool {
+    RowKind::of(row.iter().copied(), false) == RowKind::Names
+}
+
+fn layout_of(
     lines: &[&str],
     mut block: Block,
     encoding: Encoding,

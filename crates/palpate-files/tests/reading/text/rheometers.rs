@@ -249,6 +249,20 @@ fn tables_of_any_program_that_repeat_their_names_are_tests() {
 
 /// Marks of the end of a header, with the names before or behind them, and tables of other numbers above.
 #[test]
+fn results_above_the_measured_values_are_no_test() {
+    let measured = "Measured values\nTime\tPd\tFn\ns\tnm\tmN\n0.0\t0.0\t0.0\n0.1\t31.6\t0.5\n0.2\t44.7\t1.0\n";
+    // One row of results, and three.
+    for rows in ["12.3\t4.5\t336.2\n", "12.3\t4.5\t336.2\n12.4\t4.6\t335.1\n12.1\t4.4\t337.0\n"] {
+        let text = format!("Sample\tgel\n\nResults\nHit [MPa]\tEit [GPa]\thm [nm]\n{rows}\n{measured}");
+        let opened = open(&text);
+        assert_eq!(opened.parts.len(), 1, "{text}");
+        let file = record(&opened, 0);
+        assert_eq!(opened.parts[0].metadata[0].value, "gel");
+        assert_eq!(file.record.force(), [0.0, 5e-4, 1e-3], "{text}");
+    }
+}
+
+#[test]
 fn a_header_ends_where_it_says() {
     for text in [
         "rate 100 200 300\nlength 5 6 7\ntime (s) disp (mm) force (N)\neoh\n0 0 1\n1 1 2\n",
