@@ -14,7 +14,8 @@ Written by `validation/segmentation.sh`. The records are those of `crates/palpat
 can be determined and is therefore requested: forces by the law, noise up to 1 % of the range of each column, encoders and load cells
 with steps, drift, dropouts, clocks that differ, uneven sampling, servos that overshoot, 2 to 60 holds in 200 to 50 000 samples.
 
-A hold is found if it shares more than half of itself with a true one, else it is extra. Errors of first and last sample are in
+A hold is found if it shares more than half of itself with a true one, else it is extra. Of a force alone some are marked *doubtful*; the
+table counts them among those that are found, and the extra ones that are not marked. Errors of first and last sample are in
 samples, over the edges that noise lets one tell to two samples nineteen times of twenty (limit of Cramér and Rao up to
 0.75 samples); *blunt edges* are the others, their errors in units of that limit.
 

@@ -64,13 +64,14 @@ fn main() {
             let off = worst(&score.sharp[0]).max(worst(&score.sharp[1]));
             if each && (score.found < score.holds || score.extra > 0 || score.turned > 0 || off > 4.0) {
                 println!(
-                    "{parameter}: {} noise {} samples {}: {} of {}, {} extra, {} turned, off {off}",
+                    "{parameter}: {} noise {} samples {}: {} of {}, {} extra ({} not marked), {} turned, off {off}",
                     scored.kind.name(),
                     scored.noise,
                     labelled.record.len(),
                     score.found,
                     score.holds,
                     score.extra,
+                    score.unmarked,
                     score.turned
                 );
             }

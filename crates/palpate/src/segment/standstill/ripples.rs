@@ -15,10 +15,20 @@ const RIPPLES: f64 = 12.0;
 ///
 /// A standstill of L samples in a ramp changes the difference of the ways of L samples before and after its corners by all the way
 /// that it lacks; in a ramp that ripples such differences are found everywhere. Differences of white noise of deviation `noise` are √6
-/// of it. A ramp that stands still in every wave looks like stairs, and is read as such.
+/// of it. A standstill with others right beside it has no ramp there until these are known for waves, so the search goes on as long as it
+/// finds some. A ramp that stands still in every wave looks like stairs, and is read as such.
 pub(super) fn without_ripples(values: &[f64], noise: f64, found: &[Standstill]) -> Vec<Standstill> {
-    let stands = |index: &usize| stands_out(values, noise, found, *index);
-    (0..found.len()).filter(stands).map(|index| found[index]).collect()
+    let mut found = found.to_vec();
+    loop {
+        let stand: Vec<Standstill> = (0..found.len())
+            .filter(|index| stands_out(values, noise, &found, *index))
+            .map(|index| found[index])
+            .collect();
+        if stand.len() == found.len() {
+            return stand;
+        }
+        found = stand;
+    }
 }
 
 /// Whether a standstill bends the column by more than the ramps beside it bend.
@@ -57,6 +67,8 @@ mod tests {
         let mut values: Vec<f64> = (0..600).map(wave).collect();
         let still = |start: usize| Standstill { start, end: start + 8 };
         assert!(without_ripples(&values, 0.001, &[still(300)]).is_empty());
+        // Those of a burst have no ramp between them.
+        assert!(without_ripples(&values, 0.001, &[285, 300, 315].map(still)).is_empty());
         // A true standstill of 40 samples stays.
         let last = values[599];
         values.extend([last; 40]);

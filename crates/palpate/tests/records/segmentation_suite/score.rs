@@ -20,8 +20,12 @@ pub struct Score {
     pub holds: usize,
     /// Those that were found.
     pub found: usize,
+    /// Those of them that are marked doubtful.
+    pub doubtful: usize,
     /// Holds found that are none.
     pub extra: usize,
+    /// Those of them that are not marked doubtful.
+    pub unmarked: usize,
     /// Found with a wrong direction before.
     pub turned: usize,
     /// Errors of starts and ends that can be determined to two samples, samples.
@@ -46,7 +50,9 @@ impl Score {
         self.records += other.records;
         self.holds += other.holds;
         self.found += other.found;
+        self.doubtful += other.doubtful;
         self.extra += other.extra;
+        self.unmarked += other.unmarked;
         self.turned += other.turned;
         for (all, some) in self.sharp.iter_mut().zip(&other.sharp) {
             all.extend(some);
@@ -106,6 +112,7 @@ fn score(time: &[f64], holds: &[TrueHold], found: &[Segment]) -> Score {
             continue;
         };
         score.found += 1;
+        score.doubtful += usize::from(segment.doubtful);
         score.turned += usize::from(segment.after.is_some_and(|after| after != hold.after));
         for (index, (at, truth)) in [(segment.start, start), (segment.end, end)].into_iter().enumerate() {
             let error = at as f64 - truth as f64;
@@ -117,26 +124,29 @@ fn score(time: &[f64], holds: &[TrueHold], found: &[Segment]) -> Score {
         }
     }
     score.extra = found.len() - score.found;
+    score.unmarked = found.iter().filter(|segment| !segment.doubtful).count() - (score.found - score.doubtful);
     score
 }
 
 /// Rows of a table: a name, and what belongs to it.
 pub fn table(rows: &[(String, Score)]) -> String {
     let mut out = String::from(
-        "| records | number | holds | found | missed | extra | wrong direction | start: median | 95 % | most | end: median | 95 % | most | blunt edges | 95 %, limits |\n\
-         |---|---:|---:|---:|---:|---:|---:|---:|---:|---:|---:|---:|---:|---:|---:|\n",
+        "| records | number | holds | found | of them doubtful | missed | extra | not marked | wrong direction | start: median | 95 % | most | end: median | 95 % | most | blunt edges | 95 %, limits |\n\
+         |---|---:|---:|---:|---:|---:|---:|---:|---:|---:|---:|---:|---:|---:|---:|---:|---:|\n",
     );
     let reported =
         |value: Option<f64>, digits: usize| value.map_or_else(|| "–".to_owned(), |value| format!("{value:.digits$}"));
     for (name, score) in rows {
         let _ = write!(
             out,
-            "| {name} | {} | {} | {:.2} % | {} | {} | {} |",
+            "| {name} | {} | {} | {:.2} % | {} | {} | {} | {} | {} |",
             score.records,
             score.holds,
             100.0 * score.found_share(),
+            score.doubtful,
             score.holds - score.found,
             score.extra,
+            score.unmarked,
             score.turned
         );
         for errors in &score.sharp {
