@@ -19,6 +19,9 @@ pub(super) const OFF: f64 = 0.008;
 const RAMP_AFTER_RAMP: f64 = 4.0;
 /// Price of a ramp that goes on as the hold before it ended, and from which share of its slope on it does so.
 const NO_CORNER: (f64, f64) = (4.0, 0.25);
+/// Price of a hold that goes on the way of the ramp before it, and from how many standard deviations of the noise on it does so: what relaxes turns
+/// back.
+const SAME_WAY: (f64, f64) = (2.0, 3.0);
 /// Price of a ramp between two holds in which no sample lies.
 const STEP: f64 = 2.0;
 /// Noise and the change of its neighbours that a step must exceed.
@@ -102,6 +105,12 @@ impl Best {
     }
 }
 
+/// Whether a hold goes on the way of the ramp before it.
+fn goes_on(ramp: &Shape, hold: &Shape, noise: f64) -> bool {
+    let change = hold.change();
+    change.abs() > SAME_WAY.1 * noise && change * ramp.slope(1.0) > 0.0
+}
+
 /// The cheapest chain.
 pub(super) fn chain(force: &Force<'_>, watch: &mut dyn Watch) -> Result<Vec<Link>, Cancelled> {
     let (time, values) = (force.time, force.values);
@@ -124,7 +133,6 @@ pub(super) fn chain(force: &Force<'_>, watch: &mut dyn Watch) -> Result<Vec<Link
             at if force.steps(at) => STEP * price,
             _ => f64::INFINITY,
         };
-        let before_hold = if hold.cost + step < ramp.cost { (hold.cost + step, true) } else { (ramp.cost, false) };
         let mut stretch: Vec<Point> = Vec::new();
         for j in i + 1..breaks.len() {
             stretch.extend(&pieces[j - 1]);
@@ -133,6 +141,10 @@ pub(super) fn chain(force: &Force<'_>, watch: &mut dyn Watch) -> Result<Vec<Link
             }
             let shapes = Shapes::of(&stretch, (time[breaks[i]], time[breaks[j] - 1]), weighing, &mut solver);
             if breaks[j] - breaks[i] >= FEWEST {
+                let goes_on = ramp.shape.is_some_and(|ramp| goes_on(&ramp, &shapes.hold, force.noise));
+                let after_ramp = ramp.cost + if goes_on { SAME_WAY.0 * price } else { 0.0 };
+                let before_hold =
+                    if hold.cost + step < after_ramp { (hold.cost + step, true) } else { (after_ramp, false) };
                 best[j][0].improve(before_hold.0 + shapes.hold.cost + price, i, before_hold.1, shapes.hold);
             }
             let no_corner =

@@ -61,6 +61,11 @@ impl Shape {
         a + u * (b + u * c) + self.decays.iter().zip(&DECAYS).map(decay).sum::<f64>()
     }
 
+    /// How far it goes from its first moment to its last, N.
+    pub(super) fn change(&self) -> f64 {
+        self.at(self.start + self.span) - self.at(self.start)
+    }
+
     /// Its slope where the stretch begins (u = 0) or ends (u = 1), N/s.
     pub(super) fn slope(&self, u: f64) -> f64 {
         let decay = |(size, time): (&f64, &f64)| size / time * (-u / time).exp();

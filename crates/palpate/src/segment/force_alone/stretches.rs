@@ -21,7 +21,7 @@ const MOST: usize = 40_000;
 /// How far shapes may be off when a hold is weighed against the chain without it, as a share of the range of the stretch.
 const OFF: f64 = 0.02;
 /// A hold is doubtful when the chain without it costs fewer prices of a parameter more.
-const DOUBTFUL: f64 = 2.0;
+const DOUBTFUL: f64 = 3.0;
 /// Points of a stretch that is weighed again.
 const POINTS: usize = 400;
 

@@ -32,7 +32,7 @@ pub(super) fn phases(
         tolerance: (6.0 * still.settings.noise).max(TURN * range),
         ..still.settings
     };
-    if range < NOISE * still.settings.noise {
+    if range < NOISE * still.settings.noise || toggles(force) {
         return Err(SegmentError::NoHoldInForce);
     }
     let (mut found, noise) = stretches(time, force, watch)?;
@@ -66,6 +66,21 @@ pub(super) fn phases(
         labels: None,
         settings,
     })
+}
+
+/// Most values between which a force toggles of which rounding has left nothing but a level and its neighbours; the share of the samples that they
+/// have; and fewest changes that show it.
+const LEVELS: (usize, f64, usize) = (4, 0.98, 20);
+
+/// Whether a force does little but toggle between a few values of its rounding.
+fn toggles(force: &[f64]) -> bool {
+    let mut values = force.to_vec();
+    values.sort_unstable_by(f64::total_cmp);
+    let mut counts: Vec<usize> = values.chunk_by(|a, b| a == b).map(<[f64]>::len).collect();
+    counts.sort_unstable_by(|a, b| b.cmp(a));
+    let (most, share, fewest) = LEVELS;
+    let changes = force.windows(2).filter(|pair| pair[0] != pair[1]).count();
+    counts.iter().take(most).sum::<usize>() as f64 >= share * force.len() as f64 && changes >= fewest
 }
 
 /// Begins every hold where its force begins to relax: at the extreme of the ramp before it, if what follows goes on as in the hold.
