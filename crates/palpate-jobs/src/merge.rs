@@ -8,8 +8,9 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::batch::{self, Batched};
-use crate::shard::{Manifest, Places, manifests};
+use crate::shard::{Manifest, Places, has_among_its_own, manifests};
 use crate::sweep::{self, Swept};
+use crate::written_by_batch::{self, has_mark};
 use crate::{JobError, Outcome};
 
 /// Most numbers of shards that a message lists.
@@ -59,6 +60,7 @@ impl Merge {
         for folder in folders {
             found.extend(manifests(folder)?);
         }
+        check_replaced(folders, out)?;
         found.sort_by_key(|(_, manifest)| manifest.shard);
         check(&found)?;
         let parts: Vec<(Places<'_>, Manifest)> = found
@@ -76,6 +78,22 @@ impl Merge {
         let merged = batch::merge(&parts, out, &self.map, self.csv_locale, watch)?;
         Ok(merged.map(|batched| Merged::Batch(Box::new(batched))))
     }
+}
+
+/// Refuses a table in the place of the shards, or of a file that is no such table: the records may lie there.
+fn check_replaced(folders: &[PathBuf], out: &Path) -> Result<(), JobError> {
+    let refused = |expected: &str, hint: &str| Err(JobError::option(expected, hint).of(out.display()));
+    if folders.iter().any(|folder| has_among_its_own(folder, out)) {
+        let expected = "expected an output beside the shards, found a file among them";
+        return refused(expected, "choose a file outside the folders of the shards");
+    }
+    let is_empty = out.metadata().is_ok_and(|about| about.len() == 0);
+    let is_table = || [written_by_batch::MARK, sweep::MARK].iter().any(|mark| has_mark(out, mark));
+    if out.is_file() && !is_empty && !is_table() {
+        let expected = "expected a new file, or a table of a batch or a sweep to replace, found another file";
+        return refused(expected, "choose another name for the output, or remove that file");
+    }
+    Ok(())
 }
 
 /// Refuses shards, in order, that do not make a whole.

@@ -12,17 +12,22 @@ pub(crate) const MARK: &str = "palpate_batch";
 /// Most bytes of a Parquet footer that are looked at.
 const FOOTER: u64 = 1 << 20;
 
-/// Whether a file is such a table: by its first line, or by a key at its end.
+/// Whether a file is such a table.
 fn is_table(path: &Path) -> bool {
+    has_mark(path, MARK)
+}
+
+/// Whether a table says what it depends on: in its first line, or under a key at its end.
+pub(crate) fn has_mark(path: &Path, mark: &str) -> bool {
     let marked = || -> io::Result<bool> {
         let mut file = File::open(path)?;
-        let first = format!("# {MARK}: ");
+        let first = format!("# {mark}: ");
         let mut bytes = Vec::new();
         if path.extension().is_some_and(|ending| ending == "parquet") {
             let length = file.seek(SeekFrom::End(0))?;
             file.seek(SeekFrom::Start(length.saturating_sub(FOOTER)))?;
             file.read_to_end(&mut bytes)?;
-            return Ok(bytes.windows(MARK.len()).any(|window| window == MARK.as_bytes()));
+            return Ok(bytes.windows(mark.len()).any(|window| window == mark.as_bytes()));
         }
         file.take(first.len() as u64).read_to_end(&mut bytes)?;
         Ok(bytes == first.as_bytes())

@@ -223,8 +223,34 @@ fn shards_of_a_batch_do_not_replace_those_of_a_sweep() {
     let error = refused(folder, &["batch", "curves", "--out", "out", "--shard", "1/2"]);
     assert!(error.contains("expected a folder for shards of a batch, found those of a sweep"), "{error}");
     done(folder, &["batch", "curves", "--out", "holds", "--shard", "1/2"]);
-    let error = refused(folder, &["sweep", "sweep.toml", "--out", "holds", "--shard", "1/2"]);
-    assert!(error.contains("expected a folder for shards of a sweep, found those of a batch"), "{error}");
+    // Another one, or one of another division, would make a folder that nobody can merge.
+    for shard in ["1/2", "2/2", "1/3"] {
+        let error = refused(folder, &["sweep", "sweep.toml", "--out", "holds", "--shard", shard]);
+        assert!(error.contains("expected a folder for shards of a sweep, found those of a batch"), "{error}");
+    }
+}
+
+#[test]
+fn a_merge_replaces_no_record_and_no_shard() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    curves(folder);
+    shards(folder, "holds", 2);
+    let before = fs::read(folder.join("curves/c1.csv")).unwrap();
+    let error = refused(folder, &["merge", "holds", "--out", "curves/c1.csv"]);
+    assert!(error.contains("curves/c1.csv: expected a new file, or a table of a batch or a sweep"), "{error}");
+    assert!(fs::read(folder.join("curves/c1.csv")).unwrap() == before);
+    for own in ["table/1-of-2.parquet", "failures/2-of-2.parquet", "parameters/new.parquet", "shards/1-of-2.csv"] {
+        let error = refused(folder, &["merge", "holds", "--out", &format!("holds/{own}")]);
+        assert!(error.contains("expected an output beside the shards, found a file among them"), "{error}");
+    }
+    // An empty file, as `mktemp` makes it, and the table of an earlier merge are replaced.
+    file(folder, "merged.csv", "");
+    assert!(merged(folder, "holds", "merged.csv") == merged(folder, "holds", "merged.csv"));
+    fs::copy(crate::common::root().join("examples/protocols/sweep.toml"), folder.join("sweep.toml")).unwrap();
+    done(folder, &["sweep", "sweep.toml", "--out", "ball", "--shard", "1/1"]);
+    let error = refused(folder, &["merge", "ball", "--out", "ball/table/1-of-1.parquet"]);
+    assert!(error.contains("found a file among them"), "{error}");
 }
 
 /// Killed at any time, a shard goes on where it stood; no test is lost or doubled.

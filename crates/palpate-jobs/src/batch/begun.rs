@@ -4,7 +4,8 @@
 //! each alone; a step with which a process ended in company and twice alone is a failure like others. What was cancelled ended by itself.
 //!
 //! A process may also have been killed from outside, and a step is not to blame for that. So a step waits before it is done alone, the
-//! second time longer: whatever kills at fixed or random times would have to meet a step of milliseconds behind two different waits.
+//! second time longer: whatever kills at fixed or random times would have to meet a step of milliseconds behind two different waits. It may meet
+//! one of many seconds, so such a failure does not last: when the shard runs again, the step is tried again.
 //!
 //! The notes lie among the pieces of a store, under keys alone: `run 2`, `begun 2 FILE STEP`, `alone 2 FILE STEP`, `passed 2 FILE STEP`,
 //! `ended 2 FILE`, `cancelled 2`.
@@ -90,7 +91,7 @@ impl<'a> Begun<'a> {
     pub(super) fn begin(&self, file: usize, step: usize) -> Result<Option<JobError>, JobError> {
         if self.passed_over.contains(&(file, step)) {
             let message = format!("the process ended each of {} times that this test was analysed", MOST_ALONE + 1);
-            let hint = "analyse the file alone to see why (⟨restart⟩ tries it again here)".to_owned();
+            let hint = "analyse the file alone to see why; the shard tries it again when it runs again".to_owned();
             return Ok(Some(JobError::new(ErrorKind::Record, message, hint)));
         }
         self.note(&format!("begun {} {file} {step}", self.run))?;

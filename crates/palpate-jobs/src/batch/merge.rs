@@ -29,9 +29,8 @@ pub(crate) fn merge(
 ) -> Result<Outcome<Batched>, JobError> {
     let started = Instant::now();
     let maps: Vec<(&str, PathBuf)> = maps.iter().map(|map| map::named(out, map)).collect::<Result<_, JobError>>()?;
-    let read = parts
-        .iter()
-        .flat_map(|(places, _)| [ShardTable::Rows, ShardTable::Parameters].map(|table| places.table(table)));
+    let tables = [ShardTable::Rows, ShardTable::Parameters, ShardTable::Failures];
+    let read = parts.iter().flat_map(|(places, _)| tables.map(|table| places.table(table)));
     let of_parameters = of_parameters(out);
     let drawn = maps.iter().map(|(_, path)| path.as_path());
     keep_apart(read, [out, &of_parameters].into_iter().chain(drawn))?;

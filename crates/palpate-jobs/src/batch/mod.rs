@@ -333,30 +333,37 @@ impl Work<'_> {
     ) -> Result<Done, JobError> {
         let path = named.name();
         let begin = |step| self.begun.as_ref().map_or(Ok(None), |begun| begun.begin(index, step));
-        let source = match begin(0)? {
-            Some(error) => Err(error.of(path.display())),
+        // What ended processes may have been killed from outside each time.
+        let (passed_over, mut is_lasting) = (begin(0)?, true);
+        let source = match passed_over {
+            Some(error) => {
+                is_lasting = false;
+                Err(error.of(path.display()))
+            }
             None => Source::open(named),
         };
         let digest = source.as_ref().ok().and_then(|source| source.digest.get(&mut share).ok());
         let key = format!("{} {}", digest.as_deref().unwrap_or("-"), path.display());
         if let Some(place) = self.store.find(&key).filter(|_| digest.is_some()) {
             self.end(index)?;
-            let (was_before, is_lasting) = (true, true);
             return Ok(Done {
                 place,
-                was_before,
+                was_before: true,
                 digest,
                 is_lasting,
             });
         }
-        let (mut entry, mut is_lasting) = (Entry::default(), true);
+        let mut entry = Entry::default();
         match source.and_then(|source| OpenedFile::of(source, self.described)) {
             Ok(opened) => {
                 entry.of = opened.tests.parts.len();
                 for test in own(entry.of) {
                     let part = opened.tests.parts[test];
                     let made = match begin(test + 1)? {
-                        Some(error) => Err(error.of(path.display())),
+                        Some(error) => {
+                            is_lasting = false;
+                            Err(error.of(path.display()))
+                        }
                         None => document(&opened, part, self.options, &mut share),
                     };
                     is_lasting &= entry.take(&opened, part, made)?;

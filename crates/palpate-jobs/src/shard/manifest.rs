@@ -105,10 +105,12 @@ impl Manifest {
 }
 
 impl Places<'_> {
-    /// Refuses the place of a finished slice of other work.
+    /// Refuses a folder with finished slices of other work.
     pub(crate) fn check_job(&self, job: &str) -> Result<(), JobError> {
-        match Manifest::read(&self.manifest()) {
-            Ok(found) if found.job != job => {
+        // They are of one work, unless somebody has put them there: one shows it, beside that in the same place.
+        let any = fs::read_dir(self.folder.join("shards")).ok().and_then(|mut entries| entries.find_map(json));
+        match [Some(self.manifest()), any].into_iter().flatten().find_map(|path| Manifest::read(&path).ok()) {
+            Some(found) if found.job != job => {
                 let message = format!("expected a folder for shards of a {job}, found those of a {}", found.job);
                 Err(JobError::option(message, "choose another folder with ⟨out⟩").of(self.folder.display()))
             }
@@ -124,6 +126,12 @@ pub(crate) fn finished(places: Places<'_>) -> Option<Manifest> {
     (manifest.shard == places.shard).then_some(manifest)
 }
 
+/// The path of an entry of a folder, if it is a file of JSON.
+fn json(entry: io::Result<fs::DirEntry>) -> Option<PathBuf> {
+    let path = entry.ok()?.path();
+    (path.extension().is_some_and(|ending| ending == "json") && path.is_file()).then_some(path)
+}
+
 /// The manifests in the folder of a work, in no order.
 pub(crate) fn manifests(folder: &Path) -> Result<Vec<(PathBuf, Manifest)>, JobError> {
     let shards = folder.join("shards");
@@ -131,13 +139,9 @@ pub(crate) fn manifests(folder: &Path) -> Result<Vec<(PathBuf, Manifest)>, JobEr
         let message = "expected a folder that shards were written to, found none";
         JobError::option(message, "name the folder that the shards had as their ⟨out⟩").of(folder.display())
     })?;
-    let of_manifest = |entry: &fs::DirEntry| {
-        let path = entry.path();
-        (path.is_file() && path.extension().is_some_and(|ending| ending == "json")).then_some(path)
-    };
     entries
-        .iter()
-        .filter_map(of_manifest)
+        .into_iter()
+        .filter_map(|entry| json(Ok(entry)))
         .map(|path| Ok((folder.to_owned(), Manifest::read(&path)?)))
         .collect()
 }

@@ -24,7 +24,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::JobError;
-use crate::output::check_folder;
+use crate::output::{check_folder, is_same};
 pub(crate) use manifest::{Cut, Manifest, ShardTable, finished, manifests};
 pub use slice::Slice;
 
@@ -116,6 +116,15 @@ impl fmt::Display for Shard {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "{}/{}", self.number, self.of)
     }
+}
+
+/// Whether a file lies, or would lie, among those of the slices in the folder of a work.
+pub(crate) fn has_among_its_own(folder: &Path, file: &Path) -> bool {
+    let names = [ShardTable::Rows, ShardTable::Parameters, ShardTable::Failures].map(ShardTable::folder);
+    names
+        .iter()
+        .chain(&["shards"])
+        .any(|name| file.parent().is_some_and(|own| is_same(&folder.join(name), own)))
 }
 
 /// The files of one slice in the folder of all.

@@ -92,7 +92,7 @@ pub struct Swept {
 }
 
 /// Under which the table says what sweep it holds.
-const MARK: &str = "palpate_sweep_sha256";
+pub(crate) const MARK: &str = "palpate_sweep_sha256";
 
 impl Sweep {
     /// Simulates the runs of the protocol at `path` to the table `out`; one named as the protocol in the folder at hand if none is given.

@@ -255,7 +255,10 @@ def fit_many(
         missing = [name for name in columns if name not in time_s.columns and not (is_index and name == names[0])]
         if missing:
             raise OptionError(f"expected columns {', '.join(columns)}, found no {', '.join(missing)}")
-        together = time_s if is_index and time_s.known_divisions else time_s.shuffle(on=names)
+        # A shuffle does not keep the order of rows, in which the times of a curve rise.
+        is_together = is_index and time_s.known_divisions
+        numbered = time_s if is_together else time_s.assign(**{_ROW: 1})
+        together = time_s if is_together else numbered.assign(**{_ROW: numbered[_ROW].cumsum()}).shuffle(on=names)
         labels = time_s._meta_nonempty.reset_index() if is_index else time_s._meta_nonempty
         times, signals = _example_hold()
         example = labels[names].iloc[[0] * len(times)].assign(**{time: times, signal: signals})
@@ -280,6 +283,10 @@ def fit_many(
     return dd.from_delayed(parts, meta=_example(options))
 
 
+# The column of the numbers of rows, from 1.
+_ROW = "_palpate_row"
+
+
 def _example_hold() -> tuple[Any, Any]:
     """A hold that every law can be fitted to."""
     import numpy as np
@@ -299,6 +306,7 @@ def _fit_frame(
 ) -> pandas.DataFrame:
     if part.empty and meta is not None:
         return meta
+    part = part.sort_values(_ROW) if _ROW in part.columns else part
     part = part.reset_index() if by == [part.index.name] else part
     fits = _fit_many(part[[*by, time, signal]], by=by, time=time, signal=signal, **options).to_pandas()
     # Labels tell curves apart, not their number in a partition.
