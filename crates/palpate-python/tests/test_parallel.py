@@ -47,11 +47,14 @@ if __name__ == "__main__":
     def busy():
         while not done.is_set():
             work(0)
-    threading.Thread(target=busy, daemon=True).start()
+    beside = threading.Thread(target=busy)
+    beside.start()
     for _ in range(3):
         with multiprocessing.get_context("fork").Pool(2) as pool:
             assert pool.map(work, range(2)) == here
     done.set()
+    # Before 3.14 CPython may crash where a thread comes back from native code while the interpreter ends.
+    beside.join()
 """
 THREADS = """
 if __name__ == "__main__":
