@@ -194,6 +194,7 @@ def test_a_shard_that_ends_every_worker_is_named_and_the_call_comes_back(curves:
 
 
 def test_collections_are_fitted_by_partitions(client: Client) -> None:
+    import dask
     import dask.array as da
     import dask.bag as db
     import dask.dataframe as dd
@@ -216,9 +217,10 @@ def test_collections_are_fitted_by_partitions(client: Client) -> None:
     pandas.testing.assert_frame_equal(values(found), expected.drop(columns="curve"), check_dtype=False)
     long = pandas.DataFrame({"cell": np.repeat([f"c{index:02}" for index in range(40)], 80), "t": np.tile(times, 40), "f": signals.ravel()})
     frame = dd.from_pandas(long, npartitions=7)
-    # A shuffle of threads does not keep the order of rows.
-    for scheduler in (client, "threads"):
-        found = palpate.dask.fit_many(frame, "f", by="cell", time="t", law="latency:5").compute(scheduler=scheduler)
+    # The shuffle of threads, over the disk, does not keep the order of rows.
+    for method, scheduler in (("p2p", client), ("disk", "threads")):
+        with dask.config.set({"dataframe.shuffle.method": method}):
+            found = palpate.dask.fit_many(frame, "f", by="cell", time="t", law="latency:5").compute(scheduler=scheduler)
         found = found.sort_values("cell").reset_index(drop=True)
         pandas.testing.assert_frame_equal(values(found).drop(columns="cell"), expected.drop(columns="curve"), check_dtype=False)
     for wrong in ({"by": "cell", "time": "x"}, {"time": "t"}):
