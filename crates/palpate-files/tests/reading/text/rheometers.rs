@@ -247,7 +247,7 @@ fn tables_of_any_program_that_repeat_their_names_are_tests() {
     assert_eq!(Contents::of(input, &options).expect("a test").parts.len(), 1);
 }
 
-/// Marks of the end of a header, with the names before or behind them, and tables of other numbers above.
+/// Exports of an indenter of Anton Paar name hardness and modulus above the values that were measured.
 #[test]
 fn results_above_the_measured_values_are_no_test() {
     let measured = "Measured values\nTime\tPd\tFn\ns\tnm\tmN\n0.0\t0.0\t0.0\n0.1\t31.6\t0.5\n0.2\t44.7\t1.0\n";
@@ -262,6 +262,7 @@ fn results_above_the_measured_values_are_no_test() {
     }
 }
 
+/// Marks of the end of a header, with the names before or behind them, and tables of other numbers above.
 #[test]
 fn a_header_ends_where_it_says() {
     for text in [
