@@ -194,7 +194,7 @@ def test_a_shard_that_ends_every_worker_is_named_and_the_call_comes_back(curves:
 
 
 def test_collections_are_fitted_by_partitions(client: Client) -> None:
-    import dask
+    import dask.config
     import dask.array as da
     import dask.bag as db
     import dask.dataframe as dd
