@@ -22,6 +22,8 @@ pub enum ErrorKind {
     File(io::ErrorKind),
     /// A record that cannot be read or analysed.
     Record,
+    /// A record that processes ended with while they analysed it.
+    Ended,
     /// Invalid parameters of a body, a law or a motion.
     Model,
     /// Samples that no law can be fitted to.
@@ -90,6 +92,11 @@ impl JobError {
             AnalysisError::Cancelled(cancelled) => (*cancelled).into(),
             error => Self::new(ErrorKind::Record, error, error.hint()).of(place),
         }
+    }
+
+    /// Whether the same input fails so again: what the operating system refused, or ended, once may succeed the next time.
+    pub(crate) fn is_lasting(&self) -> bool {
+        !matches!(self.kind, ErrorKind::File(_) | ErrorKind::Ended)
     }
 
     /// The message with the file in front, options spelled as a front end writes them.

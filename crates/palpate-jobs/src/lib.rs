@@ -70,7 +70,7 @@ pub use outcome::{Outcome, Results, Verdict};
 pub use predict::{Predict, Predicted};
 pub use report_index::{ReportIndex, write_reports};
 pub use reproduce::{Reproduce, ReproducedRecord};
-pub use shard::{Shard, Slice};
+pub use shard::{Shard, Slice, forget};
 pub use simulate::{DriveBy, Simulate, Simulated};
 pub use sweep::{Sweep, Swept, sweep_fields, sweep_rows};
 pub use watch_log::{Event, HoldObserved, ObservationLog, Observed, WatchLog};

@@ -5,6 +5,7 @@
 //! was killed goes on with the pieces that are missing or damaged.
 
 use std::collections::HashMap;
+use std::fmt;
 use std::fs::{self, File, OpenOptions, TryLockError};
 use std::io::{self, BufRead, BufReader, Read, Seek, SeekFrom, Write};
 use std::ops::Range;
@@ -48,7 +49,7 @@ impl Store {
     /// Opens or makes the store in `folder`, for pieces of some `work` that depend on what has this digest; pieces of other work are taken
     /// away, and so are all of them with `restart`.
     pub(crate) fn open(folder: &Path, work: &str, digest: &str, restart: bool) -> Result<Self, JobError> {
-        let refused = |error: io::Error| unwritten(folder, &error);
+        let refused = |error: io::Error| unstored(folder, &error);
         before(Operation::MakeFolder).and_then(|()| fs::create_dir_all(folder)).map_err(refused)?;
         let lock = locked(&folder.join(LOCK), work)?;
         let mut options = OpenOptions::new();
@@ -103,8 +104,15 @@ impl Store {
         let mut piece = Vec::new();
         let read = file.seek(SeekFrom::Start(place.start));
         let read = read.and_then(|_| file.take(place.end - place.start).read_to_end(&mut piece));
-        read.map_err(|error| unwritten(&self.folder, &error))?;
+        read.map_err(|error| JobError::unread(&self.folder, &error))?;
         Ok(piece)
+    }
+
+    /// Why a piece says nothing: somebody else has written over it, where locks do not hold.
+    pub(crate) fn damaged(&self, error: &dyn fmt::Display) -> JobError {
+        let message = format!("expected what this run had finished, found something else ({error})");
+        let hint = "run it again, and let no other process work in this folder: its file system does not keep locks";
+        JobError::new(ErrorKind::File(io::ErrorKind::InvalidData), message, hint.to_owned()).of(self.folder.display())
     }
 
     /// Takes the store away; files that others put there stay, and so does the folder then.
@@ -133,7 +141,7 @@ impl Store {
         let written = before(Operation::Write).and_then(|()| file.seek(SeekFrom::Start(from)));
         let written = written.and_then(|_| file.write_all(bytes));
         let written = written.and_then(|()| file.set_len(from + bytes.len() as u64));
-        written.map_err(|error| unwritten(&self.folder, &error))?;
+        written.map_err(|error| unstored(&self.folder, &error))?;
         *end = from + bytes.len() as u64;
         Ok(from)
     }
@@ -189,6 +197,15 @@ fn stock(file: &File, head: &Head) -> io::Result<(HashMap<String, Range<u64>>, u
     }
 }
 
+/// Why nothing can be added: what is there stays.
+fn unstored(path: &Path, error: &io::Error) -> JobError {
+    let mut refused = unwritten(path, error);
+    if matches!(error.kind(), io::ErrorKind::StorageFull | io::ErrorKind::QuotaExceeded) {
+        refused.hint = Some("free some space and run it again: it goes on from what is finished".to_owned());
+    }
+    refused
+}
+
 /// A line that states something, behind the digest of it.
 fn line(value: &impl Serialize) -> Result<Vec<u8>, JobError> {
     let stated = serde_json::to_string(value)?;
@@ -204,7 +221,7 @@ fn stated<T: DeserializeOwned>(line: &[u8]) -> Option<T> {
 
 /// A file that only one `work` can hold at a time.
 fn locked(path: &Path, work: &str) -> Result<File, JobError> {
-    let file = File::create(path).map_err(|error| unwritten(path, &error))?;
+    let file = File::create(path).map_err(|error| unstored(path, &error))?;
     match file.try_lock() {
         Ok(()) => Ok(file),
         Err(TryLockError::WouldBlock) => Err(JobError::new(

@@ -74,7 +74,7 @@ pub(crate) fn failed(error: JobError) -> PyErr {
     match kind {
         ErrorKind::Option => PyErr::new::<OptionError, _>(text),
         ErrorKind::File(kind) => io::Error::new(kind, text).into(),
-        ErrorKind::Record => PyErr::new::<RecordError, _>(text),
+        ErrorKind::Record | ErrorKind::Ended => PyErr::new::<RecordError, _>(text),
         ErrorKind::Model => PyErr::new::<ModelError, _>(text),
         ErrorKind::Fit => PyErr::new::<FitError, _>(text),
         ErrorKind::Report | ErrorKind::Cancelled => PyErr::new::<PalpateError, _>(text),

@@ -129,9 +129,8 @@ pub(crate) fn all_laws(names: &[String]) -> PyResult<Vec<Law>> {
 }
 
 /// A shard as its text states it.
-pub(crate) fn shard(text: Option<&str>) -> PyResult<Option<Shard>> {
-    let parsed = text.map(str::parse).transpose();
-    parsed.map_err(|message: String| refused_plainly::<OptionError>(format!("shard: {message}")))
+pub(crate) fn shard(text: &str) -> PyResult<Shard> {
+    text.parse().map_err(|message: String| refused_plainly::<OptionError>(format!("shard: {message}")))
 }
 
 /// What is in a file of records: columns, sampling, phases; the text of ``palpate inspect``.
@@ -280,7 +279,7 @@ pub(crate) fn batch(
         map: map.unwrap_or_default(),
         csv_locale: readers(csv_locale)?,
         restart,
-        shard: self::shard(shard)?,
+        shard: shard.map(self::shard).transpose()?,
         threads,
         ..Batch::default()
     };

@@ -60,7 +60,7 @@ mod _palpate {
         contacts::numbers::_contact_numbers,
         contacts::simulate::{Trajectory, energy, simulate},
         contacts::simulate_many::simulate_many,
-        contacts::sweep::sweep,
+        contacts::sweep::{_checked_sweep, sweep},
         errors::{FitError, ModelError, OptionError, PalpateError, PalpateWarning, RecordError},
         files::{BatchResult, batch, convert, inspect, reproduce, watch},
         fits::fit::{PyEstimate, PyFit, fit_hold},
@@ -82,7 +82,7 @@ mod _palpate {
         records::read::{read, read_all},
         records::record::Record,
         records::several::{SeveralCalibrations, calibrate},
-        shards::{_checked, _found, _run_slice, _sliced, merge},
+        shards::{_checked, _forget, _found, _run_slice, _sliced, merge},
         table::Table,
     };
 }

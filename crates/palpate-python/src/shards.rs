@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use palpate_jobs::input::{Described, NamedFile, NamedRecords};
-use palpate_jobs::{Batch, Merge, Merged, Shard, Slice};
+use palpate_jobs::{Batch, Merge, Merged, Shard, Slice, forget};
 use pyo3::IntoPyObjectExt;
 use pyo3::prelude::*;
 
@@ -117,9 +117,16 @@ pub(crate) fn _checked(
     question(test, columns, laws, intervals, fit_until_s).map(drop)
 }
 
+/// Forgets a slice in the folder of all.
+#[pyfunction]
+pub(crate) fn _forget(py: Python<'_>, out: PathBuf, name: &str) -> PyResult<()> {
+    let shard = shard(name)?;
+    py.detach(move || forget(&out, shard)).map_err(failed)
+}
+
 /// Analyses a slice into the folder of all.
 #[pyfunction]
-#[pyo3(signature = (slice, files, out, *, test=None, columns=None, laws=None, intervals=None, fit_until_s=None, restart=false, threads=1))]
+#[pyo3(signature = (slice, files, out, *, test=None, columns=None, laws=None, intervals=None, fit_until_s=None, threads=1))]
 #[expect(clippy::too_many_arguments, reason = "keywords of Python")]
 pub(crate) fn _run_slice(
     py: Python<'_>,
@@ -131,12 +138,11 @@ pub(crate) fn _run_slice(
     laws: Option<Vec<String>>,
     intervals: Option<&str>,
     fit_until_s: Option<f64>,
-    restart: bool,
     threads: usize,
 ) -> PyResult<()> {
     let (number, of, plan_sha256, total, first, _, start, end) = slice;
     let slice = Slice {
-        shard: shard(Some(&format!("{number}/{of}")))?.ok_or_else(|| OptionError::new_err("expected a shard"))?,
+        shard: shard(&format!("{number}/{of}"))?,
         plan_sha256,
         total,
         first,
@@ -146,7 +152,6 @@ pub(crate) fn _run_slice(
     };
     let (question, described) = question(test, columns, laws, intervals, fit_until_s)?;
     let question = Batch {
-        restart,
         threads: threads.try_into().ok(),
         ..question
     };

@@ -118,7 +118,13 @@ fn a_merge_says_what_is_missing_doubled_other_or_damaged() {
         assert!(!folder.join("table.parquet").exists());
     };
     let path = |name: &str| folder.join("holds").join(name);
-    refusal(&["curves"], &["curves: expected a folder that shards were written to, found none"]);
+    for (wrong, found) in [
+        ("curves", "a folder without shards"),
+        ("missing", "nothing under this name"),
+        ("curves/c0.csv", "a file"),
+    ] {
+        refusal(&[wrong], &[&format!("{wrong}: expected a folder that shards were written to, found {found}")]);
+    }
     refusal(&["holds", "holds"], &["expected every shard once, found 1/4 in holds too"]);
     fs::rename(path("shards/2-of-4.json"), path("kept.json")).unwrap();
     refusal(&["holds"], &["expected 4 shards, found 3: 2/4 missing", "run the missing shards"]);

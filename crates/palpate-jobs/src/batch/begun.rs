@@ -1,7 +1,8 @@
 //! What a process had begun when it ended without a word: a test that ends its process whenever it is analysed is passed over.
 //!
-//! Every step of a file is noted before it is done: step 0 opens the file, step j + 1 analyses its test j. The first process after one that was killed analyses what that had begun and not ended,
-//! each alone; a step with which a process ended in company and twice alone is a failure like others. What was cancelled ended by itself.
+//! Every step of a file is noted before it is done: step 0 opens the file, step j + 1 analyses its test j. The first process after one that
+//! was killed analyses what that had begun and not ended, each alone; a step with which a process ended in company and twice alone is a
+//! failure like others. What was cancelled ended by itself.
 //!
 //! A process may also have been killed from outside, and a step is not to blame for that. So a step waits before it is done alone, the
 //! second time longer: whatever kills at fixed or random times would have to meet a step of milliseconds behind two different waits. It may meet
@@ -11,7 +12,7 @@
 //! `ended 2 FILE`, `cancelled 2`.
 
 use std::collections::{BTreeMap, BTreeSet, HashSet};
-
+use std::path::Path;
 use std::time::Duration;
 
 use crate::store::Store;
@@ -87,12 +88,12 @@ impl<'a> Begun<'a> {
         self.note(&format!("{what} {} {file} {step}", self.run))
     }
 
-    /// Notes that a step is done; or why it is passed over.
-    pub(super) fn begin(&self, file: usize, step: usize) -> Result<Option<JobError>, JobError> {
+    /// Notes that a step of the file of a `name` is done; or why it is passed over.
+    pub(super) fn begin(&self, file: usize, step: usize, name: &Path) -> Result<Option<JobError>, JobError> {
         if self.passed_over.contains(&(file, step)) {
             let message = format!("the process ended each of {} times that this test was analysed", MOST_ALONE + 1);
             let hint = "analyse the file alone to see why; the shard tries it again when it runs again".to_owned();
-            return Ok(Some(JobError::new(ErrorKind::Record, message, hint)));
+            return Ok(Some(JobError::new(ErrorKind::Ended, message, hint).of(name.display())));
         }
         self.note(&format!("begun {} {file} {step}", self.run))?;
         Ok(None)
@@ -115,8 +116,6 @@ impl<'a> Begun<'a> {
 
 #[cfg(test)]
 mod tests {
-    use std::path::Path;
-
     use super::*;
 
     /// What a process suspects and passes over, before `work` and a kill.
@@ -132,10 +131,10 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         // File 0 is done, file 1 ends the process in its third test, file 2 was begun beside it.
         let company = |begun: &Begun<'_>| {
-            begun.begin(0, 0).unwrap();
+            begun.begin(0, 0, Path::new("a")).unwrap();
             begun.end(0).unwrap();
-            begun.begin(2, 0).unwrap();
-            (0..3).for_each(|test| assert_eq!(begun.begin(1, test).unwrap(), None));
+            begun.begin(2, 0, Path::new("a")).unwrap();
+            (0..3).for_each(|test| assert_eq!(begun.begin(1, test, Path::new("a")).unwrap(), None));
         };
         let alone = |begun: &Begun<'_>| {
             for (test, _) in begun.suspected().to_vec() {
@@ -150,8 +149,8 @@ mod tests {
         assert_eq!(process(folder.path(), alone), (vec![(1, 2), (2, 0)], false));
         assert_eq!(process(folder.path(), alone), (vec![(1, 2)], false));
         let (suspected, any) = process(folder.path(), |begun| {
-            assert!(begun.begin(1, 2).unwrap().unwrap().message.contains("3 times"));
-            assert_eq!(begun.begin(2, 0).unwrap(), None);
+            assert!(begun.begin(1, 2, Path::new("a")).unwrap().unwrap().message.contains("3 times"));
+            assert_eq!(begun.begin(2, 0, Path::new("a")).unwrap(), None);
         });
         assert_eq!((suspected, any), (vec![], true));
     }
@@ -161,7 +160,7 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         for _ in 0..5 {
             let found = process(folder.path(), |begun| {
-                begun.begin(0, 0).unwrap();
+                begun.begin(0, 0, Path::new("a")).unwrap();
                 begun.cancel().unwrap();
             });
             assert_eq!(found, (vec![], false));

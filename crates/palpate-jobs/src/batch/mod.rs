@@ -332,16 +332,9 @@ impl Work<'_> {
         mut share: Share<'_>,
     ) -> Result<Done, JobError> {
         let path = named.name();
-        let begin = |step| self.begun.as_ref().map_or(Ok(None), |begun| begun.begin(index, step));
-        // What ended processes may have been killed from outside each time.
-        let (passed_over, mut is_lasting) = (begin(0)?, true);
-        let source = match passed_over {
-            Some(error) => {
-                is_lasting = false;
-                Err(error.of(path.display()))
-            }
-            None => Source::open(named),
-        };
+        let begin = |step| self.begun.as_ref().map_or(Ok(None), |begun| begun.begin(index, step, path));
+        let mut is_lasting = true;
+        let source = begin(0)?.map_or_else(|| Source::open(named), Err);
         let digest = source.as_ref().ok().and_then(|source| source.digest.get(&mut share).ok());
         let key = format!("{} {}", digest.as_deref().unwrap_or("-"), path.display());
         if let Some(place) = self.store.find(&key).filter(|_| digest.is_some()) {
@@ -359,19 +352,14 @@ impl Work<'_> {
                 entry.of = opened.tests.parts.len();
                 for test in own(entry.of) {
                     let part = opened.tests.parts[test];
-                    let made = match begin(test + 1)? {
-                        Some(error) => {
-                            is_lasting = false;
-                            Err(error.of(path.display()))
-                        }
-                        None => document(&opened, part, self.options, &mut share),
-                    };
+                    let analyse = || document(&opened, part, self.options, &mut share);
+                    let made = begin(test + 1)?.map_or_else(analyse, Err);
                     is_lasting &= entry.take(&opened, part, made)?;
                 }
                 entry.tests = own(entry.of).len();
             }
             Err(error) => {
-                is_lasting &= !matches!(error.kind, ErrorKind::File(_));
+                is_lasting = error.is_lasting();
                 entry.of = 1;
                 entry.tests = own(entry.of).len();
                 if entry.tests > 0 {
@@ -398,7 +386,7 @@ impl Work<'_> {
 
 /// What came of a file, from its place in the store.
 fn entry(store: &Store, place: &Range<u64>) -> Result<Entry, JobError> {
-    Ok(serde_json::from_slice(&store.read(place)?)?)
+    serde_json::from_slice(&store.read(place)?).map_err(|error| store.damaged(&error))
 }
 
 fn document(
@@ -414,7 +402,7 @@ fn document(
 }
 
 impl Entry {
-    /// Takes what came of a test, and says whether that stays so: what the operating system refused once it may give the next time.
+    /// Takes what came of a test, and says whether that stays so.
     fn take(
         &mut self,
         opened: &OpenedFile<'_>,
@@ -429,7 +417,7 @@ impl Entry {
             }
             Err(error) if error.kind == ErrorKind::Cancelled => Err(error),
             Err(error) => {
-                let is_lasting = !matches!(error.kind, ErrorKind::File(_));
+                let is_lasting = error.is_lasting();
                 self.failures.push(Refused::new(&opened.contents.input.name, opened.name(part), error));
                 Ok(is_lasting)
             }

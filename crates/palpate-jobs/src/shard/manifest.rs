@@ -136,7 +136,12 @@ fn json(entry: io::Result<fs::DirEntry>) -> Option<PathBuf> {
 pub(crate) fn manifests(folder: &Path) -> Result<Vec<(PathBuf, Manifest)>, JobError> {
     let shards = folder.join("shards");
     let entries = fs::read_dir(&shards).and_then(Iterator::collect::<Result<Vec<_>, _>>).map_err(|_| {
-        let message = "expected a folder that shards were written to, found none";
+        let found = match folder.metadata() {
+            Ok(about) if about.is_dir() => "a folder without shards",
+            Ok(_) => "a file",
+            Err(_) => "nothing under this name",
+        };
+        let message = format!("expected a folder that shards were written to, found {found}");
         JobError::option(message, "name the folder that the shards had as their ⟨out⟩").of(folder.display())
     })?;
     entries

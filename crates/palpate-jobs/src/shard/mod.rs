@@ -17,6 +17,8 @@ mod manifest;
 mod slice;
 
 use std::fmt;
+use std::fs;
+use std::io;
 use std::path::{Path, PathBuf};
 use std::str::FromStr;
 
@@ -24,7 +26,8 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::JobError;
-use crate::output::{check_folder, is_same};
+use crate::output::{check_folder, is_same, unwritten};
+use crate::store::Store;
 pub(crate) use manifest::{Cut, Manifest, ShardTable, finished, manifests};
 pub use slice::Slice;
 
@@ -125,6 +128,23 @@ pub(crate) fn has_among_its_own(folder: &Path, file: &Path) -> bool {
         .iter()
         .chain(&["shards"])
         .any(|name| file.parent().is_some_and(|own| is_same(&folder.join(name), own)))
+}
+
+/// Forgets one slice in the folder of all: what says that it is finished, and what it could go on from.
+///
+/// # Errors
+/// [`JobError`] where another process is at it, or the files cannot be removed.
+pub fn forget(folder: &Path, shard: Shard) -> Result<(), JobError> {
+    let places = Places::new(folder, shard)?;
+    let (journal, manifest) = (places.journal(), places.manifest());
+    if !manifest.exists() && !journal.exists() {
+        return Ok(());
+    }
+    let store = Store::open(&journal, "shard", "", true)?;
+    match fs::remove_file(&manifest) {
+        Err(error) if error.kind() != io::ErrorKind::NotFound => Err(unwritten(&manifest, &error)),
+        _ => store.remove(),
+    }
 }
 
 /// The files of one slice in the folder of all.

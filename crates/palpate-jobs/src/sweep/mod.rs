@@ -232,7 +232,10 @@ impl Parts<'_> {
         let mut file = stage.open(out)?;
         let mut writer = TableWriter::new(&mut file, &sweep_fields(self.sweep)).map_err(refused)?;
         for place in places {
-            unpacked(&self.store.read(place)?, |rows| writer.write(rows)).map_err(refused)?;
+            unpacked(&self.store.read(place)?, |rows| writer.write(rows)).map_err(|error| match error {
+                TableError::Io(_) => refused(error),
+                error => self.store.damaged(&error),
+            })?;
         }
         writer.finish(marks).map_err(refused)?;
         Ok(file)

@@ -21,7 +21,9 @@ __all__ = [
     "_SI_ENDINGS",
     "_card",
     "_checked",
+    "_checked_sweep",
     "_contact_numbers",
+    "_forget",
     "_found",
     "_run_slice",
     "_sliced",
@@ -2397,7 +2399,9 @@ def _checked(
     intervals: Intervals | None = None,
     fit_until_s: float | None = None,
 ) -> None: ...
+def _checked_sweep(protocol: _Described) -> None: ...
 def _contact_numbers(model: _Described) -> list[float]: ...
+def _forget(out: _Path, name: str) -> None: ...
 def _found(paths: Sequence[_Path]) -> list[Path]: ...
 def _sliced(files: Sequence[_SlicedFile], of: int) -> list[_Slice]: ...
 def _run_slice(
@@ -2410,7 +2414,6 @@ def _run_slice(
     laws: Sequence[LawName] | None = None,
     intervals: Intervals | None = None,
     fit_until_s: float | None = None,
-    restart: bool = False,
     threads: int = 1,
 ) -> None: ...
 def merge(

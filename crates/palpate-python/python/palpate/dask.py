@@ -23,7 +23,7 @@ import palpate
 from palpate import _progress
 from palpate._fits import fit_many as _fit_many
 from palpate._options import Intervals, LawName
-from palpate._palpate import _BUILD, BatchResult, OptionError, PalpateError, _checked, _found, _run_slice, _sliced
+from palpate._palpate import _BUILD, BatchResult, OptionError, PalpateError, _checked, _checked_sweep, _forget, _found, _run_slice, _sliced
 
 if TYPE_CHECKING:
     import dask.dataframe as dd
@@ -154,9 +154,9 @@ def batch(
     >>> done.merge("holds.parquet")  # doctest: +SKIP
     """
     folder = _folder(out, shards)
-    options = {"test": test, "columns": columns, "laws": laws, "intervals": intervals, "fit_until_s": fit_until_s, "restart": restart}
+    options = {"test": test, "columns": columns, "laws": laws, "intervals": intervals, "fit_until_s": fit_until_s}
     # What is wrong is refused once, before anything is submitted.
-    _checked(**{name: value for name, value in options.items() if name != "restart"})
+    _checked(**options)
     listed = list(_files([files] if isinstance(files, (str, os.PathLike)) else files, dict(storage_options or {})))
     if not listed:
         raise OptionError("files: expected files, found none")
@@ -169,7 +169,7 @@ def batch(
             own = listed[one[4] : one[4] + one[5]]
             yield f"{one[0]}/{one[1]}", partial(_batch_shard, _BUILD, here, one, own, folder, options)
 
-    return _driven(client, tasks(), count, folder, progress)
+    return _driven(client, tasks(), count, folder, progress, restart=restart)
 
 
 def sweep(
@@ -205,12 +205,13 @@ def sweep(
     folder = _folder(out, shards)
     count = shards or _count_of(folder) or _SWEEP_SHARDS
     stated = protocol if isinstance(protocol, Mapping) else Path(protocol).resolve()
+    _checked_sweep(stated)
 
     def tasks() -> Iterator[_Task]:
         for number in range(1, count + 1):
-            yield f"{number}/{count}", partial(_sweep_shard, _BUILD, stated, folder, f"{number}/{count}", restart)
+            yield f"{number}/{count}", partial(_sweep_shard, _BUILD, stated, folder, f"{number}/{count}")
 
-    return _driven(client, tasks(), count, folder, progress)
+    return _driven(client, tasks(), count, folder, progress, restart=restart)
 
 
 def fit_many(
@@ -394,9 +395,9 @@ def _batch_shard(
     _run_slice(one, files, folder, **options)
 
 
-def _sweep_shard(build: str, protocol: Any, folder: Path, shard: str, restart: bool) -> None:
+def _sweep_shard(build: str, protocol: Any, folder: Path, shard: str) -> None:
     _check_build(build)
-    palpate.sweep(protocol, folder, shard=shard, restart=restart, threads=1)
+    palpate.sweep(protocol, folder, shard=shard, threads=1)
 
 
 def _check_build(build: str) -> None:
@@ -454,10 +455,11 @@ def _listed(names: Sequence[str], most: int = 5) -> str:
     return ", ".join(names[:most]) + (f" and {len(names) - most} more" if len(names) > most else "")
 
 
-def _driven(client: Client | None, tasks: Iterator[_Task], count: int, folder: Path, progress: bool | None) -> Shards:
+def _driven(client: Client | None, tasks: Iterator[_Task], count: int, folder: Path, progress: bool | None, *, restart: bool) -> Shards:
     """Runs all tasks, a bounded number of them with the scheduler at a time; one that fails stops no other.
 
-    Nothing is gathered from workers, which may end behind a finished task: the manifest of a shard says what came of it.
+    Nothing is gathered from workers, which may end behind a finished task: the manifest of a shard says what came of it. A restart forgets
+    each shard once, here: a worker that ended with a shard is to go on from what it left.
     """
     with _connected(client) as client, _progress.bar(progress, count, "shard") as tell:
         from distributed import KilledWorker, LocalCluster
@@ -466,13 +468,13 @@ def _driven(client: Client | None, tasks: Iterator[_Task], count: int, folder: P
         running: dict[Future, _Try] = {}
         waiting: list[_Try] = []
         refused: list[str] = []
-        found: list[Mapping[str, Any]] = []
+        done: list[str] = []
         # A cluster of this machine starts no worker anew once its nannies have ended; others may have workers that wait in a queue.
         limit_s = _WITHOUT_WORKERS_S if isinstance(client.cluster, LocalCluster) else float("inf")
         looked = with_workers = time.monotonic()
         window, poll_s = _window(client), _POLL_S
         try:
-            while len(found) + len(refused) < count:
+            while len(done) + len(refused) < count:
                 now = time.monotonic()
                 if now - looked > _LOOK_S:
                     looked, window = now, _window(client)
@@ -483,8 +485,13 @@ def _driven(client: Client | None, tasks: Iterator[_Task], count: int, folder: P
                 ready = [one for one in waiting if one.not_before <= now]
                 waiting = [one for one in waiting if one.not_before > now]
                 while len(running) + len(ready) < max(window, 1) and (task := next(tasks, None)) is not None:
-                    ready.append(_Try(*task))
+                    ready.append(_Try(*task, forget=restart))
                 for one in ready:
+                    try:
+                        one = one.anew(folder)
+                    except BlockingIOError:
+                        waiting.append(replace(one, not_before=now + _LOCKED_S))
+                        continue
                     running[client.submit(one.work, pure=False, key=f"palpate-{one.shard}-{os.urandom(4).hex()}")] = one
                 ended = [future for future in running if future.status != "pending"]
                 if not ended:
@@ -503,15 +510,21 @@ def _driven(client: Client | None, tasks: Iterator[_Task], count: int, folder: P
                     elif error is not None:
                         refused.append(f"{one.shard}: {str(error) or type(error).__name__}")
                     else:
-                        found.append(_manifest(folder, one.shard))
+                        done.append(one.shard)
                 if tell is not None:
-                    tell(len(found) + len(refused))
+                    tell(len(done) + len(refused))
         finally:
             if client.status == "running":
                 client.cancel(list(running))
     if refused:
         reasons = "\n".join(f"  {reason}" for reason in refused[:10]) + (f"\n  and {len(refused) - 10} more" if len(refused) > 10 else "")
         raise PalpateError(f"{len(refused)} of {count} shards could not be finished:\n{reasons}\n{_AGAIN}")
+    found = [_manifest(folder, shard) for shard in done]
+    if len({(one["settings"], one["plan_sha256"]) for one in found}) > 1:
+        raise PalpateError(
+            f"{folder}: expected shards of one call, found those of another one with other files or options, which wrote here meanwhile\n"
+            "hint: give each its own folder, and call again"
+        )
     rows, tests, failed = (sum(int(one[name]) for one in found) for name in ("rows", "tests", "failed"))
     return Shards(folder, count, rows, tests, failed)
 
@@ -525,6 +538,14 @@ class _Try:
     tries: int = 1
     #: Of the clock that only rises, s.
     not_before: float = 0.0
+    #: Whether what there is of it is to be forgotten first.
+    forget: bool = False
+
+    def anew(self, folder: Path) -> _Try:
+        """The same, once what there is of it is forgotten where it should be."""
+        if self.forget:
+            _forget(folder, self.shard)
+        return replace(self, forget=False)
 
 
 def _window(client: Client) -> int:

@@ -11,6 +11,13 @@ use super::protocol::StatedProtocol;
 use crate::files::{shard, stated};
 use crate::work::writing_job;
 
+/// Refuses a protocol that has no sweep.
+#[pyfunction]
+pub(crate) fn _checked_sweep(protocol: &Bound<'_, PyAny>) -> PyResult<()> {
+    let (path, text) = stated("described", protocol)?;
+    StatedProtocol::new(path, text)?.parsed(parse_sweep).map(drop)
+}
+
 /// Simulate the runs of a protocol with a table ``[sweep]`` into one table: ``palpate sweep``.
 ///
 /// Finished parts are kept beside the table: a sweep that was ended goes on where it stood.
@@ -73,7 +80,7 @@ pub(crate) fn sweep(
     let question = Sweep {
         show: show.unwrap_or(usual.show),
         restart,
-        shard: self::shard(shard)?,
+        shard: shard.map(self::shard).transpose()?,
         threads,
     };
     let (path, text) = stated("described", protocol)?;

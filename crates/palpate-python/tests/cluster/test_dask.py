@@ -113,8 +113,12 @@ def _poison() -> bytes:
     return b""
 
 
-def test_a_file_that_ends_its_process_three_times_is_a_failure(curves: Path, tmp_path: Path) -> None:
-    """The file is fetched by a function that kills the worker; its neighbours in the shard are analysed all the same."""
+@pytest.mark.parametrize("restart", [False, True])
+def test_a_file_that_ends_its_process_three_times_is_a_failure(curves: Path, tmp_path: Path, *, restart: bool) -> None:
+    """The file is fetched by a function that kills the worker; its neighbours in the shard are analysed all the same.
+
+    A restart once forgot with each try what the one before it had noted, until no worker was left.
+    """
     from palpate import _palpate, dask as own
 
     files = [(path, None) for path in sorted(curves.glob("c*.csv"))]
@@ -125,7 +129,7 @@ def test_a_file_that_ends_its_process_three_times_is_a_failure(curves: Path, tmp
             (f"{one[0]}/{one[1]}", partial(own._batch_shard, _palpate._BUILD, None, one, files[one[4] : one[4] + one[5]], tmp_path / "holds", {}))
             for one in slices
         )
-        done = own._driven(client, tasks, 2, tmp_path / "holds", False)
+        done = own._driven(client, tasks, 2, tmp_path / "holds", False, restart=restart)
     assert (done.tests, done.failed) == (9, 1)
     failures = pandas.read_parquet(done.failures)
     assert failures.record.tolist() == ["poison.csv"]
@@ -148,6 +152,28 @@ def test_workers_of_another_build_and_two_clients_are_refused(client: Client, cu
         fcntl.flock(lock, fcntl.LOCK_EX)
         Timer(1.0, fcntl.flock, (lock, fcntl.LOCK_UN)).start()
         assert palpate.dask.batch([curves], tmp_path / "holds", client, shards=2).tests == 14
+        fcntl.flock(lock, fcntl.LOCK_EX)
+        Timer(1.0, fcntl.flock, (lock, fcntl.LOCK_UN)).start()
+        assert palpate.dask.batch([curves], tmp_path / "holds", client, shards=2, restart=True).tests == 14
+
+
+def test_shards_that_another_client_wrote_meanwhile_with_other_options_are_refused(client: Client, curves: Path, tmp_path: Path) -> None:
+    """Both calls once came back with a result, of tables of which a part was the other's."""
+    from palpate import _palpate, dask as own
+
+    files = [(path, None) for path in sorted(curves.glob("c*.csv"))]
+    tasks = (
+        (f"{one[0]}/2", partial(own._batch_shard, _palpate._BUILD, None, one, files[one[4] : one[4] + one[5]], tmp_path / "holds", options))
+        for one, options in zip(_palpate._sliced(files, 2), ({}, {"fit_until_s": 3.0}), strict=True)
+    )
+    with pytest.raises(PalpateError, match="expected shards of one call, found those of another one with other files or options"):
+        own._driven(client, tasks, 2, tmp_path / "holds", False, restart=False)
+
+
+def test_a_protocol_without_a_sweep_is_refused_before_anything_runs(client: Client, tmp_path: Path) -> None:
+    with pytest.raises(OptionError, match=r"expected the table \[sweep\]"):
+        palpate.dask.sweep({name: value for name, value in PROTOCOL.items() if name != "sweep"}, tmp_path / "runs", client)
+    assert not (tmp_path / "runs").exists()
 
 
 def test_what_is_wrong_is_refused_once_before_anything_runs(client: Client, curves: Path, tmp_path: Path) -> None:

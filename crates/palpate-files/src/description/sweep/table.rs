@@ -40,7 +40,8 @@ pub(super) fn table(source: &Source<'_>) -> Result<Table, DescriptionError> {
     let text = DeTable::parse(source.text).ok();
     let sweep = text.as_ref().and_then(|text| text.get_ref().get("sweep"));
     let Some(sweep) = sweep else {
-        let expected = "a table of parameters and their values, such as \"log 1e3..1e6 /s, 50\"";
+        let expected =
+            "the table [sweep] with a parameter and its values: law.rate_coefficient = \"log 1e3..1e6 /s, 50\"";
         return Err(source.missing("sweep", expected));
     };
     let DeValue::Table(sweep) = sweep.get_ref() else {
