@@ -7,6 +7,9 @@ use pyo3::types::PyFloat;
 use crate::arrays::doubles;
 use crate::errors::{OptionError, refused_plainly};
 
+/// Numbers that are copied in less time than Rust takes to see that nobody else writes to them.
+const FEW: usize = 64;
+
 /// Values of contacts: one for all, an array of Python's, or a copy.
 pub(super) enum Values<'py> {
     One([f64; 1]),
@@ -17,7 +20,7 @@ pub(super) enum Values<'py> {
 impl<'py> Values<'py> {
     /// One number for all contacts, or an array of one for each.
     ///
-    /// Doubles one behind the other are read where they lie, unless a step writes there.
+    /// Many doubles one behind the other are read where they lie, unless a step writes there.
     pub(super) fn new(values: &Bound<'py, PyAny>, name: &str, count: usize) -> PyResult<Self> {
         if let Ok(one) = values.cast_exact::<PyFloat>() {
             return Ok(Self::One([one.extract()?]));
@@ -40,6 +43,11 @@ impl<'py> Values<'py> {
 
     fn of_array(values: &Bound<'py, PyAny>, name: &str) -> PyResult<Self> {
         if let Ok(array) = values.cast_exact::<PyArray1<f64>>() {
+            if array.len() <= FEW
+                && let Ok(copy) = array.to_vec()
+            {
+                return Ok(Self::Copy(copy));
+            }
             match array.try_readonly() {
                 Ok(array) if array.as_slice().is_ok() => return Ok(Self::Array(array)),
                 Ok(_) => {}

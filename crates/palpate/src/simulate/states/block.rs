@@ -97,6 +97,36 @@ impl Bodies {
         distances < FARTHEST * self.depth[lane]
     }
 
+    /// Whether contacts take a step in equal parts, as far as their places and the time tell.
+    #[inline(always)]
+    pub(super) fn take(&self, (jaw, behind): (Lanes, Lanes), (dt, to): (Lanes, Lanes), parts: u32) -> bool {
+        let mut is_right = true;
+        for lane in 0..LANES {
+            let u = to[lane] * self.share[lane];
+            let first = between(jaw[lane], u, (1, parts));
+            let is_near = self.is_near(lane, jaw[lane].abs() + behind[lane].abs());
+            is_right &= is_near & self.fits(lane, u) & self.fits(lane, first) & is_step(dt[lane]);
+        }
+        is_right
+    }
+
+    /// How many blocks of contacts one after the other take a step.
+    #[inline(always)]
+    pub(super) fn taken_in_row<'a>(
+        bodies: impl Fn(usize) -> &'a Self,
+        (jaws, behinds): (&[Lanes], &[Lanes]),
+        (dt, to): (Column<'_>, Column<'_>),
+        parts: u32,
+    ) -> usize {
+        let (dt, to) = (dt.rows(), to.rows());
+        for (index, (jaw, behind)) in jaws.iter().zip(behinds).enumerate() {
+            if !bodies(index).take((*jaw, *behind), (dt.block(index), to.block(index)), parts) {
+                return index;
+            }
+        }
+        jaws.len()
+    }
+
     /// Strains, or sums of them, from which on a contact pulls or presses.
     #[inline(always)]
     pub(super) fn least(&self, lane: usize) -> f64 {
@@ -180,13 +210,13 @@ impl Block {
         (dt, to): (Column<'_>, Column<'_>),
         parts: u32,
     ) -> usize {
-        let count = jaws.len();
+        let (count, dt, to) = (jaws.len(), dt.rows(), to.rows());
         for (index, ((jaw, behind), force)) in jaws.iter_mut().zip(behinds).zip(forces).enumerate() {
             let block = block(index);
             if block.power != power {
                 return index;
             }
-            let moved = block.moved(power, (*jaw, *behind), (*dt.block(index), *to.block(index)), parts);
+            let moved = block.moved(power, (*jaw, *behind), (dt.block(index), to.block(index)), parts);
             if !moved.is_right {
                 return index;
             }

@@ -74,9 +74,33 @@ impl<'a> Column<'a> {
         }
     }
 
-    /// A complete block of lanes.
+    /// In complete blocks.
     #[inline(always)]
-    pub(super) fn block(&self, index: usize) -> &Lanes {
-        self.each.map_or(&self.shared, |each| each.as_chunks().0.get(index).unwrap_or(&self.shared))
+    pub(super) fn rows(&self) -> Rows<'_> {
+        match self.each {
+            None => Rows {
+                blocks: std::slice::from_ref(&self.shared),
+                mask: 0,
+            },
+            Some(each) => Rows {
+                blocks: each.as_chunks().0,
+                mask: usize::MAX,
+            },
+        }
+    }
+}
+
+/// A column in complete blocks, of which one may stand for all.
+#[derive(Clone, Copy)]
+pub(super) struct Rows<'a> {
+    blocks: &'a [Lanes],
+    /// What of the number of a block is looked at: a choice between two places would be made for every lane.
+    mask: usize,
+}
+
+impl Rows<'_> {
+    #[inline(always)]
+    pub(super) fn block(&self, index: usize) -> Lanes {
+        self.blocks[index & self.mask]
     }
 }

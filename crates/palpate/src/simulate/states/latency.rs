@@ -5,7 +5,7 @@ use std::borrow::Cow;
 use std::mem;
 
 use super::alone::{check_move, finite, forced_alone, moved_alone};
-use super::block::{Block, MOST_LAYERS, Marks, Moved, between, is_extreme, is_step};
+use super::block::{Block, Bodies, MOST_LAYERS, Moved, is_extreme};
 use super::lanes::{Column, Lanes, lanes, store};
 use super::parameters::{ContactParameter, Parameters, Value, ValueProblem, of_model, own_model, renew};
 use super::part::{ContactsStep, Imposed, OneStepError, Part, Refusal};
@@ -100,34 +100,60 @@ impl LatencyModels {
     fn checked(&self, part: &Part<'_>, step: &ContactsStep<'_>) -> Result<(), OneStepError> {
         let [jaw, behind] = &part.rows[..] else { return Ok(()) };
         let (dt, to) = (Column::new(step.dt), Column::new(step.to));
-        for at in (0..part.results.len()).step_by(LANES) {
-            let from = part.from + at;
-            let (block, dt, to) = (self.block(from), dt.lanes(from), to.lanes(from));
-            let (jaw, behind) = (lanes(jaw, at), lanes(behind, at));
-            let (bodies, mut wrong, mut is_right): (_, Marks, _) = (&block.bodies, [false; LANES], true);
-            for lane in 0..LANES {
-                let u = to[lane] * bodies.share[lane];
-                let first = between(jaw[lane], u, (1, step.parts()));
-                let is_near = bodies.is_near(lane, jaw[lane].abs() + behind[lane].abs());
-                let fits = bodies.fits(lane, u) & bodies.fits(lane, first);
-                let is_fine = is_near & fits & is_step(dt[lane]);
-                is_right &= is_fine;
-                wrong[lane] = !is_fine;
-            }
-            if is_right {
+        let (count, mut at) = (part.results.len(), 0);
+        while at < count {
+            at += LANES * self.taken_in_row((&jaw[at..], &behind[at..]), part.from + at, step);
+            let own = at..count.min(at + LANES);
+            let (from, state) = (part.from + at, |at| (lanes(jaw, at), lanes(behind, at)));
+            at += LANES;
+            if own.is_empty()
+                || self.block(from).bodies.take(state(own.start), (dt.lanes(from), to.lanes(from)), step.parts())
+            {
                 continue;
             }
-            for lane in (0..LANES.min(part.results.len() - at)).filter(|lane| wrong[*lane]) {
+            for place in own {
                 let state = ContactState {
-                    jaw: jaw[lane],
-                    behind: behind[lane],
+                    jaw: jaw[place],
+                    behind: behind[place],
                 };
-                let index = from + lane;
-                let fit = check_move(&self.model(index), state, (dt[lane], to[lane]), step.parts());
+                let index = part.from + place;
+                let fit = check_move(&self.model(index), state, step.of(index), step.parts());
                 fit.map_err(|error| OneStepError { index, error })?;
             }
         }
         Ok(())
+    }
+
+    /// How many complete blocks of a row take a step that begins with the contact `from`.
+    #[inline(always)]
+    fn taken_in_row(&self, (jaw, behind): (&[f64], &[f64]), from: usize, step: &ContactsStep<'_>) -> usize {
+        let columns = (Column::new(step.dt).from(from), Column::new(step.to).from(from));
+        let rows = (jaw.as_chunks().0, behind.as_chunks().0);
+        let blocks = if self.blocks.len() == 1 { &self.blocks[..] } else { &self.blocks[from / LANES..] };
+        // One part is a loop of its own, and so is one block.
+        match (step.parts(), blocks) {
+            (1, [block]) => Bodies::taken_in_row(
+                #[inline(always)]
+                |_| &block.bodies,
+                rows,
+                columns,
+                1,
+            ),
+            (parts, [block]) => Bodies::taken_in_row(
+                #[inline(always)]
+                |_| &block.bodies,
+                rows,
+                columns,
+                parts,
+            ),
+            (parts, blocks) => Bodies::taken_in_row(
+                #[inline(always)]
+                |index: usize| &blocks[index].bodies,
+                rows,
+                columns,
+                parts,
+            ),
+        }
     }
 
     /// Steps the contacts of a part; returns how many failed.
