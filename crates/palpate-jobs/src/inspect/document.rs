@@ -108,7 +108,7 @@ pub struct PhaseDocument {
     /// Of a hold, the controlled variable: `displacement`, `force` or `neither`; else `null`.
     #[schemars(extend("enum" = ["displacement", "force", "neither", null]))]
     pub mode: Option<String>,
-    /// Whether the record can be explained nearly as well without this hold.
+    /// Whether ramps, or a drift that was rounded, explain the force of this hold nearly as well.
     pub doubtful: bool,
     /// Time of its first sample, s.
     pub start_s: f64,

@@ -276,7 +276,7 @@ pub enum Finding {
         /// One clock stamps both columns: there is no skew.
         one_clock: bool,
     },
-    /// Holds of a force alone without which the record can be explained nearly as well.
+    /// Holds of a force alone whose force may as well be that of ramps, or of a drift that was rounded.
     HoldsDoubtful {
         /// Their numbers, from 1.
         holds: Vec<usize>,

@@ -137,7 +137,7 @@ pub struct Segment {
     /// For a hold: how that sample was chosen.
     #[serde(default)]
     pub fit_start_rule: Option<FitStartRule>,
-    /// For a hold found in a force alone: whether the record can be explained nearly as well without it.
+    /// For a hold found in a force alone: whether ramps, or a drift that was rounded, explain the force nearly as well.
     #[serde(default)]
     pub doubtful: bool,
 }

@@ -401,7 +401,7 @@ impl Finding {
             Self::HoldsDoubtful { holds, of } => caution(
                 "holds_doubtful",
                 format!("{} of {} may be none: {}", counted(holds.len(), "hold"), of, listed(holds)),
-                "the record has no displacement, and ramps explain these parts of the force nearly as well",
+                "the record has no displacement, and these parts of the force may as well be ramps, or a drift that was rounded",
                 "inspect the phases; give the limits of the holds by hand ([[phases.hold]] in the test description)",
             ),
             Self::LabelsDisagree(check) => caution(

@@ -36,6 +36,8 @@ pub(super) struct Force<'a> {
     pub(super) values: &'a [f64],
     /// What rounding leaves unsure, N.
     pub(super) rounding: f64,
+    /// Least change from a sample to the next, N.
+    pub(super) step: f64,
     /// Standard deviation of a sample, N.
     pub(super) noise: f64,
     /// Least noise to which shapes follow the force, N.
@@ -106,9 +108,9 @@ impl Best {
 }
 
 /// Whether a hold goes on the way of the ramp before it.
-fn goes_on(ramp: &Shape, hold: &Shape, noise: f64) -> bool {
+pub(super) fn goes_on(ramp: &Shape, hold: &Shape, noise: f64) -> bool {
     let change = hold.change();
-    change.abs() > SAME_WAY.1 * noise && change * ramp.slope(1.0) > 0.0
+    change.abs() > SAME_WAY.1 * noise && change * ramp.change() > 0.0
 }
 
 /// The cheapest chain.

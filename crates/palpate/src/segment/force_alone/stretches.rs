@@ -1,9 +1,9 @@
 //! The level of noise, and what speaks for each hold.
 
 use super::breaks::sharpen;
-use super::chain::{self, Force, Link, chain};
+use super::chain::{self, Force, Link, chain, goes_on};
 use super::points::points;
-use super::shapes::Shapes;
+use super::shapes::{Shape, Shapes};
 use crate::optimise::BoundedSolver;
 use crate::segment::hear;
 use crate::statistics::{noise_in_time, quantum, range};
@@ -22,6 +22,8 @@ const MOST: usize = 40_000;
 const OFF: f64 = 0.02;
 /// A hold is doubtful when the chain without it costs fewer prices of a parameter more.
 const DOUBTFUL: f64 = 3.0;
+/// A hold is doubtful where it and the ramps beside it stay within so many of the least changes: what drifts and is rounded makes such stairs.
+const STAIRS: f64 = 3.0;
 /// Points of a stretch that is weighed again.
 const POINTS: usize = 400;
 
@@ -31,7 +33,8 @@ pub(in crate::segment) struct Stretch {
     pub(in crate::segment) start: usize,
     pub(in crate::segment) end: usize,
     pub(in crate::segment) holds: bool,
-    /// Whether the record can be explained nearly as well without this hold.
+    /// Whether the record can be explained nearly as well without this hold; or it goes on the way of the ramp before it, as where ramps last
+    /// longer than the relaxation and look like holds; or it is a stair of the rounding.
     pub(in crate::segment) doubtful: bool,
 }
 
@@ -68,6 +71,7 @@ fn searched(time: &[f64], values: &[f64], watch: &mut dyn Watch) -> Result<(Vec<
             time,
             values,
             rounding: quantum(values) / 12f64.sqrt(),
+            step: least_change(values),
             noise: level * noise,
             least: LEAST.1 * range,
         };
@@ -87,7 +91,7 @@ fn searched(time: &[f64], values: &[f64], watch: &mut dyn Watch) -> Result<(Vec<
             start: link.start,
             end: link.end,
             holds: link.holds,
-            doubtful: link.holds && evidence(&force, &links, index) < DOUBTFUL,
+            doubtful: link.holds && is_doubtful(&force, &links, index),
         });
     }
     Ok((found, force.noise))
@@ -98,13 +102,9 @@ fn criterion(force: &Force<'_>, links: &[Link]) -> f64 {
     let mut solver = BoundedSolver::new(Shapes::DECAYS);
     let mut parameters = 0.0;
     let mut left = |link: &Link| -> Vec<f64> {
-        let (start, end) = (link.start, link.end);
-        let stretch = points(force.time, force.values, (start, end), POINTS);
-        let limits = (force.time[start], force.time[end - 1]);
-        let shapes = Shapes::of(&stretch, limits, force.weighing(chain::OFF), &mut solver);
-        let shape = if link.holds { shapes.hold } else { shapes.ramp };
+        let shape = shape(force, link, chain::OFF, &mut solver);
         parameters += shape.parameters + 1.0;
-        (start..end).map(|i| force.values[i] - shape.at(force.time[i])).collect()
+        (link.start..link.end).map(|i| force.values[i] - shape.at(force.time[i])).collect()
     };
     let residuals: Vec<Vec<f64>> = links.iter().map(&mut left).collect();
     let (mut together, mut squares) = (0.0, f64::MIN_POSITIVE);
@@ -124,20 +124,43 @@ fn criterion(force: &Force<'_>, links: &[Link]) -> f64 {
     samples * (new / samples).max(force.least * force.least).ln() + parameters * samples.ln()
 }
 
+/// Whether a hold may be none; see [`Stretch::doubtful`].
+fn is_doubtful(force: &Force<'_>, links: &[Link], hold: usize) -> bool {
+    let beside = &links[hold.saturating_sub(1)..links.len().min(hold + 2)];
+    let values = &force.values[beside[0].start..beside[beside.len() - 1].end];
+    if range(values) < STAIRS * force.step {
+        return true;
+    }
+    let mut solver = BoundedSolver::new(Shapes::DECAYS);
+    let mut shape = |link: &Link| shape(force, link, OFF, &mut solver);
+    if let [ramp, hold, ..] = beside
+        && hold.holds
+        && !ramp.holds
+        && goes_on(&shape(ramp), &shape(hold), force.noise)
+    {
+        return true;
+    }
+    evidence(force, links, hold) < DOUBTFUL
+}
+
+/// The shape of a stretch.
+fn shape(force: &Force<'_>, link: &Link, off: f64, solver: &mut BoundedSolver) -> Shape {
+    let shapes = shapes(force, (link.start, link.end), off, solver);
+    if link.holds { shapes.hold } else { shapes.ramp }
+}
+
+/// The best hold and the best ramp from one sample to another.
+fn shapes(force: &Force<'_>, (start, end): (usize, usize), off: f64, solver: &mut BoundedSolver) -> Shapes {
+    let stretch = points(force.time, force.values, (start, end), POINTS);
+    Shapes::of(&stretch, (force.time[start], force.time[end - 1]), force.weighing(off), solver)
+}
+
 /// What the chain costs more when a hold is one stretch with its neighbours, in prices of a parameter.
 fn evidence(force: &Force<'_>, links: &[Link], hold: usize) -> f64 {
     let mut solver = BoundedSolver::new(Shapes::DECAYS);
-    let mut shapes = |first: usize, last: usize| {
-        let (start, end) = (links[first].start, links[last].end);
-        let stretch = points(force.time, force.values, (start, end), POINTS);
-        Shapes::of(&stretch, (force.time[start], force.time[end - 1]), force.weighing(OFF), &mut solver)
-    };
-    let mut own = |link: usize| {
-        let shapes = shapes(link, link);
-        if links[link].holds { shapes.hold.cost } else { shapes.ramp.cost }
-    };
     let (lowest, highest) = (hold.saturating_sub(2), (hold + 2).min(links.len() - 1));
-    let costs: Vec<f64> = (lowest..=highest).map(&mut own).collect();
+    let costs: Vec<f64> =
+        links[lowest..=highest].iter().map(|link| shape(force, link, OFF, &mut solver).cost).collect();
     let mut least = f64::INFINITY;
     for (before, after) in [(1, 0), (0, 1), (1, 1), (2, 0), (0, 2)] {
         let (Some(first), last) = (hold.checked_sub(before), hold + after) else {
@@ -147,10 +170,17 @@ fn evidence(force: &Force<'_>, links: &[Link], hold: usize) -> f64 {
             continue;
         }
         let apart = costs[first - lowest..=last - lowest].iter().sum::<f64>() + (last - first) as f64 * force.price();
-        let joined = shapes(first, last);
+        let joined = shapes(force, (links[first].start, links[last].end), OFF, &mut solver);
         least = least.min(joined.hold.cost.min(joined.ramp.cost) - apart);
     }
     least / force.price()
+}
+
+/// The least change from a sample to the next that is one; 0 if there is none.
+fn least_change(values: &[f64]) -> f64 {
+    let (none, changes) = (1e-9 * range(values), values.windows(2).map(|pair| (pair[1] - pair[0]).abs()));
+    let least = changes.filter(|change| *change > none).fold(f64::INFINITY, f64::min);
+    if least.is_finite() { least } else { 0.0 }
 }
 
 /// The force with single samples that lie far off replaced by the means of their neighbours.
@@ -203,6 +233,25 @@ mod tests {
             assert!(hold.end.abs_diff(1000 * (step + 1)) < 8, "{hold:?}");
             assert!(!hold.doubtful, "{hold:?}");
         }
+    }
+
+    #[test]
+    fn a_ramp_that_lasts_longer_than_the_relaxation_and_a_drift_that_is_rounded_are_doubtful() {
+        let mut random = Rng::new(7);
+        // A viscous body: ramps of 8 s whose force levels off, holds of 2 s in which it falls back; the two look alike.
+        let time: Vec<f64> = (0..4000).map(|i| 0.01 * f64::from(i)).collect();
+        let (mut memory, mut force) = (0.0, Vec::new());
+        for t in &time {
+            let rate = if t % 10.0 < 8.0 { 1.0 } else { 0.0 };
+            memory += 0.01 * (rate - memory / 1.5);
+            force.push(memory + 0.05 * (t / 10.0).floor() + 0.001 * random.normal());
+        }
+        for hold in holds(&time, &force) {
+            let is_ramp = hold.end - hold.start > 400;
+            assert!(!is_ramp || hold.doubtful, "{hold:?}");
+        }
+        let drift: Vec<f64> = time.iter().map(|t| (0.2 * t + 0.02 * random.normal()).round()).collect();
+        assert!(holds(&time, &drift).iter().all(|hold| hold.doubtful), "{:?}", holds(&time, &drift));
     }
 
     #[test]
