@@ -113,8 +113,7 @@ def _poison() -> bytes:
     return b""
 
 
-@pytest.mark.parametrize("restart", [False, True])
-def test_a_file_that_ends_its_process_three_times_is_a_failure(curves: Path, tmp_path: Path, *, restart: bool) -> None:
+def test_a_file_that_ends_its_process_three_times_is_a_failure(curves: Path, tmp_path: Path) -> None:
     """The file is fetched by a function that kills the worker; its neighbours in the shard are analysed all the same.
 
     A restart once forgot with each try what the one before it had noted, until no worker was left.
@@ -129,7 +128,7 @@ def test_a_file_that_ends_its_process_three_times_is_a_failure(curves: Path, tmp
             (f"{one[0]}/{one[1]}", partial(own._batch_shard, _palpate._BUILD, None, one, files[one[4] : one[4] + one[5]], tmp_path / "holds", {}))
             for one in slices
         )
-        done = own._driven(client, tasks, 2, tmp_path / "holds", False, restart=restart)
+        done = own._driven(client, tasks, 2, tmp_path / "holds", False, restart=True)
     assert (done.tests, done.failed) == (9, 1)
     failures = pandas.read_parquet(done.failures)
     assert failures.record.tolist() == ["poison.csv"]
