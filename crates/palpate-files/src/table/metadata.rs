@@ -48,7 +48,8 @@ fn equations<'a>(row: &[&'a str]) -> Option<Vec<(&'a str, &'a str)>> {
 fn entry(name: &str, value: &str, unit: Option<&str>) -> Option<Metadata> {
     let named = name.trim().trim_end_matches([':', '=']).trim_end();
     let value = value.trim();
-    if named.is_empty() || value.is_empty() || number::classify(named.as_bytes()).is_numeric() {
+    let is_none = value.is_empty() || (is_heading(named) && is_heading(value));
+    if named.is_empty() || is_none || number::classify(named.as_bytes()).is_numeric() {
         return None;
     }
     let own = unit.and_then(unit::alone);
@@ -68,6 +69,12 @@ fn entry(name: &str, value: &str, unit: Option<&str>) -> Option<Metadata> {
         value: value.to_owned(),
         unit,
     })
+}
+
+/// Whether a text names a column with its unit, as those above a table of results do: `Eit [GPa]`.
+fn is_heading(text: &str) -> bool {
+    let (name, unit) = unit::split(text);
+    text.ends_with([')', ']']) && unit.is_some() && name.is_some_and(|name| !is_number(&name))
 }
 
 fn is_number(text: &str) -> bool {
@@ -105,6 +112,7 @@ mod tests {
         assert_eq!((found[1].name.as_str(), found[1].value.as_str()), ("T", "150"));
         assert!(in_line("A title", Delimiter::Comma).is_empty());
         assert!(in_line("1,2", Delimiter::Comma).is_empty());
+        assert!(in_line("Hit [MPa]\tEit [GPa]\thm [nm]", Delimiter::Tab).is_empty());
         assert!(in_line("", Delimiter::Comma).is_empty());
     }
 }

@@ -44,4 +44,4 @@ pub use part::{Clock, ColumnInfo, ColumnKind, Label, Metadata, Part, SkippedPart
 pub(crate) use reader::{Found, ReadPart, not_finite, share};
 pub use reader::{Heard, ReadOptions};
 pub(crate) use recognise::names_time;
-pub(crate) use stacked::{RowKind, Starts};
+pub(crate) use stacked::{MOST_RESULTS, RowKind, Starts};

@@ -20,7 +20,15 @@ pub(crate) enum RowKind {
     Few,
 }
 
+/// Most tables that results may stand in above a test.
+pub(crate) const MOST_RESULTS: usize = 16;
+
 impl RowKind {
+    /// Whether the cells of a row are names of columns.
+    pub(crate) fn is_heading(row: &[Cell]) -> bool {
+        Self::of(row.iter().copied(), false) == Self::Names
+    }
+
     /// Of the cells of a row that are not empty, in their order; `labelled`: the first is a word before a colon.
     pub(crate) fn of(cells: impl Iterator<Item = Cell>, labelled: bool) -> Self {
         let (mut numbers, mut texts) = (0, 0);

@@ -9,7 +9,10 @@ use super::{
 use crate::{
     cell::{Cell, DecimalMark},
     error::shorten,
-    table::{ColumnInfo, ColumnKind, Doubt, Metadata, ReadOptions, block, decimal, header, metadata, names_time},
+    table::{
+        ColumnInfo, ColumnKind, Doubt, MOST_RESULTS, Metadata, ReadOptions, RowKind, block, decimal, header, metadata,
+        names_time,
+    },
 };
 
 /// Most named values of all tables of a sheet together.
@@ -118,19 +121,42 @@ fn joined(tables: &[Table]) -> Option<Vec<u32>> {
     Some(tables.iter().filter(belongs).flat_map(|table| table.places.iter().copied()).collect())
 }
 
-/// The table in some columns of a sample, if there are two rows of numbers or more.
+/// The table in some columns of a sample, if there are two rows of numbers or more; or one below it, if that names a time and the first does
+/// not: results, such as a hardness, stand above the values that were measured.
 fn table(sample: &Sample, places: &[u32], named: &mut Named, options: &ReadOptions) -> Option<Table> {
     let held = |row: &Row| places.iter().any(|&place| row.value(place).is_some());
     let rows: Vec<&Row> = sample.rows.iter().filter(|row| held(row)).collect();
     let class = |row: &&Row| -> Vec<Cell> {
         places.iter().map(|&place| row.value(place).map_or(Cell::Empty, Value::class)).collect()
     };
-    let mut block = block::of_rows(rows.iter().map(class).collect())?;
+    let classes: Vec<Vec<Cell>> = rows.iter().map(class).collect();
+    let mut below = |from: usize| table_below(&rows, (from, &classes[from..]), places, named, options);
+    let first = below(0);
+    if options.header.is_some() || first.as_ref().is_some_and(Table::names_time) {
+        return first;
+    }
+    let numbers = block::of_rows(classes.clone())?.first;
+    let headings = (numbers..classes.len()).filter(|index| RowKind::is_heading(&classes[*index])).take(MOST_RESULTS);
+    headings.filter_map(below).find(Table::names_time).or(first)
+}
+
+/// The table in the rows from one on, which have cells of these classes.
+fn table_below(
+    rows: &[&Row],
+    (from, classes): (usize, &[Vec<Cell>]),
+    places: &[u32],
+    named: &mut Named,
+    options: &ReadOptions,
+) -> Option<Table> {
+    let mut block = block::of_rows(classes.to_vec())?;
     let texts = |index: usize, _: &block::Block| -> Vec<String> {
-        places.iter().map(|&place| rows[index].value(place).map_or_else(String::new, Value::text)).collect()
+        places
+            .iter()
+            .map(|&place| rows[from + index].value(place).map_or_else(String::new, Value::text))
+            .collect()
     };
     let header = header::find_in_rows(&texts, 0, &mut block, options.header);
-    let data: Vec<&Row> = rows.iter().skip(block.first).copied().collect();
+    let data: Vec<&Row> = rows.iter().skip(from + block.first).copied().collect();
     let leading = block::first_number(&block.kinds)?;
     let leads = |row: &&&Row| row.value(places[leading]).is_some_and(|value| value.class().is_numeric());
     let last_row = data.iter().rfind(leads)?.number;
@@ -141,8 +167,8 @@ fn table(sample: &Sample, places: &[u32], named: &mut Named, options: &ReadOptio
     let firsts: Vec<_> = places.iter().map(|&place| data.iter().find_map(|row| row.value(place))).collect();
     let labelled = firsts.iter().zip(&header.labels).zip(&block.kinds).enumerate();
     let columns = labelled.map(|(index, ((first, label), &kind))| column(index + 1, kind, label, *first)).collect();
-    let above = rows.iter().take(block.first).enumerate();
-    let above = above.filter(|(index, _)| !header.holds(*index));
+    let above = rows.iter().take(from + block.first).enumerate();
+    let above = above.filter(|(index, _)| index.checked_sub(from).is_none_or(|index| !header.holds(index)));
     let (mut metadata, mut left_out) = (Vec::new(), 0);
     for (_, row) in above {
         left_out += named.add(row, &mut metadata);

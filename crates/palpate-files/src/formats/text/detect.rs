@@ -6,8 +6,8 @@ use crate::{
     error::{FileError, FileProblem, shorten},
     input::{Encoding, Input},
     table::{
-        Block, ColumnInfo, ColumnKind, Header, Layout, Metadata, ReadOptions, RowKind, block, decimal, header,
-        metadata, names_time,
+        Block, ColumnInfo, ColumnKind, Header, Layout, MOST_RESULTS, Metadata, ReadOptions, RowKind, block, decimal,
+        header, metadata, names_time,
     },
 };
 
@@ -33,9 +33,6 @@ pub(super) fn rows(lines: &[&str], options: &ReadOptions) -> Result<Block, FileP
     found.or_else(|problem| find_block(lines, skip, options).map_err(|_| problem))
 }
 
-/// Most tables that results may stand in above the test.
-const MOST_RESULTS: usize = 16;
-
 /// The layout of lines with these rows of numbers; or of those of a table below them, if that one names a time and they do not: results, such
 /// as a hardness, stand above the values that were measured.
 pub(super) fn of_rows(
@@ -46,7 +43,10 @@ pub(super) fn of_rows(
 ) -> Result<Layout, FileProblem> {
     let first = block.first;
     let headings: Vec<usize> = match options.header {
-        None => (first..lines.len()).filter(|line| is_heading(&block.cells[*line])).take(MOST_RESULTS).collect(),
+        None => (first..lines.len())
+            .filter(|line| RowKind::is_heading(&block.cells[*line]))
+            .take(MOST_RESULTS)
+            .collect(),
         Some(_) => Vec::new(),
     };
     let layout = layout_of(lines, block, encoding, options)?;
@@ -58,11 +58,6 @@ pub(super) fn of_rows(
         layout_of(lines, block, encoding, options).ok().filter(|layout| names_time(&layout.columns))
     });
     Ok(below.unwrap_or(layout))
-}
-
-/// Whether cells are names of columns.
-fn is_heading(row: &[Cell]) -> bool {
-    RowKind::of(row.iter().copied(), false) == RowKind::Names
 }
 
 fn layout_of(

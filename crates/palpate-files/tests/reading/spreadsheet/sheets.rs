@@ -227,3 +227,22 @@ fn results_above_a_test_are_no_table_of_their_own() {
     let titles: Vec<&str> = contents.parts.iter().map(Part::title).collect();
     assert_eq!(titles, ["Press"]);
 }
+
+/// Exports of an indenter of Anton Paar name hardness and modulus above the values that were measured.
+#[test]
+fn results_in_columns_above_the_measured_values_are_no_test() {
+    for rows in [1, 3] {
+        let mut sheet = vec![vec![T("Sample"), T("gel")], vec![T("Hit [MPa]"), T("Eit [GPa]"), T("hm [nm]")]];
+        sheet.extend((0..rows).map(|row| vec![N(12.3 + f64::from(row)), N(4.5), N(336.2)]));
+        sheet.extend([vec![], vec![T("Measured values")], vec![T("Time"), T("Pd"), T("Fn")]]);
+        sheet.push(vec![T("s"), T("nm"), T("mN")]);
+        sheet.extend((0..20).map(|row| vec![N(0.1 * f64::from(row)), N(f64::from(row)), N(0.5 * f64::from(row))]));
+        let contents = open(&Book::of(&[("Curve", &sheet)]).bytes()).expect("a workbook");
+        assert_eq!(contents.parts.len(), 1);
+        assert_eq!(names(&contents.parts[0]), [("Time", "s"), ("Pd", "nm"), ("Fn", "mN")]);
+        let named: Vec<&str> = contents.parts[0].metadata.iter().map(|named| named.name.as_str()).collect();
+        assert_eq!(named, ["Sample"]);
+        let file = record::read_part(&contents, 0, None, &mut |_, _| Ok(())).expect("a record");
+        assert_eq!((file.record.force().len(), file.record.force()[19]), (20, 0.0095));
+    }
+}
