@@ -192,6 +192,13 @@ pub(crate) fn quantum(values: &[f64]) -> f64 {
     if 10 * multiples >= 9 * changes.len() && 5 * bends >= changes.len() { step } else { 0.0 }
 }
 
+/// The least change from a sample to the next that is one; 0 if there is none.
+pub(crate) fn least_change(values: &[f64]) -> f64 {
+    let (none, changes) = (1e-9 * range(values), values.windows(2).map(|pair| (pair[1] - pair[0]).abs()));
+    let least = changes.filter(|change| *change > none).fold(f64::INFINITY, f64::min);
+    if least.is_finite() { least } else { 0.0 }
+}
+
 /// Correlation of neighbouring values about zero; 0 for fewer than three or for none at all.
 pub(crate) fn lag_one_correlation(residuals: &[f64]) -> f64 {
     let square = dot(residuals, residuals);

@@ -6,7 +6,7 @@ use super::points::points;
 use super::shapes::{Shape, Shapes};
 use crate::optimise::BoundedSolver;
 use crate::segment::hear;
-use crate::statistics::{noise_in_time, quantum, range};
+use crate::statistics::{least_change, noise_in_time, quantum, range};
 use crate::watch::{Cancelled, Watch};
 
 /// Levels of noise that are tried, in standard deviations of what differs from sample to sample: what a controller leaves, or an
@@ -174,13 +174,6 @@ fn evidence(force: &Force<'_>, links: &[Link], hold: usize) -> f64 {
         least = least.min(joined.hold.cost.min(joined.ramp.cost) - apart);
     }
     least / force.price()
-}
-
-/// The least change from a sample to the next that is one; 0 if there is none.
-fn least_change(values: &[f64]) -> f64 {
-    let (none, changes) = (1e-9 * range(values), values.windows(2).map(|pair| (pair[1] - pair[0]).abs()));
-    let least = changes.filter(|change| *change > none).fold(f64::INFINITY, f64::min);
-    if least.is_finite() { least } else { 0.0 }
 }
 
 /// The force with single samples that lie far off replaced by the means of their neighbours.

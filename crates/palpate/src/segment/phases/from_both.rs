@@ -11,7 +11,7 @@ use crate::segment::{
     After, CONTROLLER, Held, HoldMode, Level, Levels, Phase, SERVO, Segment, SegmentError, SegmentOptions,
     SegmentSettings, Segmentation, hear, levels, mode, mode_at_large,
 };
-use crate::statistics::{median, range};
+use crate::statistics::{least_change, median, range};
 use crate::watch::{Cancelled, Watch};
 
 /// How far a jaw wanders that hunts, in heights of its ripple.
@@ -125,10 +125,10 @@ fn creeps(
         .collect();
     // The top of a wave is slow, too.
     let smooth = |level: &Level| turns(record.time(), record.force(), *level, ASTRAY * found.settings.noise, 0.5);
-    for level in settled
-        .iter()
-        .filter(|level| arrives(record, level, &jaw.settings) && (!open(level) || recovers(level)))
-    {
+    let step = least_change(record.force());
+    for level in settled.iter().filter(|level| {
+        arrives(record, level, &jaw.settings) && (!open(level) || recovers(level)) && !is_stair(record, level, step)
+    }) {
         hear(watch)?;
         let inside: Vec<&Level> = still.iter().filter(|still| overlap(still, level)).collect();
         let rests = || inside.iter().all(|still| rests_late(record, still, level));
@@ -159,7 +159,8 @@ fn creeps(
             continue;
         };
         let rest = Level { start, ..*level };
-        let is_long = rest.end - rest.start >= found.settings.minimum_samples;
+        // How long the force takes to leave its level is no hold.
+        let is_long = rest.end - rest.start >= found.settings.minimum_samples.max((level.end - level.start) / 20);
         if is_long
             && !still.iter().any(|still| overlap(still, &rest))
             && takes_over(record, &rest, still)
@@ -177,6 +178,17 @@ fn creeps(
     pressed.append(&mut unseen);
     pressed.sort_by_key(|level| level.start);
     Ok(pressed)
+}
+
+/// Steps of its rounding that a force exceeds which goes from one level to another.
+const STAIRS: f64 = 3.0;
+
+/// Whether a level of the force is one step of a drift that was rounded: within half its length on either side the force changes by fewer than three
+/// `step`s.
+fn is_stair(record: &Record, level: &Level, step: f64) -> bool {
+    let (force, half) = (record.force(), (level.end - level.start).div_ceil(2));
+    let beside = &force[level.start.saturating_sub(half)..(level.end + half).min(force.len())];
+    range(beside) < STAIRS * step
 }
 
 /// How far from its level a force is that a controller has not reached yet, in standard deviations of its noise.
@@ -272,7 +284,9 @@ fn takes_over(record: &Record, level: &Level, still: &[Level]) -> bool {
 /// Whether a standstill of the jaw lies outside a level of the force, or is the end of its creep.
 fn rests_late(record: &Record, still: &Level, level: &Level) -> bool {
     let outside = still.end <= level.start || still.start >= level.end;
-    let late = still.end + (level.end - level.start) / 20 >= level.end;
+    // Of a standstill that is longer after the force was let go than before, the jaw is held.
+    let is_its_end = 2 * still.end <= 2 * level.end + (still.end - still.start);
+    let late = is_its_end && still.end + (level.end - level.start) / 20 >= level.end;
     // A ramp that is slow enough keeps the force, too, but it does not slow down before it stops.
     let creep = Level {
         end: still.start,

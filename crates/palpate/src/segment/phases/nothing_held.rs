@@ -31,6 +31,8 @@ const GOES_ON: f64 = 0.1;
 const AS_BESIDE: f64 = 0.5;
 /// Share of that in the first half of what relaxes; a straight line has done a half.
 const RELAXES: f64 = 0.58;
+/// Share of what it does on that line by which it may have gone the other way before.
+const BACK: f64 = 0.25;
 /// Share of its range by which a force turns in no hold.
 const TURNS: f64 = 0.5;
 
@@ -96,6 +98,10 @@ impl<'a> Contact<'a> {
     /// measured. What relaxes turns back.
     fn goes_on(&self, level: &Level) -> bool {
         let force = &self.force[level.start..level.end];
+        // The edge of the standstill may lie behind the turn of the force.
+        let way = |i: &usize| (force[*i] - force[0]).abs();
+        let turn = (force.len() - force.len() / 4..force.len()).max_by(|a, b| way(a).total_cmp(&way(b)));
+        let force = &force[..turn.map_or(force.len(), |turn| turn + 1)];
         let few = (force.len() / 20).max(1);
         let half = force.len() / 2;
         let at = |from: usize| median(&mut force[from..(from + few).min(force.len())].to_vec());
@@ -106,7 +112,7 @@ impl<'a> Contact<'a> {
         let beside = AS_BESIDE * range(before).max(range(after));
         let least = beside.max(GOES_ON * self.force_range).max(10.0 * noise(force));
         let error = noise(force) / (few as f64).sqrt() / (last - first).abs();
-        let runs_on = before.first().is_some_and(|from| (first - from) * (last - first) > 0.0);
+        let runs_on = before.first().is_some_and(|from| (first - from) / (last - first) > -BACK);
         runs_on && (last - first).abs() > least && (middle - first) / (last - first) + 3.0 * error < RELAXES
     }
 }

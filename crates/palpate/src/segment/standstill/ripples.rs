@@ -46,9 +46,11 @@ fn stands_out(values: &[f64], noise: f64, found: &[Standstill], index: usize) ->
         .map(|at| bend(values, at, length))
         .collect();
     let usual = if usual.is_empty() { 0.0 } else { DEVIATION * median(&mut usual) };
+    // A corner too near to an end of the record says nothing, but the other does.
     let inside = length..values.len().saturating_sub(length);
-    let corner = |at: usize| if inside.contains(&at) { bend(values, at, length) } else { f64::MAX };
-    usual <= RIPPLES * 6f64.sqrt() * noise || corner(start).max(corner(end - 1)) > STANDS_OUT * usual
+    let corners = [start, end - 1].into_iter().filter(|at| inside.contains(at)).map(|at| bend(values, at, length));
+    let sharpest = corners.reduce(f64::max).unwrap_or(f64::MAX);
+    usual <= RIPPLES * 6f64.sqrt() * noise || sharpest > STANDS_OUT * usual
 }
 
 /// Difference of the ways of `length` samples after and before a sample.

@@ -50,21 +50,23 @@ fn holds_of_constant_displacement_are_found() {
     assert_eq!(score.extra, 0, "{}", reported(&score));
 }
 
-/// The crosshead of one hold was cut into nine, and free air was a hold. Holds between ramps that ripple are found; some waves that
-/// stand still are taken for holds too, as `validation/results/segmentation.md` counts.
+/// The crosshead of one hold was cut into nine, free air was a hold, and so were waves of a ramp.
 #[test]
 fn machines_with_quirks_are_read_as_what_they_do() {
-    let (mut all, mut others) = (Score::default(), Score::default());
-    for number in 0..records() {
-        let labelled = quirks::quirky(number);
+    let mut all = Score::default();
+    (0..records()).for_each(|number| all.add(&scored(&quirks::quirky(number), false).score));
+    assert!(all.found_share() >= 0.98 && all.extra == 0, "{}", reported(&all));
+}
+
+/// Steps of a drift that was rounded; a standstill of the jaw cut in two by a level of the force; the force on a hard sample, up to and over its
+/// turn; the last wave of a ramp; and the samples in which a force leaves its level: each was a hold.
+#[test]
+fn what_was_a_hold_and_is_none() {
+    let records = [639, 864].map(suite::labelled).into_iter().chain([59, 374, 962].map(quirks::quirky));
+    for labelled in records {
         let score = scored(&labelled, false).score;
-        all.add(&score);
-        if labelled.kind != Kind::Ripple {
-            others.add(&score);
-        }
+        assert_eq!(score.extra, 0, "{:?}: {}", labelled.kind, reported(&score));
     }
-    assert!(all.found_share() >= 0.98, "{}", reported(&all));
-    assert!(others.found_share() >= 0.98 && others.extra <= 1, "{}", reported(&others));
 }
 
 #[test]
