@@ -6,7 +6,7 @@
 //! that the standings z of the directions, N(0, 1) before the first reading, follow from the forces by a Kalman filter of a state that does
 //! not move (recursive least squares with a prior, Kalman 1960).
 
-use super::kept::kept;
+use super::signal::Correlation;
 use super::{Kept, Normal, ObserveError, ObserverOptions};
 use crate::calibrate::Material;
 use crate::contact::RateDependence;
@@ -23,38 +23,6 @@ const FAR: f64 = 5.0;
 const MOST: usize = 16;
 /// Share of a surprise in that mean.
 const MEMORY: f64 = 0.02;
-
-/// Surprises whose correlation with the one before is averaged at most.
-const SURPRISES: f64 = 400.0;
-/// The largest correlation that counts.
-const MOST_CORRELATION: f64 = 0.98;
-
-/// How surprises that follow each other correlate: noise of one reading that is also in the next.
-#[derive(Debug, Clone, Copy, Default)]
-struct Correlation {
-    last: f64,
-    product: f64,
-    square: f64,
-    count: f64,
-}
-kept!(Correlation: last, product, square, count);
-
-impl Correlation {
-    /// Takes a surprise in standard deviations; of how many readings each tells as much as one would without correlation.
-    fn feed(&mut self, surprise: f64) -> f64 {
-        self.count = (self.count + 1.0).min(SURPRISES);
-        self.product += (surprise * self.last - self.product) / self.count;
-        self.square += (surprise * surprise - self.square) / self.count;
-        self.last = surprise;
-        let correlation = if self.square > 0.0 { self.product / self.square } else { 0.0 };
-        // Less is what chance leaves of white noise.
-        if correlation < 2.0 / self.count.sqrt() {
-            return 1.0;
-        }
-        let correlation = correlation.min(MOST_CORRELATION);
-        (1.0 + correlation) / (1.0 - correlation)
-    }
-}
 
 /// A model and its state.
 #[derive(Debug, Clone)]
@@ -254,7 +222,8 @@ impl ModelFilter {
         variance += self.gain.iter().zip(&self.slope).map(|(gain, slope)| gain * slope).sum::<f64>();
         self.surprise += MEMORY * (surprise * surprise / variance - self.surprise);
         // What one of several readings within that time tells, or of several that share their noise.
-        let together = self.correlation.feed(surprise / variance.sqrt());
+        self.correlation.feed(surprise / variance.sqrt());
+        let together = self.correlation.together();
         let share = if dt > 0.0 { (APART / dt).max(together) } else { together };
         variance += (share - 1.0) * self.noise * self.noise;
         for (standing, gain) in self.standing.iter_mut().zip(&self.gain) {

@@ -2,7 +2,7 @@
 
 use super::filter::ModelFilter;
 use super::hold::{Bins, Crossing, FEWEST, HoldFit};
-use super::signal::{Alone, Change, NoiseMeter, Smooth, Stand};
+use super::signal::{Alone, Change, Correlation, NoiseMeter, Smooth, Stand};
 use super::{Held, Kept, Normal, Observation, ObserveError, ObserverOptions, Slip, kept};
 use crate::statistics::coverage_factor;
 
@@ -25,7 +25,7 @@ const AGAIN: f64 = 0.04;
 const READINGS: u32 = 8;
 
 /// What the bytes of an observer begin with.
-const FORMAT: [u8; 8] = *b"observe3";
+const FORMAT: [u8; 8] = *b"observe4";
 
 /// A hold that goes on.
 #[derive(Debug, Clone, Copy, Default)]
@@ -33,6 +33,8 @@ pub(super) struct Hold {
     pub(super) held: Held,
     pub(super) since: f64,
     pub(super) fit: Option<HoldFit>,
+    /// Of readings with what the last fit before them predicted.
+    correlation: Correlation,
     pub(super) crossing: Option<Crossing>,
     pub(super) creep: Option<Normal>,
     /// Time since the hold began at which the next fit is due, s.
@@ -41,7 +43,7 @@ pub(super) struct Hold {
     /// The warning after the last tick.
     pub(super) slip: Slip,
 }
-kept!(Hold: held, since, fit, crossing, creep, due, readings, slip);
+kept!(Hold: held, since, fit, correlation, crossing, creep, due, readings, slip);
 
 impl Hold {
     fn new(held: Held, since: f64) -> Self {
@@ -256,7 +258,13 @@ impl Observer {
             self.observed.relaxation.clear();
             self.observed.relaxes_from = time;
         } else if !self.observed.jaw.is_doubtful() {
-            self.observed.relaxation.push(time - self.observed.relaxes_from, force);
+            let elapsed = time - self.observed.relaxes_from;
+            self.observed.relaxation.push(elapsed, force);
+            if let Some(hold) = &mut self.observed.hold
+                && let Some(fit) = &hold.fit
+            {
+                hold.correlation.feed(force - fit.force(elapsed));
+            }
         }
         let reported = force_tolerance.is_some_and(|tolerance| self.observed.smooth.level.abs() > PLAIN * tolerance);
         self.begin_or_end(jaw, grip, reported)
@@ -350,7 +358,8 @@ impl Observer {
                 Normal::new(self.options.exponent, self.options.exponent_standard_error),
                 ModelFilter::exponent,
             );
-            hold.fit = HoldFit::new(bins, exponent, noise, |freedom| coverage_factor(confidence, freedom));
+            let factor = |freedom| coverage_factor(confidence, freedom);
+            hold.fit = HoldFit::new(bins, exponent, noise, hold.correlation.long_run_variance(), factor);
         } else {
             // Every tick, until there are enough.
             hold.due = elapsed;

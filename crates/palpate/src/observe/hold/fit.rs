@@ -109,12 +109,14 @@ pub(in crate::observe) struct HoldFit {
 kept!(HoldFit: best, nodes, len, variance, weight, factor; |fit| fit.len <= fit.nodes.len());
 
 impl HoldFit {
-    /// Fits means of a hold at an exponent that is known to its deviation; `deviation` is the least that one reading scatters (N), `factor` half an interval in standard deviations by
-    /// the degrees of freedom.
+    /// Fits means of a hold at an exponent that is known to its deviation; `deviation` is the least that one reading scatters (N), `correlated` the
+    /// variance of one reading as if readings were independent, where they are seen to follow each other, with its degrees of freedom, and
+    /// `factor` half an interval in standard deviations by the degrees of freedom.
     pub(in crate::observe) fn new(
         bins: &[Bin],
         exponent: Normal,
         deviation: f64,
+        correlated: Option<(f64, f64)>,
         factor: impl Fn(f64) -> f64,
     ) -> Option<Self> {
         if bins.len() < FEWEST {
@@ -129,10 +131,13 @@ impl HoldFit {
         let freedom = (bins.len() - 3) as f64;
         // Means that scatter more than their readings tell of noise that is slow, or of a hold that the law does not describe.
         let largest = bins.iter().map(|bin| bin.value.abs()).fold(0.0, f64::max);
-        let (late, late_freedom) = late_variance(bins, &least, freedom);
         let all = (deviation * deviation).max(least.squares / freedom).max((1e-12 * largest).powi(2));
-        let variance = all.max(late);
-        let factor = factor(if late > all { late_freedom } else { freedom });
+        let late = late_variance(bins, &least, freedom);
+        let (variance, freedom) = [(all, freedom), late]
+            .into_iter()
+            .chain(correlated)
+            .fold((0.0, freedom), |a, b| if b.0 > a.0 { b } else { a });
+        let factor = factor(freedom);
         let mut fit = Self {
             best: least,
             nodes: [Node::default(); 3 * (2 * SIDE + 1)],
@@ -326,7 +331,7 @@ mod tests {
             let t = i as f64 / 500.0;
             bins.push(t, 1.2 + 1.7 * decay(6.0 * t, exponent) + noise * noise_source.normal());
         }
-        HoldFit::new(bins.as_slice(), given, noise, |_| 1.96).unwrap()
+        HoldFit::new(bins.as_slice(), given, noise, None, |_| 1.96).unwrap()
     }
 
     #[test]
@@ -376,7 +381,8 @@ mod tests {
                         // What distances from lines through neighbours show of it.
                         let deviation = 0.05 * ((1.0 - rho) * (3.0 - rho) / 3.0_f64).sqrt();
                         let factor = |freedom| crate::statistics::coverage_factor(0.95, freedom);
-                        let fit = HoldFit::new(bins.as_slice(), Normal::new(5.0, 0.0), deviation, factor).unwrap();
+                        let fit =
+                            HoldFit::new(bins.as_slice(), Normal::new(5.0, 0.0), deviation, None, factor).unwrap();
                         let (low, high) = fit.interval(time);
                         low <= truth && truth <= high
                     })
