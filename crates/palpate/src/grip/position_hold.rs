@@ -5,7 +5,7 @@ use std::cell::RefCell;
 use super::{ALWAYS, Grasp, GripError, Limits, Plan, PlanKind, TimeToSlip, check_confidence};
 use crate::calibrate::{Material, Prediction};
 use crate::simulate::{Contact, ProgramStep, Sampling, Separation, SimulateError, StepEnd, step_ends, work_by_step};
-use crate::statistics::{coverage_factor, one_sided_factor, student_probability};
+use crate::statistics::{one_sided_factor, student_probability};
 use crate::watch::{Cancelled, Progress, Stages};
 
 /// A calibrated body in a gripper.
@@ -282,19 +282,23 @@ impl<'a> Grip<'a> {
     /// Where the band of the force falls below the needed one: both its edges, and the bound of the level on one side.
     fn slips(&self, plan: &Plan, end: &StepEnd, needed: f64) -> Result<BandSlips, GripError> {
         let program = plan.held(ALWAYS);
-        let edge = |factor: f64| {
+        let edge = |off: &dyn Fn(&Prediction, usize) -> Option<f64>| {
             let mut surplus = |times: &[f64]| -> Result<Vec<f64>, GripError> {
                 let at = times.iter().map(|time| end.time + time).collect();
                 let predicted = self.predict(&program, at)?;
-                let errors = predicted.force_standard_error.unwrap_or_else(|| vec![0.0; predicted.trajectory.len()]);
-                let course = predicted.trajectory.force.iter().zip(errors);
-                Ok(course.map(|(force, error)| force + factor * error - needed).collect())
+                let forces = predicted.trajectory.force.iter().enumerate();
+                Ok(forces.map(|(i, force)| force + off(&predicted, i).unwrap_or(0.0) - needed).collect())
             };
             crossing(&mut surplus)
         };
-        let half = coverage_factor(self.confidence, self.freedom());
-        let assured = self.level.map(|level| edge(-one_sided_factor(level, self.freedom()))).transpose()?;
-        Ok((Some((edge(-half)?, edge(half)?)), assured))
+        let below = |predicted: &Prediction, i: usize| Some(-predicted.force_half_widths.as_ref()?[i].0);
+        let above = |predicted: &Prediction, i: usize| Some(predicted.force_half_widths.as_ref()?[i].1);
+        let of_level = |level: f64| {
+            let factor = one_sided_factor(level, self.freedom());
+            edge(&|predicted, i| Some(-factor * predicted.force_standard_error.as_ref()?[i]))
+        };
+        let assured = self.level.map(of_level).transpose()?;
+        Ok((Some((edge(&below)?, edge(&above)?)), assured))
     }
 
     /// Degrees of freedom of the calibration.

@@ -110,7 +110,7 @@ kept!(HoldFit: best, nodes, len, variance, weight, factor; |fit| fit.len <= fit.
 
 impl HoldFit {
     /// Fits means of a hold at an exponent that is known to its deviation; `deviation` is the least that one reading scatters (N), `correlated` the
-    /// variance of one reading as if readings were independent, where they are seen to follow each other, with its degrees of freedom, and
+    /// variance of one reading as if readings were independent, where they are observed to follow each other, with its degrees of freedom, and
     /// `factor` half an interval in standard deviations by the degrees of freedom.
     pub(in crate::observe) fn new(
         bins: &[Bin],
