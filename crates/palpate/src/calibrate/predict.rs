@@ -262,9 +262,10 @@ impl<'a> Spreads<'a> {
             let [up, down] = [high, low].map(|side| (side - course) / share);
             squares.even += (0.5 * (up - down)).powi(2);
             add(&mut squares.off, below_and_above(up, down));
-            let [high, low] = [high, low].map(|side| (side / course).ln() / share);
-            let is_near = *course > 0.0 && high.abs().max(low.abs()) < RATIO.ln();
-            add(&mut squares.log, if is_near { below_and_above(high, low) } else { [f64::INFINITY; 2] });
+            let logs = [high, low].map(|side| (side / course).ln() / share);
+            // A logarithm that does not exist is not near.
+            let is_near = *course > 0.0 && logs.iter().all(|log| log.abs() < RATIO.ln());
+            add(&mut squares.log, if is_near { below_and_above(logs[0], logs[1]) } else { [f64::INFINITY; 2] });
         }
     }
 
@@ -339,12 +340,12 @@ mod tests {
     /// An interval of equal sides covered the forces of a sixth specimen in 92.9 % where v differs by a half.
     #[test]
     fn the_interval_of_a_product_of_lognormal_parameters_is_exact() {
-        let course = [5.0, 0.0];
+        let course = [5.0, 0.0, 1.0];
         let mut spreads = Spreads::new(&course);
         for log in [0.3_f64, 0.4] {
-            spreads.add(&[5.0 * log.exp(), 1.0], &[5.0 * (-log).exp(), -0.5], 1.0);
+            spreads.add(&[5.0 * log.exp(), 1.0, 1.5], &[5.0 * (-log).exp(), -0.5, -0.5], 1.0);
         }
-        let (errors, widths) = spreads.widened(&[0.0, 0.0], 4.0, 2.0);
+        let (errors, widths) = spreads.widened(&[0.0; 3], 4.0, 2.0);
         let (below, above) = widths[0];
         assert!((5.0 - below - 5.0 * (-0.5_f64).exp()).abs() < 1e-14, "{below}");
         assert!((5.0 + above - 5.0 * 0.5_f64.exp()).abs() < 1e-14, "{above}");
@@ -354,6 +355,12 @@ mod tests {
         let (below, above) = widths[1];
         assert!((below - 0.5 * root_of_2).abs() < 1e-14 && (above - root_of_2).abs() < 1e-14, "{below} {above}");
         assert!((errors[1] - 0.375 * root_of_2).abs() < 1e-14, "{errors:?}");
+        // A side below zero counts where the other is near.
+        let (below, above) = widths[2];
+        assert!(
+            (below - 1.5 * root_of_2).abs() < 1e-14 && (above - 0.5 * root_of_2).abs() < 1e-14,
+            "{below} {above}"
+        );
     }
 
     #[test]
