@@ -4,14 +4,12 @@ use std::fmt::Display;
 use std::io::Write;
 
 use numpy::{PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray2, PyReadwriteArray2, PyUntypedArrayMethods};
-use palpate::simulate::{
-    Contact, ContactModels, ContactParameter, ContactQuantity, ContactState as State, ContactsStep, Imposed, Refusal,
-};
+use palpate::simulate::{ContactModels, ContactParameter, ContactQuantity, ContactsStep, Imposed, Refusal};
 use pyo3::prelude::*;
-use pyo3::types::{PyDict, PyList, PyTuple, PyType};
+use pyo3::types::{PyDict, PyType};
 
 use super::columns::{Values, marks, results};
-use super::described::{all_described, contact_of, described_contact};
+use super::states_made::{MOST, models_given, models_kept, numbers, rows_of};
 use crate::arrays::AT_ONCE;
 use crate::errors::{ModelError, OptionError, PalpateError, one_of, refused_plainly};
 use crate::pickles::{Made, PICKLE, Piece, Pieces, check_pickle, in_pieces};
@@ -75,9 +73,6 @@ pub(crate) struct ContactStates {
     /// The description of all, or one each, so that they can be sent elsewhere.
     texts: Vec<String>,
 }
-
-/// Contacts that fit into the memory of a small machine.
-const MOST: usize = 100_000_000;
 
 /// Steps of contacts in a row that are taken before Ctrl-C is looked for.
 const BRIEF: usize = 1 << 22;
@@ -247,54 +242,6 @@ fn refusal_of(errors: &str) -> PyResult<Refusal> {
     one_of("errors", &[("raise", Refusal::All), ("mask", Refusal::Masked)], errors)
 }
 
-/// How many contacts of how many models there are to be.
-fn count_of(count: Option<&Bound<'_, PyAny>>, several: bool, values: Option<usize>) -> PyResult<Option<usize>> {
-    let requested = |found: String| {
-        let message = format!(
-            "count: expected how many contacts of one model, 1 to {MOST}, or none beside a list of models, found {found}"
-        );
-        Err(refused_plainly::<OptionError>(message))
-    };
-    match count {
-        None if several => Ok(None),
-        None => values.map_or_else(|| requested("none".to_owned()), |count| Ok(Some(count))),
-        Some(count) if several => requested(format!("a list and {count}")),
-        Some(count) => match count.extract::<usize>() {
-            Ok(number) if (1..=MOST).contains(&number) => Ok(Some(number)),
-            _ => requested(count.to_string()),
-        },
-    }
-}
-
-/// Values of parameters for each contact, as keywords give them.
-type Given<'a, 'py> = [(ContactParameter, Option<&'a Bound<'py, PyAny>>); 5];
-
-/// How many contacts values are for, if one of them is an array.
-fn count_of_values(given: &Given<'_, '_>) -> PyResult<Option<usize>> {
-    for values in given.iter().filter_map(|(_, values)| *values) {
-        let length = match values.hasattr("__len__")? {
-            // Of an array of no dimension there is none.
-            true => values.len().ok(),
-            false => None,
-        };
-        if let Some(length) = length.filter(|length| (1..=MOST).contains(length)) {
-            return Ok(Some(length));
-        }
-    }
-    Ok(None)
-}
-
-/// The models with values of parameters for each contact.
-fn with_values(mut models: ContactModels, given: &Given<'_, '_>, count: usize) -> PyResult<ContactModels> {
-    for (parameter, values) in given {
-        if let Some(values) = values {
-            let values = Values::new(values, parameter.name(), count)?.each(count);
-            models = models.with(*parameter, &values).map_err(refused_plainly::<ModelError>)?;
-        }
-    }
-    Ok(models)
-}
-
 /// The format of pickles with parameters of each contact and with linear laws.
 const STATES_PICKLE: u32 = 5;
 
@@ -342,24 +289,7 @@ shown! {
             (ContactParameter::RateCoefficient, rate_coefficient_per_s),
             (ContactParameter::LayerThickness, layer_thickness_m),
         ];
-        let several = model.is_instance_of::<PyList>() || model.is_instance_of::<PyTuple>();
-        let count = count_of(count, several, count_of_values(&given)?)?;
-        let described: Vec<(Contact, String)> = match count {
-            Some(_) => vec![described_contact(model)?],
-            None => all_described(model)?,
-        };
-        if described.is_empty() {
-            let message = "count: expected one model or more, found an empty list";
-            return Err(refused_plainly::<OptionError>(message));
-        }
-        let count = count.unwrap_or(described.len());
-        if let Some((parameter, _)) = given.iter().find(|(_, values)| several && values.is_some()) {
-            let message = format!("{}: values for each contact need one model for all, found a list", parameter.name());
-            return Err(refused_plainly::<OptionError>(message));
-        }
-        let (contacts, texts) = described.into_iter().unzip();
-        let models = ContactModels::new(contacts).map_err(refused_plainly::<ModelError>)?;
-        let models = with_values(models, &given, count)?;
+        let (models, count, texts) = models_given(model, count, &given)?;
         Ok(Self::new_of(model.py(), models, count, texts))
     }
 
@@ -567,15 +497,8 @@ shown! {
             check_pickle(format)?;
         }
         let py = class.py();
-        let contacts: Vec<Contact> = texts.iter().map(|text| contact_of(text)).collect::<PyResult<_>>()?;
-        let mut models = ContactModels::new(contacts).map_err(refused_plainly::<ModelError>)?;
-        for (name, values) in values {
-            let parameter = ContactParameter::ALL.into_iter().find(|parameter| parameter.name() == name);
-            let parameter = parameter.ok_or_else(|| {
-                refused_plainly::<ModelError>(format!("expected a parameter of contacts, found {name:?}"))
-            })?;
-            models = models.with(parameter, &numbers(&values.joined(py)?)?).map_err(refused_plainly::<ModelError>)?;
-        }
+        let values = values.into_iter().map(|(name, values)| Ok((name, numbers(&values.joined(py)?)?)));
+        let models = models_kept(&texts, values.collect::<PyResult<_>>()?)?;
         let states = states.joined(py)?;
         let states = if format == PICKLE { rows_of(&states)? } else { numbers(&states)? };
         let count = states.len() / models.rows();
@@ -614,30 +537,4 @@ shown! {
     fn __repr__(&self) -> String {
         format!("<palpate.ContactStates: {} contacts>", self.count)
     }
-}
-
-/// Doubles out of a pickle.
-fn numbers(bytes: &[u8]) -> PyResult<Vec<f64>> {
-    let (parts, rest) = bytes.as_chunks::<8>();
-    match rest.is_empty() {
-        true => Ok(parts.iter().map(|part| f64::from_le_bytes(*part)).collect()),
-        false => Err(refused_plainly::<ModelError>(format!("expected numbers of 8 bytes, found {} more", rest.len()))),
-    }
-}
-
-/// States out of a pickle of format 4, one behind the other, as rows.
-fn rows_of(bytes: &[u8]) -> PyResult<Vec<f64>> {
-    let (parts, rest) = bytes.as_chunks::<{ State::BYTES }>();
-    if !rest.is_empty() {
-        let message = format!("expected states of {} bytes, found {} more", State::BYTES, rest.len());
-        return Err(refused_plainly::<ModelError>(message));
-    }
-    let mut rows = vec![0.0; 2 * parts.len()];
-    let (jaws, behinds) = rows.split_at_mut(parts.len());
-    for ((part, jaw), behind) in parts.iter().zip(jaws).zip(behinds) {
-        State::from_bytes(*part).map_err(refused_plainly::<ModelError>)?;
-        let numbers = numbers(&part[State::BYTES - 16..])?;
-        (*jaw, *behind) = (numbers[0], numbers[1]);
-    }
-    Ok(rows)
 }

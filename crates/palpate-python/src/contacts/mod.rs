@@ -8,4 +8,5 @@ pub(crate) mod numbers;
 mod protocol;
 pub(crate) mod simulate;
 pub(crate) mod simulate_many;
+mod states_made;
 pub(crate) mod sweep;

@@ -37,13 +37,11 @@ pub struct Prediction {
 }
 
 checked_when_read!(Prediction, "a standard error for each sample", |found: &Prediction| {
-    let count = found.trajectory.len();
-    let are_complete = |errors: &Option<Vec<f64>>| errors.as_ref().is_none_or(|errors| errors.len() == count);
-    let reach = |widths: &Option<Vec<(f64, f64)>>| widths.as_ref().is_none_or(|widths| widths.len() == count);
-    are_complete(&found.force_standard_error)
-        && are_complete(&found.displacement_standard_error)
-        && reach(&found.force_half_widths)
-        && reach(&found.displacement_half_widths)
+    let errors =
+        [&found.force_standard_error, &found.displacement_standard_error].map(|errors| errors.as_ref().map(Vec::len));
+    let widths =
+        [&found.force_half_widths, &found.displacement_half_widths].map(|widths| widths.as_ref().map(Vec::len));
+    errors.into_iter().chain(widths).flatten().all(|count| count == found.trajectory.len())
 });
 
 impl Prediction {

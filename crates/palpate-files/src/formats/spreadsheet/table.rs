@@ -130,25 +130,27 @@ fn table(sample: &Sample, places: &[u32], named: &mut Named, options: &ReadOptio
         places.iter().map(|&place| row.value(place).map_or(Cell::Empty, Value::class)).collect()
     };
     let classes: Vec<Vec<Cell>> = rows.iter().map(class).collect();
-    let mut below = |from: usize| table_below(&rows, (from, &classes[from..]), places, named, options);
-    let first = below(0);
+    let block = block::of_rows(classes.clone())?;
+    let numbers = block.first;
+    let first = table_below(&rows, (0, block), places, named, options);
     if options.header.is_some() || first.as_ref().is_some_and(Table::names_time) {
         return first;
     }
-    let numbers = block::of_rows(classes.clone())?.first;
     let headings = (numbers..classes.len()).filter(|index| RowKind::is_heading(&classes[*index])).take(MOST_RESULTS);
-    headings.filter_map(below).find(Table::names_time).or(first)
+    let mut below = headings.filter_map(|from| {
+        table_below(&rows, (from, block::of_rows(classes[from..].to_vec())?), places, named, options)
+    });
+    below.find(Table::names_time).or(first)
 }
 
-/// The table in the rows from one on, which have cells of these classes.
+/// The table of this block, which begins with one of the rows.
 fn table_below(
     rows: &[&Row],
-    (from, classes): (usize, &[Vec<Cell>]),
+    (from, mut block): (usize, block::Block),
     places: &[u32],
     named: &mut Named,
     options: &ReadOptions,
 ) -> Option<Table> {
-    let mut block = block::of_rows(classes.to_vec())?;
     let texts = |index: usize, _: &block::Block| -> Vec<String> {
         places
             .iter()

@@ -160,7 +160,7 @@ fn creeps(
         };
         let rest = Level { start, ..*level };
         // How long the force takes to leave its level is no hold.
-        let is_long = rest.end - rest.start >= found.settings.minimum_samples.max((level.end - level.start) / 20);
+        let is_long = rest.end - rest.start >= found.settings.minimum_samples.max(level.slack());
         if is_long
             && !still.iter().any(|still| overlap(still, &rest))
             && takes_over(record, &rest, still)
@@ -274,7 +274,7 @@ fn arrives(record: &Record, level: &Level, jaw: &SegmentSettings) -> bool {
 
 /// Whether the machine goes over from holding the jaw to holding the force that it has just then: the jaw stood, and creeps from there on.
 fn takes_over(record: &Record, level: &Level, still: &[Level]) -> bool {
-    let slack = ((level.end - level.start) / 20).max(3);
+    let slack = level.slack().max(3);
     let stood = still
         .iter()
         .any(|still| still.end.abs_diff(level.start) <= slack && still.end > still.start + slack);
@@ -286,7 +286,7 @@ fn rests_late(record: &Record, still: &Level, level: &Level) -> bool {
     let outside = still.end <= level.start || still.start >= level.end;
     // Of a standstill that is longer after the force was let go than before, the jaw is held.
     let is_its_end = 2 * still.end <= 2 * level.end + (still.end - still.start);
-    let late = is_its_end && still.end + (level.end - level.start) / 20 >= level.end;
+    let late = is_its_end && still.end + level.slack() >= level.end;
     // A ramp that is slow enough keeps the force, too, but it does not slow down before it stops.
     let creep = Level {
         end: still.start,
@@ -302,8 +302,7 @@ fn turns_back(record: &Record, inside: &[&Level], level: &Level) -> bool {
     let [still] = inside else {
         return false;
     };
-    let slack = (level.end - level.start) / 20;
-    let is_early = still.start + slack >= level.start && still.end <= level.start.midpoint(level.end);
+    let is_early = still.start + level.slack() >= level.start && still.end <= level.start.midpoint(level.end);
     is_early && mode_at_large(record, still.end, level.end) == HoldMode::ForceHeld
 }
 

@@ -252,4 +252,9 @@ impl Level {
         let value = median(&mut values[start..end].to_vec());
         Self { start, end, value }
     }
+
+    /// Samples by which edges of two columns that belong together may lie apart: a twentieth of the level.
+    pub(in crate::segment) fn slack(&self) -> usize {
+        (self.end - self.start) / 20
+    }
 }
