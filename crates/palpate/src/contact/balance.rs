@@ -15,7 +15,10 @@ impl Layer {
     /// Strain of the layer at contact displacement `u` (m), and its slope (1/m).
     fn strain(self, u: f64, depth: f64) -> (f64, f64) {
         match self {
-            Self::Behind { behind, thickness } => ((u - behind) / thickness, 1.0 / thickness),
+            Self::Behind { behind, thickness } => {
+                let per_thickness = 1.0 / thickness;
+                ((u - behind) * per_thickness, per_thickness)
+            }
             Self::Excess(excess) => (excess + u / depth, 1.0 / depth),
         }
     }

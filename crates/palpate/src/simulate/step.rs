@@ -150,8 +150,8 @@ impl ContactState {
     /// Current contact force, N; zero while the jaw is off.
     #[must_use]
     pub fn force(&self, model: &ContactModel) -> f64 {
-        // A quotient, as in the solution for a displacement, so that `step_force` finds again the force that it reached.
-        let strain = (self.jaw - self.behind) / model.layers.thickness(model.specimen.depth());
+        // The same product as in the solution for a displacement, so that `step_force` finds again the force that it reached.
+        let strain = (self.jaw - self.behind) * (1.0 / model.layers.thickness(model.specimen.depth()));
         match model.separation {
             Separation::Unilateral if strain <= 0.0 => 0.0,
             _ => model.specimen.force(strain, self.jaw),
@@ -219,7 +219,7 @@ impl ContactState {
         let thickness = model.layers.thickness(depth);
         // A tick waits for the one before it, and many contacts share one divider: products are ready sooner than quotients.
         let per_depth = 1.0 / depth;
-        let kick = 0.5 * (model.layers.drive(to - self.jaw, 1.0) * per_depth);
+        let kick = (to - self.jaw) * (0.5 * (model.layers.drive(1.0, 1.0) * per_depth));
         let excess = (self.jaw - self.behind) * (1.0 / thickness) - self.jaw * per_depth;
         let excess = model.law.excess_after(excess + kick, dt) + kick;
         Self {

@@ -32,10 +32,10 @@ impl ContactState {
             return 0.0;
         }
         let specimen = &model.specimen;
-        let thickness = model.layers.thickness(specimen.depth());
+        let per_thickness = 1.0 / model.layers.thickness(specimen.depth());
         let (stiffness, growth) = specimen.stiffness(self.jaw);
-        let strain = (self.jaw - self.behind) / thickness;
-        specimen.contact_displacement(1.0) * (stiffness / thickness + growth * strain)
+        let strain = (self.jaw - self.behind) * per_thickness;
+        specimen.contact_displacement(1.0) * (stiffness * per_thickness + growth * strain)
     }
 
     /// Excess strain x = ε₁ − u₁/depth of the contact layer: what drives the law.
@@ -55,7 +55,7 @@ impl ContactState {
     #[must_use]
     pub fn excess_strain(&self, model: &ContactModel) -> f64 {
         let depth = model.specimen.depth();
-        let strain = (self.jaw - self.behind) / model.layers.thickness(depth);
+        let strain = (self.jaw - self.behind) * (1.0 / model.layers.thickness(depth));
         match model.separation {
             Separation::Unilateral if strain < 0.0 => -self.behind / depth,
             _ => strain - self.jaw / depth,

@@ -39,20 +39,6 @@ pub(crate) fn accelerated<R>(work: impl FnOnce() -> R) -> R {
     dispatch!(level(), _simd => work())
 }
 
-/// As [`accelerated`], in vectors of four where there are eight: quotients and roots are no faster in wider ones, and a step of contacts took
-/// 1.8 times as long in vectors of eight (AMD EPYC with AVX-512).
-#[inline(always)]
-pub(crate) fn accelerated_by_four<R>(work: impl FnOnce() -> R) -> R {
-    #[cfg(target_arch = "x86_64")]
-    let level = {
-        use fearless_simd::Simd;
-        level().as_avx2().map_or_else(level, Simd::level)
-    };
-    #[cfg(not(target_arch = "x86_64"))]
-    let level = level();
-    dispatch!(level, _simd => work())
-}
-
 #[cfg(not(test))]
 #[inline(always)]
 pub(crate) fn level() -> Level {

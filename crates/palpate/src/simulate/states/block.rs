@@ -8,12 +8,17 @@ use crate::vector::LANES;
 use crate::vector::elementary::{exp, ln, ln_1p};
 
 /// The bodies of contacts side by side: E ε A(u) of a ball, a pad or a prism, and where others begin that are stepped alone.
+///
+/// Numbers begin at a cache line: a load of eight that crosses one takes twice as long.
 #[derive(Debug, Clone, PartialEq)]
+#[repr(align(64))]
 pub(super) struct Bodies {
     /// Share of the displacement that is one contact's.
     pub(super) share: Lanes,
     pub(super) per_depth: Lanes,
     pub(super) depth: Lanes,
+    /// [`FARTHEST`] depths.
+    far: Lanes,
     pub(super) modulus: Lanes,
     /// Twice the radius of a ball or a pad, 0 of another body.
     pub(super) diameter: Lanes,
@@ -51,6 +56,7 @@ impl Bodies {
             share: of_each(&|specimen, _| specimen.contact_displacement(1.0)),
             per_depth: of_each(&|specimen, _| 1.0 / specimen.depth()),
             depth: of_each(&|specimen, _| specimen.depth()),
+            far: of_each(&|specimen, _| FARTHEST * specimen.depth()),
             modulus: of_each(&|specimen, _| specimen.modulus()),
             diameter: of_each(&|specimen, _| match specimen.shape() {
                 Shape::Ball { radius } | Shape::Pad { radius, .. } => 2.0 * radius,
@@ -94,7 +100,7 @@ impl Bodies {
     /// Whether the sum of some distances is below [`FARTHEST`], and a number.
     #[inline(always)]
     pub(super) fn is_near(&self, lane: usize, distances: f64) -> bool {
-        distances < FARTHEST * self.depth[lane]
+        distances < self.far[lane]
     }
 
     /// Whether contacts take a step in equal parts, as far as their places and the time tell.
@@ -161,6 +167,8 @@ pub(super) struct Block {
     per_thickness: Lanes,
     /// m
     layers: Lanes,
+    /// Half of the excess strain that a displacement brings, 1/m.
+    half_drive: Lanes,
 }
 
 /// Contacts after a step.
@@ -196,6 +204,7 @@ impl Block {
             thickness: of_each(&|model| model.layers.thickness(model.specimen.depth())),
             per_thickness: of_each(&|model| 1.0 / model.layers.thickness(model.specimen.depth())),
             layers: of_each(&|model| model.layers.count()),
+            half_drive: of_each(&|model| 0.5 * (model.layers.drive(1.0, 1.0) * (1.0 / model.specimen.depth()))),
         }
     }
 
@@ -207,16 +216,16 @@ impl Block {
         block: impl Fn(usize) -> &'a Self,
         power: Power,
         (jaws, behinds, forces): (&mut [Lanes], &mut [Lanes], &mut [Lanes]),
-        (dt, to): (Column<'_>, Column<'_>),
+        steps: impl Iterator<Item = (Lanes, Lanes)>,
         parts: u32,
     ) -> usize {
-        let (count, dt, to) = (jaws.len(), dt.rows(), to.rows());
-        for (index, ((jaw, behind), force)) in jaws.iter_mut().zip(behinds).zip(forces).enumerate() {
+        let count = jaws.len();
+        for (index, (((jaw, behind), force), step)) in jaws.iter_mut().zip(behinds).zip(forces).zip(steps).enumerate() {
             let block = block(index);
             if block.power != power {
                 return index;
             }
-            let moved = block.moved(power, (*jaw, *behind), (dt.block(index), to.block(index)), parts);
+            let moved = block.moved(power, (*jaw, *behind), step, parts);
             if !moved.is_right {
                 return index;
             }
@@ -310,13 +319,15 @@ impl Block {
         let mut is_right = true;
         for lane in 0..LANES {
             let (from, held, u) = (jaw[lane], behind[lane], to[lane]);
-            let (per_depth, thickness, hold) = (bodies.per_depth[lane], self.thickness[lane], bodies.hold[lane]);
-            let kick = 0.5 * ((u - from) * (self.layers[lane] - 1.0) * per_depth);
-            let excess = (from - held) * self.per_thickness[lane] - from * per_depth + kick;
+            let (per_depth, hold) = (bodies.per_depth[lane], bodies.hold[lane]);
+            let (thickness, per_thickness) = (self.thickness[lane], self.per_thickness[lane]);
+            let kick = (u - from) * self.half_drive[lane];
+            let gap = from - held;
+            let excess = gap * per_thickness - from * per_depth + kick;
             let excess = self.relaxed(power, lane, excess, dt[lane]) + kick;
             let node = u - thickness * (excess + u * per_depth);
-            let strain = (u - node) / thickness;
-            let is_closed = (from + hold >= held) & (u + hold >= node);
+            let strain = (u - node) * per_thickness;
+            let is_closed = (gap >= -hold) & (u - node >= -hold);
             let is_near = bodies.is_near(lane, from.abs() + held.abs()) & bodies.fits(lane, u);
             // The force is finite where all of this is: bodies and layers beyond all measure are stepped alone. At no strain it is 0.
             let is_fine = is_closed & is_near & is_step(dt[lane]);
@@ -340,11 +351,12 @@ impl Block {
         let bodies = &self.bodies;
         let (mut forces, mut slopes) = ([0.0; LANES], [0.0; LANES]);
         for lane in 0..LANES {
-            let strain = (jaw[lane] - behind[lane]) / self.thickness[lane];
+            let per_thickness = self.per_thickness[lane];
+            let strain = (jaw[lane] - behind[lane]) * per_thickness;
             let (area, growth) = bodies.area(lane, jaw[lane]);
             let growth = if jaw[lane] < 0.0 { 0.0 } else { bodies.modulus[lane] * growth };
             let force = bodies.modulus[lane] * strain * area;
-            let slope = bodies.share[lane] * (bodies.modulus[lane] * area / self.thickness[lane] + growth * strain);
+            let slope = bodies.share[lane] * (bodies.modulus[lane] * area * per_thickness + growth * strain);
             let (bonded, is_off) = (bodies.hold[lane] > 0.0, jaw[lane] < behind[lane]);
             forces[lane] = if strain <= 0.0 && !bonded { 0.0 } else { force };
             slopes[lane] = if is_off && !bonded { 0.0 } else { slope };

@@ -55,8 +55,16 @@ impl<'a> Column<'a> {
         }
     }
 
-    pub(super) fn is_shared(&self) -> bool {
-        self.each.is_none()
+    /// The value of all, if they have none of their own.
+    #[inline(always)]
+    pub(super) fn shared(&self) -> Option<Lanes> {
+        self.each.is_none().then_some(self.shared)
+    }
+
+    /// The values of each, if they have their own, in complete blocks.
+    #[inline(always)]
+    pub(super) fn each(&self) -> Option<&'a [Lanes]> {
+        self.each.map(|each| each.as_chunks().0)
     }
 
     /// Of the contacts from `from` on; the last of them also in place of those that are not there.

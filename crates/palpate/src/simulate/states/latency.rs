@@ -11,7 +11,7 @@ use super::parameters::{ContactParameter, Parameters, Value, ValueProblem, of_mo
 use super::part::{ContactsStep, Imposed, OneStepError, Part, Refusal};
 use crate::latency::lanes::{Power, by_power};
 use crate::simulate::{ContactModel, ContactState};
-use crate::vector::{LANES, accelerated_by_four};
+use crate::vector::{LANES, accelerated};
 
 /// Contacts of the latency law.
 #[derive(Debug, Clone, PartialEq)]
@@ -90,7 +90,7 @@ impl LatencyModels {
 
     /// Why the first contact cannot take a step of its displacement, if one cannot.
     pub(super) fn check(&self, part: &Part<'_>, step: &ContactsStep<'_>) -> Result<(), OneStepError> {
-        accelerated_by_four(
+        accelerated(
             #[inline(always)]
             || self.checked(part, step),
         )
@@ -159,7 +159,7 @@ impl LatencyModels {
     /// Steps the contacts of a part; returns how many failed.
     pub(super) fn step(&self, part: Part<'_>, step: &ContactsStep<'_>) -> Result<usize, OneStepError> {
         match step.imposed {
-            Imposed::Displacement => accelerated_by_four(
+            Imposed::Displacement => accelerated(
                 #[inline(always)]
                 || self.step_displacement(part, step),
             ),
@@ -190,15 +190,23 @@ impl LatencyModels {
         let from = part.from + at;
         let rows = (jaw[at..].as_chunks_mut().0, behind[at..].as_chunks_mut().0, part.results[at..].as_chunks_mut().0);
         let columns = (Column::new(step.dt).from(from), Column::new(step.to).from(from));
+        let (dt, to) = (columns.0.rows(), columns.1.rows());
+        let steps = (0..).map(
+            #[inline(always)]
+            |index| (dt.block(index), to.block(index)),
+        );
         let blocks = if self.blocks.len() == 1 { &self.blocks[..] } else { &self.blocks[from / LANES..] };
         let is_one = blocks.len() == 1;
-        // One part is a loop of its own, and so is one block.
-        by_power!(blocks[0].power, power => match (step.parts(), is_one) {
-            (1, true) => Block::moved_in_row(#[inline(always)] |_| &blocks[0], power, rows, columns, 1),
-            (1, false) => Block::moved_in_row(#[inline(always)] |index| &blocks[index], power, rows, columns, 1),
-            (parts, _) => {
+        // One part is a loop of its own, and so is one block with one time step.
+        by_power!(blocks[0].power, power => match (step.parts(), is_one, columns.0.shared(), columns.1.each()) {
+            (1, true, Some(dt), Some(to)) => {
+                let steps = to.iter().map(#[inline(always)] |to| (dt, *to));
+                Block::moved_in_row(#[inline(always)] |_| &blocks[0], power, rows, steps, 1)
+            }
+            (1, false, ..) => Block::moved_in_row(#[inline(always)] |index| &blocks[index], power, rows, steps, 1),
+            (parts, ..) => {
                 let block = |index: usize| &blocks[if is_one { 0 } else { index }];
-                Block::moved_in_row(block, power, rows, columns, parts)
+                Block::moved_in_row(block, power, rows, steps, parts)
             }
         })
     }
@@ -212,8 +220,11 @@ impl LatencyModels {
         let (from, end) = (part.from + at, part.failed.len().min(at + LANES));
         let (dt, to) = (Column::new(step.dt).lanes(from), Column::new(step.to).lanes(from));
         let (block, before) = (self.block(from), (lanes(jaw, at), lanes(behind, at)));
-        let moved = by_power!(block.power, power => block.moved_or_freed(power, before, (dt, to), step.parts()));
-        let (moved, failures) = self.alone(from, before, step, moved, &mut part.failed[at..end])?;
+        let mut moved = by_power!(block.power, power => block.moved_or_freed(power, before, (dt, to), step.parts()));
+        let failures = match moved.is_right {
+            true => 0,
+            false => self.alone(from, before, step, &mut moved, &mut part.failed[at..end])?,
+        };
         store(jaw, at, &moved.jaw);
         store(behind, at, &moved.behind);
         store(part.results, at, &moved.force);
@@ -227,9 +238,9 @@ impl LatencyModels {
         from: usize,
         (jaw, behind): (Lanes, Lanes),
         step: &ContactsStep<'_>,
-        mut moved: Moved,
+        moved: &mut Moved,
         failed: &mut [bool],
-    ) -> Result<(Moved, usize), OneStepError> {
+    ) -> Result<usize, OneStepError> {
         let mut failures = 0;
         for (lane, failed) in failed.iter_mut().enumerate().filter(|(lane, _)| moved.wrong[*lane]) {
             let (index, before) = (
@@ -250,7 +261,7 @@ impl LatencyModels {
             };
             (moved.jaw[lane], moved.behind[lane], moved.force[lane]) = (state.jaw, state.behind, force);
         }
-        Ok((moved, failures))
+        Ok(failures)
     }
 
     fn step_force(&self, part: Part<'_>, step: &ContactsStep<'_>) -> Result<usize, OneStepError> {
@@ -286,7 +297,7 @@ impl LatencyModels {
         state: (&[f64], &[f64]),
         (forces, slopes): (&mut [f64], &mut [f64]),
     ) {
-        accelerated_by_four(
+        accelerated(
             #[inline(always)]
             || {
                 for at in (0..forces.len()).step_by(LANES) {

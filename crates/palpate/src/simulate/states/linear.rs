@@ -14,7 +14,7 @@ use super::part::{ContactsStep, Imposed, OneStepError, Part, Refusal};
 use crate::simulate::linear::{LinearStepper, Memories};
 use crate::simulate::step::check_step;
 use crate::simulate::{LinearContact, StepError};
-use crate::vector::{LANES, accelerated_by_four};
+use crate::vector::{LANES, accelerated};
 
 /// Contacts of linear laws.
 #[derive(Debug, Clone, PartialEq)]
@@ -115,7 +115,7 @@ impl LinearModels {
     pub(super) fn step(&self, mut part: Part<'_>, step: &ContactsStep<'_>) -> Result<usize, OneStepError> {
         part.failed.fill(false);
         match step.imposed {
-            Imposed::Displacement => accelerated_by_four(
+            Imposed::Displacement => accelerated(
                 #[inline(always)]
                 || self.step_displacement(&mut part, step),
             ),
@@ -131,7 +131,7 @@ impl LinearModels {
         let (count, mut failures) = (part.results.len(), 0);
         let (dt, to) = (Column::new(step.dt), Column::new(step.to));
         let (mut fadings, mut memory) = (Fadings::new(), SmallVec::<[Lanes; 8]>::new());
-        let is_shared = self.steppers.len() == 1 && dt.is_shared();
+        let is_shared = self.steppers.len() == 1 && dt.shared().is_some();
         for at in (0..count).step_by(LANES) {
             let from = part.from + at;
             let (shared, to) = (self.block(from), to.lanes(from));

@@ -2,6 +2,8 @@
 
 use std::ops::Range;
 
+use smallvec::SmallVec;
+
 use super::latency::LatencyModels;
 use super::linear::LinearModels;
 use super::parameters::{ContactModelsError, ContactParameter, Parameters};
@@ -43,6 +45,9 @@ pub struct ContactModels {
     /// Whether a displacement that passes the checks may still fail.
     is_extreme: bool,
 }
+
+/// Numbers of states that are copied sooner than they are checked.
+const FEW: usize = 32;
 
 #[derive(Debug, Clone, PartialEq)]
 pub(super) enum Law {
@@ -230,11 +235,11 @@ impl ContactModels {
         results: &mut [f64],
         failed: &mut [bool],
     ) -> Result<usize, OneStepError> {
-        let mut kept = None;
+        let mut kept: Option<SmallVec<[f64; FEW]>> = None;
         if step.refusal == Refusal::All {
-            if step.imposed == Imposed::Force || self.is_extreme {
-                // What cannot be known beforehand.
-                kept = Some(states.to_vec());
+            if states.len() <= FEW || step.imposed == Imposed::Force || self.is_extreme {
+                // Sooner than a check, or what cannot be known beforehand.
+                kept = Some(SmallVec::from_slice(states));
             } else {
                 self.check(states, step, results, failed)?;
             }

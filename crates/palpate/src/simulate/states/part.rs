@@ -104,7 +104,7 @@ impl<'a> Part<'a> {
 }
 
 /// Contacts that one core steps at once where there are several.
-const AT_ONCE: usize = 8192;
+const AT_ONCE: usize = 32768;
 
 /// The same where they are stepped one by one.
 const ALONE_AT_ONCE: usize = 256;
