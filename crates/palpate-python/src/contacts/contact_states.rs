@@ -1,15 +1,15 @@
 //! Contacts that are moved side by side, their states in an array of Python's.
 
-use std::fmt::Display;
 use std::io::Write;
 
-use numpy::{PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray2, PyReadwriteArray2, PyUntypedArrayMethods};
+use numpy::{PyArray1, PyArray2, PyArrayMethods};
 use palpate::simulate::{ContactModels, ContactParameter, ContactQuantity, ContactsStep, Imposed, Refusal};
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyType};
 
 use super::columns::{Values, marks, results};
 use super::states_made::{MOST, models_given, models_kept, numbers, rows_of};
+use super::states_memory::Memory;
 use crate::arrays::AT_ONCE;
 use crate::errors::{ModelError, OptionError, PalpateError, one_of, refused_plainly};
 use crate::pickles::{Made, PICKLE, Piece, Pieces, check_pickle, in_pieces};
@@ -67,8 +67,7 @@ use crate::work::{briefly, in_parallel};
 pub(crate) struct ContactStates {
     models: ContactModels,
     count: usize,
-    /// A row for each number of a state, a column for each contact; Python may have changed what it is, so that it is looked at again.
-    states: Py<PyAny>,
+    states: Memory,
     failed: Vec<bool>,
     /// The description of all, or one each, so that they can be sent elsewhere.
     texts: Vec<String>,
@@ -94,9 +93,9 @@ struct Request<'a, 'py> {
 }
 
 impl ContactStates {
-    fn new_of(py: Python<'_>, models: ContactModels, count: usize, texts: Vec<String>) -> Self {
+    fn new_of(models: ContactModels, count: usize, texts: Vec<String>, states: Vec<f64>) -> Self {
         Self {
-            states: PyArray2::<f64>::zeros(py, [models.rows(), count], false).into_any().unbind(),
+            states: Memory::Own(states),
             failed: vec![false; count],
             models,
             count,
@@ -104,30 +103,16 @@ impl ContactStates {
         }
     }
 
-    /// The states, if they are still what they were made as.
-    fn checked<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
-        let shape = [self.models.rows(), self.count];
-        match self.states.bind(py).cast::<PyArray2<f64>>() {
-            Ok(array) if array.shape() == shape && array.is_c_contiguous() => Ok(array.clone()),
-            _ => {
-                let message = format!("state: expected its base to be an array of {shape:?} doubles, found it changed");
-                Err(refused_plainly::<OptionError>(message))
-            }
-        }
-    }
-
-    fn states<'py>(&self, py: Python<'py>) -> PyResult<PyReadonlyArray2<'py, f64>> {
-        self.checked(py)?.try_readonly().map_err(in_use)
-    }
-
-    fn states_mut<'py>(&self, py: Python<'py>) -> PyResult<PyReadwriteArray2<'py, f64>> {
-        self.checked(py)?.try_readwrite().map_err(in_use)
+    /// Numbers of a state, and contacts.
+    fn shape(&self) -> [usize; 2] {
+        [self.models.rows(), self.count]
     }
 
     /// Steps all contacts; with errors="raise" all or none.
     fn stepped<'py>(&mut self, py: Python<'py>, request: &Request<'_, 'py>) -> PyResult<Bound<'py, PyArray1<f64>>> {
         let (substeps, refusal) = (substeps_of(request.substeps)?, refusal_of(request.errors)?);
-        let mut states = self.states_mut(py)?;
+        let shape = self.shape();
+        let mut states = self.states.write(py, shape)?;
         let dt = Values::new(request.dt_s, "dt_s", self.count)?;
         let to = Values::new(request.to.0, request.to.1, self.count)?;
         let (array, mut results) = results(py, request.out, self.count)?;
@@ -138,14 +123,15 @@ impl ContactStates {
             substeps,
             refusal,
         };
-        let (states, results) = (states.as_slice_mut()?, results.as_slice_mut()?);
+        let (states, results) = (states.slice()?, results.as_slice_mut()?);
+        let (models, failed) = (&self.models, &mut self.failed[..]);
         let each = if request.imposed == Imposed::Force { FORCE } else { 1 };
         let work = self.count.saturating_mul(substeps as usize).saturating_mul(each);
         if work > BRIEF {
-            self.at_length(py, (states, results), &step, (BRIEF / each / substeps as usize).max(8))?;
+            let at_once = (BRIEF / each / substeps as usize).max(8);
+            Self::at_length(py, models, (states, results, failed), &step, at_once)?;
             return Ok(array);
         }
-        let (models, failed) = (&self.models, &mut self.failed);
         let mut advance = || models.step(states, &step, results, failed);
         let stepped = match work > TINY {
             false => advance(),
@@ -160,9 +146,9 @@ impl ContactStates {
 
     /// Steps so many contacts that Ctrl-C is looked for in between; an exception leaves all states as they were.
     fn at_length(
-        &mut self,
         py: Python<'_>,
-        (states, results): (&mut [f64], &mut [f64]),
+        models: &ContactModels,
+        (states, results, failed): (&mut [f64], &mut [f64], &mut [bool]),
         step: &ContactsStep<'_>,
         at_once: usize,
     ) -> PyResult<()> {
@@ -172,10 +158,9 @@ impl ContactStates {
             kept.extend_from_slice(some);
         }
         let at_once = at_once.next_multiple_of(8);
-        for from in (0..self.count).step_by(at_once) {
-            let range = from..self.count.min(from + at_once);
-            let (models, failed) = (&self.models, &mut self.failed);
-            let (states, results) = (&mut *states, &mut *results);
+        for from in (0..results.len()).step_by(at_once) {
+            let range = from..results.len().min(from + at_once);
+            let (states, results, failed) = (&mut *states, &mut *results, &mut *failed);
             let stepped = py.check_signals().and_then(|()| {
                 let advance = || models.step_range(range, states, step, results, failed);
                 let stepped = briefly(py, || in_parallel(advance))?.map_err(refused_plainly::<PalpateError>)?;
@@ -191,8 +176,8 @@ impl ContactStates {
 
     /// What all contacts show.
     fn shown<'py>(&self, py: Python<'py>, quantity: ContactQuantity) -> PyResult<Bound<'py, PyArray1<f64>>> {
-        let states = self.states(py)?;
-        let states = states.as_slice()?;
+        let states = self.states.read(py, self.shape())?;
+        let states = states.slice()?;
         let mut all = vec![0.0; self.count];
         for (index, some) in all.chunks_mut(AT_ONCE).enumerate() {
             py.check_signals()?;
@@ -210,20 +195,11 @@ impl ContactStates {
         Ok(Self {
             models: self.models.clone(),
             count: self.count,
-            states: self.states.bind(py).call_method0("copy")?.unbind(),
+            states: Memory::Own(self.states.read(py, self.shape())?.slice()?.to_vec()),
             failed: self.failed.clone(),
             texts: self.texts.clone(),
         })
     }
-
-    /// The states as an array with a row for each contact, which writes to them.
-    fn view<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
-        self.states.bind(py).call_method0("transpose")
-    }
-}
-
-fn in_use(error: impl Display) -> PyErr {
-    refused_plainly::<OptionError>(format!("state: expected states that nobody uses, found: {error}"))
 }
 
 /// A number of equal parts.
@@ -263,10 +239,6 @@ shown! {
         },
         /// Which contacts kept their state in the last step with ``errors="mask"``.
         failed<'py>(py): Bound<'py, PyArray1<bool>> = PyArray1::from_slice(py, &self.failed),
-        /// The states, a row each, in place: what is written there is the state. Columns are one contact's share of the displacement of the
-        /// jaw, m, and, of the latency law, the displacement of the node behind the contact layer, m; of a linear law the excess of every
-        /// term, by rising rate, in strain, or in N where its memory is of force. Zeros are an untouched contact.
-        state<'py>(py): PyResult<Bound<'py, PyAny>> = self.view(py),
     }
 
     #[new]
@@ -290,11 +262,21 @@ shown! {
             (ContactParameter::LayerThickness, layer_thickness_m),
         ];
         let (models, count, texts) = models_given(model, count, &given)?;
-        Ok(Self::new_of(model.py(), models, count, texts))
+        let states = vec![0.0; models.rows() * count];
+        Ok(Self::new_of(models, count, texts, states))
+    }
+
+    /// The states, a row each, in place: what is written there is the state. Columns are one contact's share of the displacement of the
+    /// jaw, m, and, of the latency law, the displacement of the node behind the contact layer, m; of a linear law the excess of every
+    /// term, by rising rate, in strain, or in N where its memory is of force. Zeros are an untouched contact.
+    #[getter]
+    fn state<'py>(&mut self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        let shape = self.shape();
+        self.states.array(py, shape)?.call_method0("transpose")
     }
 
     #[setter]
-    fn set_state(&self, py: Python<'_>, state: &Bound<'_, PyAny>) -> PyResult<()> {
+    fn set_state(&mut self, py: Python<'_>, state: &Bound<'_, PyAny>) -> PyResult<()> {
         let numpy = py.import("numpy")?;
         let shape = [self.count, self.models.rows()];
         let refused = |found: String| {
@@ -312,7 +294,8 @@ shown! {
         let new = new.try_readonly().map_err(refused_plainly::<OptionError>)?;
         let new = new.as_slice()?;
         self.models.check_states(new, self.count).map_err(refused_plainly::<ModelError>)?;
-        self.states_mut(py)?.as_slice_mut()?.copy_from_slice(new);
+        let shape = self.shape();
+        self.states.write(py, shape)?.slice()?.copy_from_slice(new);
         Ok(())
     }
 
@@ -441,7 +424,8 @@ shown! {
             (ContactParameter::LayerThickness, layer_thickness_m),
         ];
         let mask = mask.map(|mask| marks(mask, self.count)).transpose()?;
-        let mut states = self.states_mut(py)?;
+        let shape = self.shape();
+        let mut states = self.states.write(py, shape)?;
         let mut values = Vec::new();
         for (parameter, given) in given {
             if let Some(given) = given {
@@ -456,7 +440,7 @@ shown! {
             };
             replaced.map_err(refused_plainly::<ModelError>)?;
         }
-        self.models.reset(states.as_slice_mut()?, self.count, mask.as_deref());
+        self.models.reset(states.slice()?, self.count, mask.as_deref());
         Ok(())
     }
 
@@ -472,8 +456,8 @@ shown! {
         if self.states.is(&other.states) {
             return Ok(true);
         }
-        let (one, other) = (self.states(py)?, other.states(py)?);
-        Ok(one.as_slice()? == other.as_slice()?)
+        let (one, other) = (self.states.read(py, self.shape())?, other.states.read(py, other.shape())?);
+        Ok(one.slice()? == other.slice()?)
     }
 
     fn __copy__(&self, py: Python<'_>) -> PyResult<Self> {
@@ -514,9 +498,7 @@ shown! {
             return Err(refused_plainly::<ModelError>(message));
         }
         briefly(py, || models.check_states(&states, count))?.map_err(refused_plainly::<ModelError>)?;
-        let made = Self::new_of(py, models, count, texts);
-        made.states_mut(py)?.as_slice_mut()?.copy_from_slice(&states);
-        Ok(made)
+        Ok(Self::new_of(models, count, texts, states))
     }
 
     #[expect(clippy::type_complexity, reason = "what pickle asks for")]
@@ -527,7 +509,7 @@ shown! {
         let written = |numbers: &[f64]| {
             in_pieces(py, |out| numbers.iter().try_for_each(|number| out.write_all(&number.to_le_bytes())))
         };
-        let states = written(self.states(py)?.as_slice()?)?;
+        let states = written(self.states.read(py, self.shape())?.slice()?)?;
         let values = self.models.parameters().map(|(parameter, values)| Ok((parameter.name().to_owned(), written(values)?)));
         let values = values.collect::<PyResult<Vec<_>>>()?;
         let make = py.get_type::<Self>().getattr("_from_parts")?;

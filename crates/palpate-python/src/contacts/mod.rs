@@ -9,4 +9,5 @@ mod protocol;
 pub(crate) mod simulate;
 pub(crate) mod simulate_many;
 mod states_made;
+mod states_memory;
 pub(crate) mod sweep;
