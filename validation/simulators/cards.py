@@ -75,8 +75,10 @@ def drake_forces(card: palpate.Card, depths_m: np.ndarray, speed_m_per_s: float,
     context = diagram.CreateDefaultContext()
     own = plant.GetMyMutableContextFromRoot(context)
     root = ET.fromstring(card.text)
-    radius, size = root.find(".//radius"), root.find(".//size")
-    half = float(radius.text or "nan") if radius is not None else 0.5 * float((size.text or "nan").split()[0] if size is not None else "nan")
+    # The larger geometry has the surface of the body.
+    halves = [float(radius.text or "nan") for radius in root.iter("radius")]
+    halves += [0.5 * float((size.text or "nan").split()[0]) for size in root.iter("size")]
+    half = max(halves)
     forces = []
     for depth in depths_m:
         joint.set_translation(own, half - share * depth)

@@ -147,6 +147,7 @@ fn parameters(card: &Card) -> Vec<CardParameter> {
             if let Some(point) = fit.point {
                 named.push(("point_contact_stiffness_n_per_m", point.elastic));
                 named.push(("point_contact_dissipation_s_per_m", point.dissipation));
+                named.push(("point_contact_gap_m", fit.gap));
             }
             if let Some(field) = fit.hydroelastic {
                 named.push(("hydroelastic_modulus_pa", field.elastic));

@@ -30,20 +30,49 @@ pub use options::{Engine, Export};
 use crate::{ErrorKind, JobError, MaterialSource, Outcome, Results};
 use model::Model;
 
-/// Largest error in loading, as a share of the peak force, that needs no note.
-const NOTED: f64 = 0.02;
+/// Share of the fastest speed that is the slowest of a card where the test has one speed.
+const WIDEST: f64 = 0.5;
+
+/// The same where a card for so wide a range has an error that needs a note. Narrower ranges hardly tell spring and damper apart.
+const NARROWER: [f64; 4] = [0.6, 0.7, 0.8, 0.9];
 
 impl Export {
-    /// The conditions, where they are not given those of the test.
-    fn conditions(&self, material: &Material) -> Result<Conditions, JobError> {
-        /// Share of the fastest speed that is the slowest where the test has one speed.
-        const SLOWEST: f64 = 0.5;
+    /// The conditions, where they are not given those of the test, and whether the slowest speed is neither given nor that of a test.
+    fn conditions(&self, material: &Material) -> Result<(Conditions, bool), JobError> {
         let range = material.range();
         let fastest = self.speed_m_per_s.unwrap_or(range.fastest);
-        let tested = if range.slowest < 0.95 * fastest { range.slowest } else { SLOWEST * fastest };
-        let slowest = self.slowest_m_per_s.unwrap_or(tested);
+        let tested = Some(range.slowest).filter(|slowest| *slowest < 0.95 * fastest);
+        let slowest = self.slowest_m_per_s.or(tested);
         let depth = self.depth_m.unwrap_or(range.deepest);
-        Conditions::new(depth, (slowest, fastest), self.hold_s).map_err(|error| refused(&error))
+        let speeds = (slowest.unwrap_or(WIDEST * fastest), fastest);
+        let conditions = Conditions::new(depth, speeds, self.hold_s).map_err(|error| refused(&error))?;
+        Ok((conditions, slowest.is_none()))
+    }
+
+    /// The fit to these conditions or, where the slowest speed is free, to the widest range of speeds at which it needs no note.
+    fn fitted(
+        &self,
+        material: &Material,
+        (widest, is_free): (Conditions, bool),
+    ) -> Result<(Conditions, Loading, Model), JobError> {
+        let fit = |conditions: Conditions| {
+            let loading = Loading::of(material.contact(), conditions).map_err(|error| refused(&error))?;
+            let model = Model::fit(self, material, conditions, &loading)?;
+            Ok::<_, JobError>((conditions, loading, model))
+        };
+        let found = fit(widest)?;
+        if !is_free || found.2.noted_error().is_none() {
+            return Ok(found);
+        }
+        for share in NARROWER {
+            let mut conditions = widest;
+            conditions.slowest = share * widest.fastest;
+            let narrower = fit(conditions)?;
+            if narrower.2.noted_error().is_none() {
+                return Ok(narrower);
+            }
+        }
+        Ok(found)
     }
 
     /// The card of a material.
@@ -53,7 +82,7 @@ impl Export {
     pub fn run(&self, source: &MaterialSource, watch: &mut dyn Watch) -> Result<Outcome<Card>, JobError> {
         self.check()?;
         let material = &source.file.material;
-        let conditions = self.conditions(material)?;
+        let (conditions, is_free) = self.conditions(material)?;
         let duration = conditions.depth / conditions.fastest;
         let motion =
             Motion::new(vec![0.0, duration, duration + conditions.hold], vec![0.0, conditions.depth, conditions.depth])
@@ -64,17 +93,16 @@ impl Export {
             .predict_watched(&motion, &both_ends, 0.95, watch)
             .map_err(|error| JobError::simulation(error).of(&source.name))?;
         watch.report(Progress::open("fitting", 0))?;
-        let loading = Loading::of(material.contact(), conditions).map_err(|error| refused(&error))?;
-        let model = Model::fit(self, material, conditions, &loading)?;
+        let (conditions, loading, model) = self.fitted(material, (conditions, is_free))?;
         let extrapolations: Vec<String> = predicted.extrapolations.iter().map(ToString::to_string).collect();
         let card = Card::new(self, source, (conditions, loading), model, extrapolations);
         let mut notes: Vec<String> =
             card.extrapolations.iter().map(|text| format!("beyond the test: {text}")).collect();
-        if let Some(error) = card.model.contact_error().filter(|error| error.loading > NOTED) {
+        if let Some(error) = card.model.noted_error() {
             notes.push(format!(
                 "the contact of {} has an error of up to {} % of the peak force in loading",
                 self.engine.title(),
-                numbers::short(100.0 * error.loading)
+                numbers::short(100.0 * error)
             ));
         }
         Ok(Outcome::of(card).noted(notes))

@@ -86,6 +86,13 @@ impl Model {
         }
     }
 
+    /// The largest error of a contact in loading, as a share of the peak force, if it is large enough for a note.
+    pub(super) fn noted_error(&self) -> Option<f64> {
+        /// Largest error that needs none.
+        const UNNOTED: f64 = 0.02;
+        self.contact_error().map(|error| error.loading).filter(|error| *error > UNNOTED)
+    }
+
     /// The error in a hold at [`HOLD_TIMES`], as shares of the peak force.
     pub(super) fn hold_error(&self) -> [f64; 3] {
         match self {

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import palpate
@@ -35,6 +36,27 @@ def test_loading_in_mujoco_is_that_of_the_law(mass_kg: float) -> None:
         forces = mujoco_forces(card, share * depths, share * float(speed))
         worst = max(worst, float(np.max(np.abs(forces - law))) / card.peak_force_n)
     assert worst == pytest.approx(card.loading_error, abs=5e-4)
+
+
+BALL_2 = ({"shape": "ball", "radius": "35 mm"}, "28 kPa", 2, "20 /s")
+BLOCK_3 = ({"shape": "block", "area": "10 cm^2", "length": "40 mm"}, "100 kPa", 3, "2000 /s")
+
+
+@pytest.mark.parametrize(("body", "modulus", "exponent", "rate"), [BALL_2, BLOCK_3], ids=["ball", "block"])
+def test_a_card_has_the_widest_range_of_speeds_that_it_fits(body: dict[str, Any], modulus: str, exponent: int, rate: str) -> None:
+    model = {"specimen": {**body, "modulus": modulus}, "law": {"name": "latency", "exponent": exponent, "rate_coefficient": rate}}
+    steps = [{"to": to, "rate": "500 mm/min", "hold": "60 s"} for to in ("4 mm", "8 mm")]
+    made = palpate.simulate({**model, "step": steps})
+    record = palpate.Record.from_arrays(time_s=made.time_s, displacement_m=made.displacement_m, force_n=made.force_n)
+    material = record.calibrate(test={"specimen": body}, law=f"latency:{exponent}", alternatives=[]).material
+    card = palpate.export(material, "mujoco", mass_kg=0.25)
+    document = card.to_dict()
+    share = document["slowest_m_per_s"] / document["fastest_m_per_s"]
+    assert card.loading_error is not None and card.loading_error < 0.02
+    assert share == pytest.approx(0.8 if body is BALL_2[0] else 0.9)
+    # What is wider has a larger error, and states it.
+    wider = palpate.export(material, "mujoco", mass_kg=0.25, slowest_m_per_s=0.5 * document["fastest_m_per_s"])
+    assert wider.loading_error is not None and wider.loading_error > 0.02
 
 
 def test_the_hold_in_mujoco_does_not_relax_as_the_card_states() -> None:

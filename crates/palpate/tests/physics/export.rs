@@ -134,6 +134,10 @@ fn stated_errors_are_those_of_the_forces() {
                 assert!((found - error).abs() < 1e-12, "{name}, {kind}, {time} s");
             }
         }
+        // The force of a ball begins softly, as that of a point contact that begins later.
+        if name == "n = 2" {
+            assert!(drake.gap > 0.0 && drake.error.loading < 0.02, "{drake:?}");
+        }
         // A ball of the paper's law has the linear and the quadratic part that Drake's two contacts have.
         if name == "n = 5" {
             assert!(drake.error.loading < 0.01 && soft.error.loading < 0.02, "{drake:?} {soft:?}");

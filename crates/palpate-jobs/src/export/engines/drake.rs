@@ -19,19 +19,19 @@ pub(super) fn text(card: &Card, fit: &HuntCrossley) -> String {
         "Use: contact model hydroelastic_with_fallback. The jaw's geometry needs drake:rigid_hydroelastic, and a \
          drake:point_contact_stiffness of 1e9 or more and a drake:hunt_crossley_dissipation of 0, which leave those of the body as they are"
             .to_owned(),
-        "The two collision geometries act side by side: the one without hydroelastic properties falls back to point contact, and \
-         friction acts at both"
+        "The two collision geometries act side by side, and friction acts at both. The one without hydroelastic properties falls back to \
+         point contact; its surface may lie a little deeper, so that it is touched later"
             .to_owned(),
     ];
     let head = card.head(&notes);
-    let shape = geometry(card.shape());
     let friction = card.options.friction.map_or(String::new(), |mu| {
         let mu = plain(mu);
         format!(
             "          <drake:mu_static>{mu}</drake:mu_static>\n          <drake:mu_dynamic>{mu}</drake:mu_dynamic>\n"
         )
     });
-    let collision = |name: &str, properties: String| {
+    let collision = |name: &str, gap: f64, properties: String| {
+        let shape = geometry(card.shape(), gap);
         format!(
             r#"      <collision name="{name}">
         <geometry>{shape}</geometry>
@@ -45,14 +45,14 @@ pub(super) fn text(card: &Card, fit: &HuntCrossley) -> String {
     let point = |part: Dissipative| {
         let properties = property("point_contact_stiffness", part.elastic)
             + &property("hunt_crossley_dissipation", part.dissipation);
-        collision("point", properties)
+        collision("point", fit.gap, properties)
     };
     let field = |part: Dissipative| {
         let properties = "          <drake:compliant_hydroelastic/>\n".to_owned()
             + &property("hydroelastic_modulus", part.elastic)
             + &property("mesh_resolution_hint", MESH * fit.radius.unwrap_or(1.0))
             + &property("hunt_crossley_dissipation", part.dissipation);
-        collision("hydroelastic", properties)
+        collision("hydroelastic", 0.0, properties)
     };
     let collisions = fit.point.map_or(String::new(), point) + &fit.hydroelastic.map_or(String::new(), field);
     let inertia = inertia(card);
@@ -68,15 +68,15 @@ pub(super) fn text(card: &Card, fit: &HuntCrossley) -> String {
     )
 }
 
-/// Geometry of SDFormat; a jaw closes along x.
-fn geometry(shape: &Shape) -> String {
+/// Geometry of SDFormat whose surface lies deeper by a gap (m); a jaw closes along x.
+fn geometry(shape: &Shape, gap: f64) -> String {
     match shape {
         Shape::Prism { area, length } => {
-            let size = [*length, area.sqrt(), area.sqrt()].map(plain).join(" ");
+            let size = [length - 2.0 * gap, area.sqrt(), area.sqrt()].map(plain).join(" ");
             format!("<box><size>{size}</size></box>")
         }
         shape => {
-            let radius = super::super::model::radius(shape).map_or_else(|| plain(0.01), plain);
+            let radius = plain(super::super::model::radius(shape).unwrap_or(0.01) - gap);
             format!("<sphere><radius>{radius}</radius></sphere>")
         }
     }
