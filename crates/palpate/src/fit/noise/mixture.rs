@@ -139,7 +139,7 @@ impl<'a> Mixture<'a> {
     #[inline(always)]
     fn factors(&self, ratios: &[(f64, Lanes)]) -> Lanes {
         /// Step of ln k whose cube is nothing: the next would be as long as that.
-        const ENOUGH: f64 = 2e-4;
+        const ENOUGH: f64 = 1e-3;
         let Uncertainty {
             confidence, freedom, ..
         } = *self.uncertainty;
