@@ -49,6 +49,15 @@ def materials() -> dict[str, palpate.Material]:
 # Drake: the body of the card fixed to the world, one jaw on a slide.
 
 
+def surface(root: ET.Element) -> float:
+    """Where the surface of the body is, m from its centre: the mesh of a pressure field has a radius that is 0.04 % larger."""
+    size = root.find(".//size")
+    if size is not None:
+        return 0.5 * float((size.text or "nan").split()[0])
+    radii = {str(found.get("name")): float(found.findtext(".//radius") or "nan") for found in root.iter("collision")}
+    return radii["hydroelastic"] / 1.0004 if "hydroelastic" in radii else radii["point"]
+
+
 def drake_forces(card: palpate.Card, depths_m: np.ndarray, speed_m_per_s: float, share: float) -> np.ndarray:
     """Force in N at displacements of the jaws (m) and their speed; `share` is what one contact has of it."""
     from pydrake.geometry import AddContactMaterial, AddRigidHydroelasticProperties, Box, ProximityProperties
@@ -75,10 +84,7 @@ def drake_forces(card: palpate.Card, depths_m: np.ndarray, speed_m_per_s: float,
     context = diagram.CreateDefaultContext()
     own = plant.GetMyMutableContextFromRoot(context)
     root = ET.fromstring(card.text)
-    # The larger geometry has the surface of the body.
-    halves = [float(radius.text or "nan") for radius in root.iter("radius")]
-    halves += [0.5 * float((size.text or "nan").split()[0]) for size in root.iter("size")]
-    half = max(halves)
+    half = surface(root)
     forces = []
     for depth in depths_m:
         joint.set_translation(own, half - share * depth)
@@ -220,14 +226,19 @@ def prony_errors(material: palpate.Material, card: palpate.Card) -> tuple[int, f
 def page() -> str:
     """The section of the page on simulators."""
     warnings.simplefilter("ignore", palpate.PalpateWarning)
-    contacts = ["| material | engine | error stated | error found | hold 1, 10, 60 s | how |", "|---|---|---:|---:|---|---|"]
+    contacts = [
+        "| material | engine | share of the speed | error stated | error found | hold 1, 10, 60 s | how |",
+        "|---|---|---|---:|---:|---|---|",
+    ]
     continua = ["| material | engine | terms | largest error | hold 1, 10, 60 s | how |", "|---|---|---:|---:|---|---|"]
     for name, material in materials().items():
         for engine in CONTACTS:
             card = palpate.export(material, engine, mass_kg=MASS_KG, friction=0.6)
             assert card.loading_error is not None
             found = contact_errors(material, card)
-            stated = f"{100 * card.loading_error:.2f} %"
+            document = card.to_dict()
+            share = document["slowest_m_per_s"] / document["fastest_m_per_s"]
+            stated = f"{share:.1f} to 1 | {100 * card.loading_error:.2f} %"
             how = "run" if engine in ("mujoco", "drake") else "text evaluated"
             if found is None:
                 contacts.append(f"| {name} | {engine} | {stated} | not installed | | |")
@@ -242,9 +253,11 @@ def page() -> str:
         [
             "## Cards",
             "",
-            "Errors in % of the force at the end of loading, against `Material.predict`, over the depth and the speeds of the test (half of its "
-            "speed to all of it). MuJoCo and Drake run the card at prescribed depth and speed; for the others stiffness and damping are read "
-            "back from the text. In a hold these contacts keep their force: they have no memory.",
+            "Errors in % of the force at the end of loading, against `Material.predict`, over the depth of the test and the speeds of the card: "
+            "from a share of the speed of the test to all of it, by default the widest range at which the error is not above 2 %, or from half of "
+            "it where there is none. MuJoCo and Drake run the card at prescribed depth and speed; for the others stiffness and damping are read "
+            "back from the text. In a hold these contacts keep their force: they have no memory. The force of a block jumps at first touch: no "
+            "stiffness and dissipation of Drake bring its largest error below the one stated.",
             "",
             *contacts,
             "",

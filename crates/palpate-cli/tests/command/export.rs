@@ -221,6 +221,7 @@ fn bad_input_is_refused_with_what_helps() {
     assert!(error.contains("examples/records/ball.toml"), "{error}");
     let error = refused(&root, &["export", "drake", &ball, "--depth", "80 mm"]);
     assert!(error.contains("contact displacement must stay below the radius of 0.035 m"), "{error}");
+    assert!(error.contains("hint: the test went to 15.0 mm: --depth 15.0mm"), "{error}");
     let error = refused(&root, &["export", "drake", &ball, "--slowest", "1 m/s"]);
     assert!(error.contains("slowest speed must be at most the fastest"), "{error}");
     let error = refused(&root, &["export", "abaqus", &ball, "--terms-per-decade", "0"]);

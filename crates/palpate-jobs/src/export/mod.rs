@@ -89,9 +89,14 @@ impl Export {
                 .map_err(|error| refused(&error.into()))?;
         // What is beyond the test: the largest force is that at the end of loading.
         let both_ends = Sampling::Times(vec![duration, duration + conditions.hold]);
-        let predicted = material
-            .predict_watched(&motion, &both_ends, 0.95, watch)
-            .map_err(|error| JobError::simulation(error).of(&source.name))?;
+        let predicted = material.predict_watched(&motion, &both_ends, 0.95, watch).map_err(|error| {
+            let deepest = numbers::short(1e3 * material.range().deepest);
+            let mut refused = JobError::simulation(error).of(&source.name);
+            if refused.kind == ErrorKind::Model {
+                refused.hint = Some(format!("the test went to {deepest} mm: ⟨depth={deepest}mm⟩"));
+            }
+            refused
+        })?;
         watch.report(Progress::open("fitting", 0))?;
         let (conditions, loading, model) = self.fitted(material, (conditions, is_free))?;
         let extrapolations: Vec<String> = predicted.extrapolations.iter().map(ToString::to_string).collect();

@@ -98,7 +98,7 @@ pub(super) fn results<'py>(
         return Err(refused(&describe(out)));
     }
     let Ok(mut writable) = array.try_readwrite() else {
-        return Err(refused("one that is read-only, or shares its memory with the states"));
+        return Err(refused("one that is read-only, or shares its memory with the states or with values of the step"));
     };
     match writable.as_slice_mut().is_ok() {
         true => Ok((array.clone(), writable)),

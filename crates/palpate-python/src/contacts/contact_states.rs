@@ -237,7 +237,7 @@ shown! {
             let touching = touching.as_array().iter().map(|touching| *touching > 0.0).collect();
             Ok(PyArray1::from_vec(py, touching))
         },
-        /// Which contacts kept their state in the last step with ``errors="mask"``.
+        /// Which contacts kept their state in the last step; none in one with ``errors="raise"``.
         failed<'py>(py): Bound<'py, PyArray1<bool>> = PyArray1::from_slice(py, &self.failed),
     }
 

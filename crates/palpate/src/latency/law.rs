@@ -30,7 +30,7 @@ pub fn decay(scaled_time: f64, exponent: f64) -> f64 {
     if z <= -1.0 {
         return 0.0;
     }
-    if z == 0.0 {
+    if z == 0.0 || p == 0.0 {
         // n = 1, t = 0, or a product too small to tell from them.
         return (-scaled_time).exp();
     }
@@ -148,8 +148,9 @@ impl LatencyLaw {
     /// ```
     #[must_use]
     pub fn excess_after(&self, initial: f64, elapsed: f64) -> f64 {
-        if initial == 0.0 {
-            return 0.0;
+        // No time is none at a rate beyond all numbers, too.
+        if initial == 0.0 || elapsed == 0.0 {
+            return initial;
         }
         let s = self.relative_rate(initial) * elapsed;
         // The paper's exponent is worth one branch: two roots instead of exp and ln, and exact.

@@ -70,6 +70,10 @@ pub(super) fn forced_alone(
         place = state.step_force(model, dt / f64::from(parts), between(from, to, (part, parts)))?;
     }
     check_result(&[place, state.jaw, state.behind])?;
+    // A force that goes with a state that no later step takes is none that the body carries.
+    if check_state(&[state.jaw, state.behind], model.specimen.depth()).is_err() {
+        return Err(StepError::Force { force: to });
+    }
     Ok((state, place))
 }
 

@@ -223,7 +223,7 @@ impl ContactModels {
     /// or the displacement, before the step (0 where its state has none). Substeps go to the target along a straight line.
     ///
     /// # Errors
-    /// [`OneStepError`] for the first contact that cannot take the step, with [`Refusal::All`]; all states are as before.
+    /// [`OneStepError`] for the first contact that cannot take the step, with [`Refusal::All`]; all states and results are as before.
     ///
     /// # Panics
     /// If the lengths do not agree: as many `results` and `failed` as contacts, [`rows`](Self::rows) times as many `states`, and one time step
@@ -235,18 +235,21 @@ impl ContactModels {
         results: &mut [f64],
         failed: &mut [bool],
     ) -> Result<usize, OneStepError> {
-        let mut kept: Option<SmallVec<[f64; FEW]>> = None;
+        let keep = |numbers: &[f64]| SmallVec::<[f64; FEW]>::from_slice(numbers);
+        let mut kept = None;
         if step.refusal == Refusal::All {
+            failed.fill(false);
             if states.len() <= FEW || step.imposed == Imposed::Force || self.is_extreme {
                 // Sooner than a check, or what cannot be known beforehand.
-                kept = Some(SmallVec::from_slice(states));
+                kept = Some((keep(states), keep(results)));
             } else {
                 self.check(states, step, results, failed)?;
             }
         }
         let stepped = self.step_range(0..results.len(), states, step, results, failed);
-        if let (Err(_), Some(kept)) = (&stepped, kept) {
-            states.copy_from_slice(&kept);
+        if let (Err(_), Some((old_states, old_results))) = (&stepped, kept) {
+            states.copy_from_slice(&old_states);
+            results.copy_from_slice(&old_results);
         }
         stepped
     }

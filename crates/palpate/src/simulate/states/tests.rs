@@ -227,6 +227,54 @@ fn all_contacts_are_stepped_or_none() {
     assert_eq!(contacts, before);
 }
 
+/// Of few contacts states are kept, of many they are checked; both leave nothing behind.
+#[test]
+fn a_refused_step_leaves_states_and_results() {
+    for count in [5, 16, 17, 40] {
+        let mut together = ContactStates::of_each(models(&[5.0, 1.0], count));
+        together.step(&[1e-3], &[1e-3]).unwrap();
+        let (old, mut results) = (together.states().to_vec(), vec![7.0; count]);
+        let mut to = vec![2e-3; count];
+        to[count - 2] = f64::NAN;
+        let found = together.advance(&of_displacement(&[1e-3], &to, 1, Refusal::All), &mut results);
+        assert_eq!(found.unwrap_err().index, count - 2);
+        assert_eq!((together.states(), &results), (&old[..], &vec![7.0; count]));
+    }
+}
+
+/// A relaxation of no time is none, and one beyond all numbers has ended, at any exponent.
+#[test]
+fn times_and_rates_beyond_all_numbers_are_steps() {
+    for exponent in [0.5, 1.0, 2.7, 5.0, 60.0] {
+        let law = LatencyLaw::new(exponent, 20.0).unwrap();
+        let end = law.excess_after(0.3, f64::MAX);
+        assert!((0.0..0.3).contains(&end), "{exponent}: {end}");
+        assert_eq!((law.excess_after(0.3, 0.0), law.excess_after(1e12, 0.0)), (0.3, 1e12));
+        let model = ContactModel {
+            law,
+            ..models(&[5.0], 1).swap_remove(0)
+        };
+        let mut together = ContactStates::alike(model.clone(), 24);
+        together.step(&[1e-3], &[1e-3]).unwrap();
+        let (mut dt, mut alone) = (vec![1e-3; 24], together.state(20));
+        dt[20] = f64::MAX;
+        let force = together.step(&dt, &[2e-3]).unwrap()[20];
+        let expected = alone.step(&model, f64::MAX, 2e-3).unwrap();
+        assert!((force / expected - 1.0).abs() < 1e-12, "{exponent}: {force} and {expected}");
+    }
+}
+
+#[test]
+fn a_force_that_leaves_no_state_near_the_body_is_refused() {
+    let index = 10;
+    let model = models(&[5.0], index + 1).swap_remove(index);
+    assert!(model.separation == Separation::Bonded && matches!(model.specimen.shape(), Shape::Prism { .. }));
+    let mut together = ContactStates::alike(model, 3);
+    let found = together.step_force(&[1e-3], &[1e12]).unwrap_err();
+    assert!(matches!(found.error, StepError::Force { force } if force == 1e12), "{found}");
+    assert!(together.step(&[1e-3], &[1e-3]).is_ok());
+}
+
 #[test]
 fn masked_contacts_keep_their_state_and_the_others_go_on() {
     for imposed in [Imposed::Displacement, Imposed::Force] {
