@@ -2019,7 +2019,7 @@ class ContactStates(_Moved):
     is_touching: Final[NDArray[np.bool_]]
     """Whether the jaws touch their bodies."""
     failed: Final[NDArray[np.bool_]]
-    """Which contacts kept their state in the last step with ``errors="mask"``."""
+    """Which contacts kept their state in the last step; none in one with ``errors="raise"``."""
     def __len__(self) -> int: ...
 
 def read(
