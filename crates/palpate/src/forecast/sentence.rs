@@ -198,12 +198,12 @@ fn rounded(value: f64) -> String {
         return format!("{value}");
     }
     let places = (1.0 - value.abs().log10().floor()) as i32;
-    if places <= 0 {
-        let step = 10f64.powi(-places);
-        return format!("{:.0}", (value / step).round() * step);
-    }
-    let text = format!("{value:.*}", places as usize);
-    text.trim_end_matches('0').trim_end_matches('.').to_owned()
+    let step = 10f64.powi(-places);
+    let text = match places {
+        ..=0 => format!("{:.0}", (value / step).round() * step),
+        _ => format!("{value:.*}", places as usize).trim_end_matches('0').trim_end_matches('.').to_owned(),
+    };
+    text.replace('-', "−")
 }
 
 /// "a", "a and b", "a, b and c".

@@ -29,6 +29,8 @@ pub(super) struct Bodies {
     pub(super) lowest: Lanes,
     /// How far the layer may be stretched: nothing, or without end where it is bonded.
     pub(super) hold: Lanes,
+    /// The same with the sign of a stretch.
+    slack: Lanes,
 }
 
 /// Whether the force of a body is E ε A(u) with the area of a ball, a pad or a prism.
@@ -77,6 +79,7 @@ impl Bodies {
                 false => -FARTHEST * specimen.depth(),
             }),
             hold: of_each(&|_, bonded| if bonded { f64::INFINITY } else { 0.0 }),
+            slack: of_each(&|_, bonded| if bonded { f64::NEG_INFINITY } else { 0.0 }),
         }
     }
 
@@ -163,6 +166,8 @@ pub(super) struct Block {
     pub(super) power: Power,
     exponent: Lanes,
     rate_coefficient: Lanes,
+    /// The rate coefficient times n − 1, which is a power of two where the power has a loop of its own.
+    rate: Lanes,
     thickness: Lanes,
     per_thickness: Lanes,
     /// m
@@ -201,6 +206,7 @@ impl Block {
             power: Power::of(&exponent),
             exponent,
             rate_coefficient: of_each(&|model| model.law.rate_coefficient()),
+            rate: of_each(&|model| (model.law.exponent() - 1.0) * model.law.rate_coefficient()),
             thickness: of_each(&|model| model.layers.thickness(model.specimen.depth())),
             per_thickness: of_each(&|model| 1.0 / model.layers.thickness(model.specimen.depth())),
             layers: of_each(&|model| model.layers.count()),
@@ -319,16 +325,18 @@ impl Block {
         let mut is_right = true;
         for lane in 0..LANES {
             let (from, held, u) = (jaw[lane], behind[lane], to[lane]);
-            let (per_depth, hold) = (bodies.per_depth[lane], bodies.hold[lane]);
+            let (per_depth, slack) = (bodies.per_depth[lane], bodies.slack[lane]);
             let (thickness, per_thickness) = (self.thickness[lane], self.per_thickness[lane]);
             let kick = (u - from) * self.half_drive[lane];
             let gap = from - held;
             let excess = gap * per_thickness - from * per_depth + kick;
+            let square = excess * excess;
             let excess = self.relaxed(power, lane, excess, dt[lane]) + kick;
             let node = u - thickness * (excess + u * per_depth);
             let strain = (u - node) * per_thickness;
-            let is_closed = (gap >= -hold) & (u - node >= -hold);
-            let is_near = bodies.is_near(lane, from.abs() + held.abs()) & bodies.fits(lane, u);
+            let is_closed = (gap >= slack) & (u - node >= slack);
+            // A state beyond all measure has an excess strain beyond it, unless both of its numbers hide that from each other.
+            let is_near = (square < FARTHEST * FARTHEST) & bodies.fits(lane, u);
             // The force is finite where all of this is: bodies and layers beyond all measure are stepped alone. At no strain it is 0.
             let is_fine = is_closed & is_near & is_step(dt[lane]);
             left[lane] = node;
@@ -369,12 +377,12 @@ impl Block {
     fn relaxed(&self, power: Power, lane: usize, x: f64, dt: f64) -> f64 {
         /// Largest argument of the logarithm.
         const LARGEST: f64 = 1e308;
-        let (v, a) = (self.rate_coefficient[lane], x.abs());
+        let (v, rate, a) = (self.rate_coefficient[lane], self.rate[lane], x.abs());
         match power {
             Power::One => x * exp(-(v * dt)),
-            Power::Two => x / (1.0 + v * a * dt),
-            Power::Three => x / (1.0 + 2.0 * (v * (a * a) * dt)).sqrt(),
-            Power::Five => x / (1.0 + 4.0 * (v * ((a * a) * (a * a)) * dt)).sqrt().sqrt(),
+            Power::Two => x / (1.0 + rate * a * dt),
+            Power::Three => x / (1.0 + rate * (a * a) * dt).sqrt(),
+            Power::Five => x / (1.0 + rate * ((a * a) * (a * a)) * dt).sqrt().sqrt(),
             Power::Any => {
                 let p = self.exponent[lane] - 1.0;
                 let base = if a < f64::MIN_POSITIVE { f64::MIN_POSITIVE } else { a };
