@@ -200,9 +200,8 @@ impl LatencyModels {
         // One part is a loop of its own, and so is one block with one time step.
         by_power!(blocks[0].power, power => match (step.parts(), is_one, columns.0.shared(), columns.1.each()) {
             (1, true, Some(dt), Some(to)) => {
-                // Numbers of its own, which nobody writes to, stay in registers.
-                let (block, steps) = (blocks[0].clone(), to.iter().map(#[inline(always)] |to| (dt, *to)));
-                Block::moved_in_row(#[inline(always)] |_| &block, power, rows, steps, 1)
+                let steps = to.iter().map(#[inline(always)] |to| (dt, *to));
+                Block::moved_in_row(#[inline(always)] |_| &blocks[0], power, rows, steps, 1)
             }
             (1, false, ..) => Block::moved_in_row(#[inline(always)] |index| &blocks[index], power, rows, steps, 1),
             (parts, ..) => {
