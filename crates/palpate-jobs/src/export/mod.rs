@@ -60,15 +60,16 @@ impl Export {
             let model = Model::fit(self, material, conditions, &loading)?;
             Ok::<_, JobError>((conditions, loading, model))
         };
+        let needs_note = |(_, _, model): &(Conditions, Loading, Model)| model.noted_error().is_some();
         let found = fit(widest)?;
-        if !is_free || found.2.noted_error().is_none() {
+        if !is_free || !needs_note(&found) {
             return Ok(found);
         }
         for share in NARROWER {
             let mut conditions = widest;
             conditions.slowest = share * widest.fastest;
             let narrower = fit(conditions)?;
-            if narrower.2.noted_error().is_none() {
+            if !needs_note(&narrower) {
                 return Ok(narrower);
             }
         }

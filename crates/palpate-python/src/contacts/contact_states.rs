@@ -1,4 +1,4 @@
-//! Contacts that are moved side by side, their states in an array of Python's.
+//! Contacts that are moved side by side.
 
 use std::io::Write;
 

@@ -166,7 +166,7 @@ pub(super) struct Block {
     pub(super) power: Power,
     exponent: Lanes,
     rate_coefficient: Lanes,
-    /// The rate coefficient times n − 1, which is a power of two where the power has a loop of its own.
+    /// (n − 1) v; to the bit the product in `LatencyLaw` where it is used, because n − 1 is 1, 2 or 4 there.
     rate: Lanes,
     thickness: Lanes,
     per_thickness: Lanes,
