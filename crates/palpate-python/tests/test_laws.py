@@ -6,6 +6,7 @@ import inspect
 
 import numpy as np
 import palpate
+import pint
 import pytest
 from conftest import relaxation
 from palpate import laws
@@ -14,7 +15,7 @@ from scipy.optimize import curve_fit
 
 @pytest.mark.parametrize(
     "law",
-    ["latency", "latency:5", "maxwell", "standard-linear-solid", "burgers", "prony:2", "stretched", "power", "logarithmic"],
+    ["latency", "latency:5", "maxwell", "standard-linear-solid", "burgers", "prony:1", "prony:2", "stretched", "power", "logarithmic"],
 )
 def test_a_function_is_the_curve_of_the_fit(law: str) -> None:
     t, y = relaxation(300, 1e-4)
@@ -59,3 +60,30 @@ def test_a_law_that_is_no_function_is_refused(law: str) -> None:
         laws.function(law)
     with pytest.raises(palpate.OptionError):
         palpate.fit_hold(*relaxation(100), law="spectrum")
+
+
+def test_arguments_of_a_series_are_those_of_a_function() -> None:
+    series = laws.prony(2)
+    assert series(0.0, 1.0, 2.0, time_constant_2_s=2.0, amplitude_2=3.0, time_constant_1_s=1.0) == 6.0
+    for given, named, reported in [
+        ((0.0, 1.0, 2.0), {}, "missing a required argument: 'amplitude_2'"),
+        ((0.0, 1.0, 2.0, 3.0, 1.0, 2.0, 9.0), {}, "too many positional arguments"),
+        ((0.0, 1.0, 2.0, 3.0, 1.0, 2.0), {"amplitude_1": 2.0}, "multiple values for argument 'amplitude_1'"),
+        ((0.0, 1.0, 2.0, 3.0, 1.0, 2.0), {"amplitude_3": 2.0}, "unexpected keyword argument 'amplitude_3'"),
+    ]:
+        with pytest.raises(TypeError, match=reported):
+            series(*given, **named)
+
+
+@pytest.mark.parametrize("law", ["latency", "latency:5", "maxwell", "prony:1", "logarithmic"])
+def test_times_have_any_shape(law: str) -> None:
+    function = laws.function(law)
+    count = len(inspect.signature(function).parameters) - (2 if law == "latency:5" else 1)
+    numbers = [0.5 * k for k in range(1, count + 1)]
+    times = np.arange(6.0)
+    column = function(times, *numbers)
+    assert np.shape(function(1.0, *numbers)) == () and function(1.0, *numbers) == column[1]
+    assert np.array_equal(function(times.reshape(2, 3), *numbers), column.reshape(2, 3))
+    assert np.array_equal(function(list(range(6)), *numbers), column)
+    quantities = pint.UnitRegistry().Quantity(1e3 * times, "ms")
+    assert np.array_equal(function(quantities, *numbers), column) and function(quantities[1], *numbers) == column[1]

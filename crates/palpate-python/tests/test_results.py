@@ -214,6 +214,9 @@ def test_no_samples_without_a_covariance() -> None:
     for wrong in (0, -1, 2.5, True):
         with pytest.raises(palpate.OptionError, match="n: expected a number of sets, 1 or more"):
             RESULTS["Fit"].sample(wrong)
+    for seed in (-1, "x", 1.5):
+        with pytest.raises(palpate.OptionError, match=f"seed: expected a whole number, 0 or more, or None, found {seed!r}"):
+            RESULTS["Fit"].sample(seed=seed)
 
 
 def test_arviz_has_a_posterior() -> None:
@@ -234,3 +237,26 @@ def test_a_law_is_evaluated_with_other_parameters() -> None:
     assert fit.eval(13.0, equilibrium=0.0) == pytest.approx(fit.eval(13.0) - fit.parameters["equilibrium"], rel=1e-12)
     with pytest.raises(palpate.OptionError, match=r"expected parameters of latency \(equilibrium, .*\), found time_constant_s"):
         fit.eval(time_constant_s=3.0)
+    with pytest.raises(palpate.OptionError, match="exponent: expected a number, found '3'"):
+        fit.eval(exponent="3")
+
+
+CLOSED = ["latency", "latency:5", "prony:1", "prony:2", "maxwell", "standard-linear-solid", "burgers", "stretched", "power", "logarithmic"]
+
+
+@pytest.mark.parametrize(
+    ("law", "response"), [*((law, word) for law in CLOSED for word in ("relaxation", "creep")), ("kelvin-voigt", "creep")]
+)
+def test_every_closed_law_is_evaluated_in_both_responses(law: str, response: str) -> None:
+    relaxed = 2.0 / (1.0 + 0.3 * T) ** 0.7
+    fit = palpate.fit_hold(T + 3.0, relaxed if response == "relaxation" else 3.0 - relaxed, law=law, response=response)
+    times = np.array([1.0, 3.0, 4.0, 13.0, 60.0])
+    for name, found in fit.parameters.items():
+        np.testing.assert_allclose(fit.eval(times, **{name: found}), fit.predict(times), rtol=1e-10, atol=1e-10)
+    # What is linear adds up: half of each is half of the signal.
+    halved = {name: found / 2 for name, found in fit.parameters.items() if fit.estimates[name].unit == "signal"}
+    np.testing.assert_allclose(fit.eval(times, **halved), fit.predict(times) / 2, rtol=1e-10, atol=1e-10)
+    # A time that is longer by a factor is a curve that is slower by it.
+    slower = {name: 2 * found for name, found in fit.parameters.items() if fit.estimates[name].unit == "s"}
+    if slower and law != "burgers":
+        np.testing.assert_allclose(fit.eval(3.0 + 2 * T[:9], **slower), fit.predict(3.0 + T[:9]), rtol=1e-10, atol=1e-10)

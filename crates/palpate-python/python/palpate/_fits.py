@@ -14,7 +14,8 @@ from palpate._progress import bar
 Bound = Union[tuple[Union[float, None], Union[float, None]], Sequence[Union[float, None]]]
 
 
-def _number(value: Any, name: str) -> float:
+def number(value: Any, name: str) -> float:
+    """A number of Python, or of anything that becomes one."""
     if isinstance(value, (bool, str)) or not hasattr(value, "__float__"):
         raise OptionError(f"{name}: expected a number, found {value!r}")
     try:
@@ -35,8 +36,8 @@ def _ends(pair: Any, name: str) -> tuple[float, float]:
         raise OptionError(f"{name}: expected a lower and an upper end, found {pair!r}")
     low, high = pair
     return (
-        float("-inf") if low is None else _number(low, name),
-        float("inf") if high is None else _number(high, name),
+        float("-inf") if low is None else number(low, name),
+        float("inf") if high is None else number(high, name),
     )
 
 
@@ -62,9 +63,9 @@ def _keywords(
         raise OptionError(f"log_spaced: expected a number of samples, found {log_spaced!r}")
     return {
         **words,
-        "fixed": held and [(name, _number(value, f'fixed["{name}"]')) for name, value in held],
+        "fixed": held and [(name, number(value, f'fixed["{name}"]')) for name, value in held],
         "bounds": bounded and [(name, _ends(pair, f'bounds["{name}"]')) for name, pair in bounded],
-        "confidence": _number(confidence, "confidence"),
+        "confidence": number(confidence, "confidence"),
         "log_spaced": log_spaced,
     }
 

@@ -1547,7 +1547,7 @@ class Fit(_Series):
         ...
     @overload
     def eval(self, time_s: float, **parameters: float) -> float:  # pyright: ignore[reportOverlappingOverload]
-        """The law at times of the record, with some of the parameters replaced.
+        """The law at times of the record, with some of the parameters replaced, in relaxation or creep as it was fitted.
 
         Parameters
         ----------
@@ -1563,7 +1563,8 @@ class Fit(_Series):
         Raises
         ------
         OptionError
-            A parameter that the law has not; replaced parameters of a law that is no function of `palpate.laws`.
+            A parameter that the law has not, or a value that is no number; replaced parameters of a law that is no function of
+            `palpate.laws`.
         """
         ...
     @overload
@@ -1592,7 +1593,7 @@ class Fit(_Series):
         FitError
             The data leave a parameter open: there is no covariance.
         OptionError
-            Fewer than one set.
+            Fewer than one set; a seed that is no whole number, or below 0.
 
         Examples
         --------

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from palpate import laws
 from palpate._convert import needed
+from palpate._fits import number
 from palpate._palpate import FitError, OptionError
 
 #: How a parameter follows from what was searched, by the scale that its name begins with, and back.
@@ -48,7 +49,7 @@ def sample(self: Any, n: int = 1000, *, seed: int | None = None) -> dict[str, ND
     FitError
         The data leave a parameter open: there is no covariance.
     OptionError
-        Fewer than one set.
+        Fewer than one set; a seed that is no whole number, or below 0.
 
     Examples
     --------
@@ -64,9 +65,13 @@ def sample(self: Any, n: int = 1000, *, seed: int | None = None) -> dict[str, ND
         raise OptionError(f"n: expected a number of sets, 1 or more, found {n!r}")
     if self.covariance is None:
         raise FitError("expected a fit with a covariance, found one whose data leave a parameter open\nhint: hold a parameter with fixed=, or fit a law with fewer")
+    try:
+        generator = np.random.default_rng(seed)
+    except (TypeError, ValueError):
+        raise OptionError(f"seed: expected a whole number, 0 or more, or None, found {seed!r}") from None
     scales = [_scale(name) for name in self.searched]
     centre = [forward(self.parameters[name]) for name, forward, _ in scales]
-    drawn = np.random.default_rng(seed).multivariate_normal(centre, self.covariance, size=n, method="eigh")
+    drawn = generator.multivariate_normal(centre, self.covariance, size=n, method="eigh")
     found = {name: back(drawn[:, place]) for place, (name, _, back) in enumerate(scales)}
     return {name: found.get(name, np.full(n, value)) for name, value in self.parameters.items()}
 
@@ -105,7 +110,7 @@ def to_arviz(self: Any, draws: int = 1000, *, chains: int = 4, seed: int | None 
 
 
 def evaluate(self: Any, time_s: Any = None, **parameters: float) -> Any:
-    """The law at times of the record, with some of the parameters replaced.
+    """The law at times of the record, with some of the parameters replaced, in relaxation or creep as it was fitted.
 
     Parameters
     ----------
@@ -121,7 +126,8 @@ def evaluate(self: Any, time_s: Any = None, **parameters: float) -> Any:
     Raises
     ------
     OptionError
-        A parameter that the law has not; replaced parameters of a law that is no function of `palpate.laws`.
+        A parameter that the law has not, or a value that is no number; replaced parameters of a law that is no function of
+        `palpate.laws`.
     """
     unknown = [name for name in parameters if name not in self.parameters]
     if unknown:
@@ -131,5 +137,34 @@ def evaluate(self: Any, time_s: Any = None, **parameters: float) -> Any:
     from palpate._arrays import as_doubles
 
     times = self.time_s if time_s is None else as_doubles(np.atleast_1d(time_s), "eval(time_s)")
-    values = laws.function(self.law)(times - self.start_s, **{**self.parameters, **parameters})
+    replaced = {name: number(value, name) for name, value in parameters.items()}
+    law = _creep if self.to_dict()["response"] == "creep" else _relaxation
+    values = law(self, times - self.start_s, {**self.parameters, **replaced})
     return float(values[0]) if time_s is not None and np.ndim(time_s) == 0 else values
+
+
+def _relaxation(fit: Any, elapsed_s: NDArray[np.float64], parameters: dict[str, float]) -> NDArray[np.float64]:
+    return laws.function(fit.law)(elapsed_s, **parameters)
+
+
+def _creep(fit: Any, elapsed_s: NDArray[np.float64], parameters: dict[str, float]) -> NDArray[np.float64]:
+    """y_0 + sum A (1 - phi), by the function of the relaxation y_e + sum A phi; what grows without bound is added.
+
+    The flow and the power of time are scaled by the duration of the fit: their amplitudes are the growth over it.
+    """
+    # A Kelvin-Voigt body begins at 0.
+    start = parameters.get("instantaneous", 0.0)
+    shape = {name: value for name, value in parameters.items() if name not in ("instantaneous", "flow")}
+    passed = np.maximum(elapsed_s, 0.0) / fit.duration_s
+    if fit.law == "logarithmic":
+        return laws.logarithmic(elapsed_s, start, -shape["amplitude"], shape["time_constant_s"])
+    if fit.law == "power":
+        return np.asarray(start + shape["amplitude"] * passed ** shape["exponent"])
+    flow = parameters.get("flow", 0.0) * passed
+    if fit.law == "maxwell":
+        return np.asarray(start + flow)
+    amplitudes = {name: -value for name, value in shape.items() if name.startswith("amplitude")}
+    end = start - sum(amplitudes.values())
+    of_one_time = {"burgers": "standard-linear-solid", "kelvin-voigt": "standard-linear-solid"}
+    function = laws.function(of_one_time.get(fit.law, fit.law))
+    return flow + function(elapsed_s, equilibrium=end, **{**shape, **amplitudes})

@@ -18,8 +18,9 @@ from collections.abc import Callable
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
+from palpate import _units
 from palpate._palpate import OptionError
 from palpate._palpate import latency as _latency
 from palpate._palpate import law_names as _law_names
@@ -51,7 +52,7 @@ def latency(
 
     Parameters
     ----------
-    elapsed_s : array_like, shape (N,)
+    elapsed_s : float or array_like
         Time since the start of the hold, s; before it the value is that at the start.
     equilibrium, amplitude
         y_e and D = y(0) - y_e, in the unit of the signal.
@@ -62,19 +63,27 @@ def latency(
 
     Returns
     -------
-    ndarray, shape (N,)
-        The signal.
+    ndarray
+        The signal, in the shape of the times.
 
     Raises
     ------
     ModelError
         An exponent that is not above 0, a rate below 0.
     """
-    return _latency(elapsed_s, equilibrium, amplitude, relative_rate_per_s, exponent)
+    if np.ndim(elapsed_s) == 1:
+        return _latency(elapsed_s, equilibrium, amplitude, relative_rate_per_s, exponent)
+    times = _doubles(elapsed_s)
+    return _latency(times.reshape(-1), equilibrium, amplitude, relative_rate_per_s, exponent).reshape(times.shape)
 
 
-def _times(elapsed_s: ArrayLike) -> Doubles:
-    return np.maximum(np.asarray(elapsed_s, dtype=np.float64), 0.0)
+def _doubles(elapsed_s: Any) -> Doubles:
+    """Times of any shape; quantities of pint are converted to s."""
+    return np.asarray(_units.in_si(elapsed_s, "elapsed_s"), dtype=np.float64)
+
+
+def _times(elapsed_s: Any) -> Doubles:
+    return np.maximum(_doubles(elapsed_s), 0.0)
 
 
 def maxwell(elapsed_s: Any, amplitude: float, time_constant_s: float) -> Doubles:
@@ -119,7 +128,8 @@ def prony(terms: int) -> Law:
     Returns
     -------
     callable
-        ``f(elapsed_s, equilibrium, amplitude_1, ..., time_constant_1_s, ...)``; T in s.
+        ``f(elapsed_s, equilibrium, amplitude_1, ..., time_constant_1_s, ...)``; T in s. One term has no number:
+        ``f(elapsed_s, equilibrium, amplitude, time_constant_s)``.
 
     Raises
     ------
@@ -128,19 +138,22 @@ def prony(terms: int) -> Law:
     """
     if terms < 1:
         raise OptionError(f"terms: expected 1 or more, found {terms}")
-    terms_of = range(1, terms + 1)
-    names = [*(f"amplitude_{k}" for k in terms_of), *(f"time_constant_{k}_s" for k in terms_of)]
+    # Named as in a fit.
+    places = [f"_{k}" for k in range(1, terms + 1)] if terms > 1 else [""]
+    names = [*(f"amplitude{place}" for place in places), *(f"time_constant{place}_s" for place in places)]
+    parameters = [inspect.Parameter(n, inspect.Parameter.POSITIONAL_OR_KEYWORD) for n in ("elapsed_s", "equilibrium", *names)]
+    signature = inspect.Signature(parameters)
 
-    def series(elapsed_s: Any, equilibrium: float, *given: float, **named: float) -> Doubles:
-        values = [*given, *(named[name] for name in names[len(given) :])]
+    def series(*given: Any, **named: Any) -> Doubles:
+        # The TypeError of arguments that are missing, unknown or doubled is that of any function.
+        elapsed_s, equilibrium, *values = signature.bind(*given, **named).args
         t = _times(elapsed_s)
         parts = (a * np.exp(-t / tau) for a, tau in zip(values[:terms], values[terms:], strict=True))
         return np.asarray(equilibrium + sum(parts))
 
     series.__name__ = f"prony_{terms}"
     series.__doc__ = f"A series of {terms} exponentials and a constant."
-    parameters = [inspect.Parameter(n, inspect.Parameter.POSITIONAL_OR_KEYWORD) for n in ("elapsed_s", "equilibrium", *names)]
-    series.__signature__ = inspect.Signature(parameters)  # type: ignore[attr-defined]
+    series.__signature__ = signature  # type: ignore[attr-defined]
     return series
 
 
@@ -194,7 +207,7 @@ def _latency_of(law: str, number: str) -> Law:
     def fixed(
         elapsed_s: Any, equilibrium: float, amplitude: float, relative_rate_per_s: float, *, exponent: float = given
     ) -> Doubles:
-        return _latency(elapsed_s, equilibrium, amplitude, relative_rate_per_s, exponent)
+        return latency(elapsed_s, equilibrium, amplitude, relative_rate_per_s, exponent)
 
     fixed.__name__ = f"latency_{number.replace('.', '_')}"
     fixed.__doc__ = f"The nonlinear latency law with n = {given:g}."
@@ -242,5 +255,9 @@ def model(law: str) -> Any:
 
 
 def names() -> list[str]:
-    """Names of laws as ``law=`` takes them; N and K stand for numbers."""
+    """Names of laws as ``law=`` and ``laws=`` take them; N and K stand for numbers.
+
+    The "spectrum" has no few parameters: `palpate.compare` fits and judges it, and `palpate.fit_hold` refuses it. "kelvin-voigt"
+    is a law of creep, and "fung:K" and "fung-continuous" are laws of relaxation alone.
+    """
     return _law_names()
