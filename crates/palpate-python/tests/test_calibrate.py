@@ -148,6 +148,14 @@ def test_a_prediction_is_that_of_the_command_line_to_the_last_bit(material: palp
         assert prediction.confidence == keywords.get("confidence", 0.95)
 
 
+def test_steps_of_a_prediction_are_a_list(material: palpate.Material) -> None:
+    steps: list[Any] = [palpate.Step(to=0.005, rate=0.005), {"to": "5 mm", "rate": "5 mm/s"}, {"to_m": 0.005, "rate_m_per_s": 0.005}]
+    for step in steps:
+        with pytest.raises(palpate.OptionError, match="expected a protocol or a list of steps, found one step\nhint: put it into a list"):
+            material.predict(step)
+        assert len(material.predict([step])) > 1
+
+
 def test_a_record_is_predicted_along_its_own_displacement(
     record: palpate.Record, calibration: palpate.Calibration, material: palpate.Material
 ) -> None:

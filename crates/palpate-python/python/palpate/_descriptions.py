@@ -6,7 +6,9 @@ import os
 from collections.abc import Mapping
 from typing import Any, Union
 
+from palpate import _units
 from palpate._palpate import Material, OptionError, mapping_text
+from palpate.protocols import Step
 
 Description = Union[str, os.PathLike[str], Mapping[str, Any], Material, None]
 
@@ -22,7 +24,15 @@ def described(test: Description) -> tuple[str | os.PathLike[str] | None, str | N
 
 def driven(protocol: Any) -> tuple[str | os.PathLike[str] | None, str | None]:
     """A protocol of a body that is known, which may be its steps alone."""
-    return described({"step": protocol} if isinstance(protocol, (list, tuple)) else protocol)
+    if isinstance(protocol, (list, tuple)):
+        return described({"step": protocol})
+    if isinstance(protocol, Mapping) and "step" not in protocol and any(_is_of_step(str(key)) for key in protocol):
+        raise OptionError("expected a protocol or a list of steps, found one step\nhint: put it into a list")
+    return described(protocol)
+
+
+def _is_of_step(key: str) -> bool:
+    return key.removesuffix(_units.ending(key)) in Step.__dataclass_fields__
 
 
 def _with_body(table: Mapping[str, Any]) -> Mapping[str, Any]:
