@@ -57,12 +57,14 @@ def test_a_run_that_no_body_can_take_says_why_and_stops_no_other() -> None:
     ("numbers", "times_s", "kind", "text"),
     [
         ({"law.expnent": [1.0]}, None, palpate.OptionError, "did you mean law.exponent?"),
+        ({"law.exponent": 5}, None, palpate.OptionError, "law.exponent: expected a column of numbers, found int 5"),
+        ([5.0], None, palpate.OptionError, "numbers: expected arrays by the path of a number"),
         ({"law.exponent": [1.0, 2.0], "specimen.radius": [0.03]}, None, palpate.OptionError, "2 values, as the other"),
         ({"law.exponent": [1.0]}, [0.1, 1e3], palpate.ModelError, "1000"),
         ({"law.exponent": ["five"]}, None, palpate.OptionError, "law.exponent"),
     ],
 )
-def test_what_is_wrong_is_stated(numbers: dict[str, Any], times_s: Any, kind: type[Exception], text: str) -> None:
+def test_what_is_wrong_is_stated(numbers: Any, times_s: Any, kind: type[Exception], text: str) -> None:
     with pytest.raises(kind, match=text.replace("?", r"\?")):
         palpate.simulate_many(PROTOCOL, numbers, times_s=times_s)
 

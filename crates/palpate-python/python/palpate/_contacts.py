@@ -181,7 +181,14 @@ def simulate_many(
     (2, 2)
     """
     path, text = described(protocol)
-    columns = list(numbers.items())
-    runs = len(columns[0][1]) if columns else 0
+    if not isinstance(numbers, Mapping):
+        example = '{"law.exponent": [3, 5]}'
+        raise OptionError(f"numbers: expected arrays by the path of a number, such as {example}, found {type(numbers).__name__}")
+    columns = [(str(number), values) for number, values in numbers.items()]
+    try:
+        runs = len(columns[0][1]) if columns else 0
+    except TypeError:
+        # No array: the compiled part says what is wrong with it.
+        runs = 0
     with bar(progress, runs, "run") as tell:
         return _palpate.simulate_many(path, text, columns, times_s, tell)
