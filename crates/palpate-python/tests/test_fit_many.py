@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 from typing import Any
 
 import numpy as np
@@ -117,6 +118,15 @@ def test_wrong_columns_are_refused() -> None:
     for shared in ([[0.0, None]], pyarrow.array([None], pyarrow.list_(pyarrow.float64()))):
         with pytest.raises(palpate.OptionError, match="time_s: expected .* found"):
             palpate.fit_many(shared, SIGNALS)
+
+
+def test_columns_of_pandas_need_no_pyarrow(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setitem(sys.modules, "pyarrow", None)
+    t, y = CURVES[0]
+    with pytest.raises(palpate.OptionError, match="signal: expected a list of curves, found a table of 300 columns\nhint: pass one column"):
+        palpate.fit_many(t, pandas.DataFrame(np.ones((3, 300))))
+    table = palpate.fit_many(pandas.Series(t), pandas.Series([y, 2 * y]), law="latency:5")
+    assert table["amplitude"][1] == pytest.approx(2 * palpate.fit_hold(t, y, law="latency:5").parameters["amplitude"], rel=1e-6)
 
 
 def test_a_curve_that_is_no_column_of_numbers_stops_no_other() -> None:

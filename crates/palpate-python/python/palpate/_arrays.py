@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from datetime import timedelta
+from importlib.util import find_spec
 from typing import Any
 
 import numpy as np
@@ -71,11 +72,12 @@ def _seconds(array: NDArray[Any], name: str) -> NDArray[Any]:
 def is_of_numpy(curves: Any) -> bool:
     """Whether this is read as an array of NumPy even where it offers itself to Arrow.
 
-    An array with named dimensions, of xarray, is a table of one column to Arrow, and polars before 1.34 exports dates and
-    durations as whole numbers of an unknown unit.
+    An array with named dimensions, of xarray, is a table of one column to Arrow, polars before 1.34 exports dates and
+    durations as whole numbers of an unknown unit, and pandas exports nothing without pyarrow.
     """
     is_time = str(getattr(curves, "dtype", "")).lower().startswith(("date", "timedelta", "duration"))
-    return is_time or hasattr(curves, "dims")
+    needs_pyarrow = type(curves).__module__.partition(".")[0] == "pandas" and find_spec("pyarrow") is None
+    return is_time or needs_pyarrow or hasattr(curves, "dims")
 
 
 def as_ragged(curves: Any, name: str, omit_nan: bool = False) -> tuple[NDArray[np.float64], NDArray[np.int64], dict[int, str]]:
