@@ -50,6 +50,15 @@ def test_lmfit_takes_the_law_as_a_model() -> None:
     assert fit.parameters["equilibrium"] == pytest.approx(result.params["equilibrium"].value, rel=1e-5)
 
 
+def test_a_first_sample_that_is_left_out_starts_the_hold_by_weight_and_not_by_nan() -> None:
+    t = np.linspace(3.0, 43.0, 401)
+    y, first = 1.0 + 2.0 * np.exp(-(t - 3.0) / 8.0), np.arange(401) < 50
+    weighted = palpate.fit_hold(t, y, law="standard-linear-solid", weights=np.where(first, 0.0, 1.0))
+    omitted = palpate.fit_hold(t, np.where(first, np.nan, y), law="standard-linear-solid", nan="omit")
+    assert (weighted.start_s, weighted.samples) == (3.0, 351) and weighted.estimates["start"].value == pytest.approx(3.0, rel=1e-9)
+    assert omitted.start_s == t[50] and omitted.estimates["start"].value == pytest.approx(y[50], rel=1e-9)
+
+
 def test_weights_are_those_of_lmfit() -> None:
     t, y = relaxation(noise=1e-3)
     weights = np.linspace(1.0, 3.0, t.size)

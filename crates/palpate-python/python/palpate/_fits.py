@@ -98,9 +98,10 @@ def fit_hold(
     signal : array_like, shape (N,)
         Force, stress or strain (displacement or strain for creep), in any unit; quantities of pint are converted to SI.
     law
-        A name of ``palpate.laws.names()``: "latency" (n found), "latency:5", "standard-linear-solid", "prony:2", ...
+        A name of ``palpate.laws.names()`` but "spectrum": "latency" (n found), "latency:5", "standard-linear-solid", "prony:2", ...
     weights : array_like, shape (N,), optional
-        1/sigma of every sample, as in lmfit; 0 leaves one out.
+        1/sigma of every sample, as in lmfit; 0 leaves one out. The start of the hold, from which the law counts its time, stays the
+        first of `time_s`, even where the weight of that sample is 0.
     response
         "relaxation" or "creep".
     fixed
@@ -121,7 +122,8 @@ def fit_hold(
         an interval of curvature is wider than a third of its parameter to a side (a tenth, if a time constant is longer than
         the hold), and where terms merge or vanish.
     nan
-        Samples without a time, a value or a weight (NaN, None, masked) "raise" an error, or "omit" leaves them out.
+        Samples without a time, a value or a weight (NaN, None, masked) "raise" an error, or "omit" leaves them out; the first that is
+        left is then the start of the hold.
 
     Returns
     -------
