@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import inspect
 import re
 from pathlib import Path
 
+import palpate
 import pytest
 
 ROOT = Path(__file__).parents[3]
@@ -35,3 +37,14 @@ def test_the_tour_of_the_readme(monkeypatch: pytest.MonkeyPatch, tmp_path: Path,
     printed = capsys.readouterr().out.splitlines()[0]
     assert f"# {printed}, at 95 %" in tour
     assert (tmp_path / "study/report.html").exists()
+
+
+def test_the_names_of_the_guide_to_watching_are_those_of_the_observer() -> None:
+    guide = (ROOT / "docs/guides/watch.md").read_text(encoding="utf-8")
+    keys, meanings = zip(*re.findall(r"^\| (`[a-z_`, ]+`) \| (.*) \|$", guide, flags=re.MULTILINE), strict=True)
+    named = re.findall(r"`([a-z_]+)`", " ".join(keys)) + re.findall(r"`([a-z_]*standard_error[a-z_]*)`", " ".join(meanings))
+    assert len(named) > 15
+    assert set(named) - {"holds"} <= set(dir(palpate.Observation))
+    (block,) = blocks("docs/guides/watch.md")
+    assert set(re.findall(r"(\w+)=", block)) <= set(inspect.signature(palpate.Observer).parameters)
+    assert set(re.findall(r"state\.(\w+)", block)) | set(re.findall(r'\["(\w+)"\]', block)) <= set(dir(palpate.Observation))
