@@ -167,4 +167,4 @@ def _creep(fit: Any, elapsed_s: NDArray[np.float64], parameters: dict[str, float
     end = start - sum(amplitudes.values())
     of_one_time = {"burgers": "standard-linear-solid", "kelvin-voigt": "standard-linear-solid"}
     function = laws.function(of_one_time.get(fit.law, fit.law))
-    return flow + function(elapsed_s, equilibrium=end, **{**shape, **amplitudes})
+    return np.asarray(flow + function(elapsed_s, equilibrium=end, **{**shape, **amplitudes}))
