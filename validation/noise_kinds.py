@@ -36,13 +36,17 @@ TABLE = """
 
 TAIL = """
 Intervals are not to be relied on where the least coverage is far below 95 %: under a slow drift that is hidden in white noise, and under
-noise whose power goes as 1/f. Those of equilibria suffer first. White noise pays for it: a drift that the residuals cannot rule out makes
+noise whose power goes as 1/f, in holds of about a hundred samples above all. Those of equilibria suffer first. White noise pays for it: a drift that the residuals cannot rule out makes
 its intervals wider than they need be.
 """
 
-# Of few samples fewer kinds can be told apart.
-FEW = (12, 25)
-OF_FEW = ("white", "AR(1) 0.7", "walk 0.1 and white", "logarithmic times")
+# Of few samples fewer kinds can be told apart; of more, others.
+KINDS_OF = {
+    12: ("white", "AR(1) 0.7", "walk 0.1 and white", "logarithmic times"),
+    25: ("white", "AR(1) 0.7", "walk 0.1 and white", "logarithmic times"),
+    100: ("white", "AR(1) 0.9", "low-pass filter", "1/f", "walk 1 and white", "proportional"),
+    1000: ("white", "AR(1) 0.9", "low-pass filter", "1/f", "walk 1 and white", "walk 0.03 and white"),
+}
 
 
 def table(holds, samples, *names):
@@ -69,7 +73,7 @@ def main():
     chosen = parser.parse_args()
     page = HEAD.format(holds=chosen.holds, samples=chosen.samples, error=196 * (0.95 * 0.05 / chosen.holds) ** 0.5)
     page += table(chosen.holds, chosen.samples)
-    page += "".join(table(chosen.holds, samples, *OF_FEW) for samples in FEW)
+    page += "".join(table(chosen.holds, samples, *names) for samples, names in KINDS_OF.items())
     page += TAIL
     print(page)
     if chosen.write:

@@ -23,7 +23,7 @@ pub(crate) enum Noise {
 }
 
 /// All kinds by their names.
-pub(crate) const KINDS: [(&str, Noise); 19] = [
+pub(crate) const KINDS: [(&str, Noise); 21] = [
     ("white", Noise::Filtered(&[], &[1.0], 1.0)),
     ("AR(1) 0.7", Noise::Filtered(&[0.7], &[1.0], 0.714)),
     ("AR(1) 0.9", Noise::Filtered(&[0.9], &[1.0], 0.436)),
@@ -31,12 +31,15 @@ pub(crate) const KINDS: [(&str, Noise); 19] = [
     ("AR(1) -0.5", Noise::Filtered(&[-0.5], &[1.0], 0.866)),
     ("AR(1) -0.8", Noise::Filtered(&[-0.8], &[1.0], 0.6)),
     ("ARMA(2, 1)", Noise::Filtered(&[1.2, -0.5], &[1.0, 0.5], 0.5)),
+    // Poles at 0.9 exp(±0.1 i): white noise behind a filter of the second order.
+    ("low-pass filter", Noise::Filtered(&[1.791, -0.81], &[1.0], 0.0848)),
     ("MA(5)", Noise::Filtered(&[], &[1.0; 6], 0.408)),
     ("hum", Noise::Hum),
     ("1/f^0.7", Noise::PowerLaw(0.7, 0.0)),
     ("1/f", Noise::PowerLaw(1.0, 0.0)),
     ("1/f and white", Noise::PowerLaw(1.0, 1.0)),
     ("random walk", Noise::Walk(0.3, 0.0)),
+    ("walk 1 and white", Noise::Walk(1.0, 1.0)),
     ("walk 0.3 and white", Noise::Walk(0.3, 1.0)),
     ("walk 0.1 and white", Noise::Walk(0.1, 1.0)),
     ("walk 0.03 and white", Noise::Walk(0.03, 1.0)),

@@ -127,7 +127,7 @@ impl Series<'_> {
             }
             // Noise that fades well within the hold is no walk.
             if is_slow || alike || partial.first().is_none_or(|by| *by > 1.0 - OUTLASTED / samples as f64) {
-                kinds.take_all(&beside.walks(kinds.least()), WALKS);
+                kinds.take_walks(&beside);
             }
         }
         kinds.noise()
@@ -148,7 +148,7 @@ fn few_samples(jacobian: &[&[f64]], residuals: &[f64], times: Option<&[f64]>) ->
 /// White noise, and a walk beside it.
 fn beside_white(beside: &Beside<'_>) -> Option<Kinds> {
     let mut kinds = Kinds::white(beside.white()?);
-    kinds.take_all(&beside.walks(kinds.least()), WALKS);
+    kinds.take_walks(beside);
     Some(kinds)
 }
 
@@ -195,6 +195,12 @@ impl Kinds {
             likely: likely.collect(),
         };
         self.priced.push((price, kind));
+    }
+
+    /// Walks beside white noise, as probable together as [`WALKS`] says.
+    fn take_walks(&mut self, beside: &Beside<'_>) {
+        let (walks, part) = beside.walks(self.least());
+        self.take_all(&walks, WALKS * part);
     }
 
     fn take(&mut self, kind: Option<Kind>, parameters: usize) {
@@ -436,6 +442,49 @@ mod tests {
         // √((1 − ρ²)/N) is 0.014; without the restriction ρ would come out lower by some 0.006.
         let bias = errors.iter().sum::<f64>() / errors.len() as f64;
         assert!(bias.abs() < 0.004, "{bias}");
+    }
+
+    /// Noise of a low-pass filter was AR(1): what fitted parameters take out of correlations, added to all but that at no lag, made a second partial
+    /// autocorrelation of −16.
+    #[test]
+    fn filtered_noise_needs_more_than_one_lag() {
+        // Poles at 0.9 exp(±0.1 i).
+        let filtered = NoiseModel::AutoregressiveOfOrder {
+            order: 2,
+            partial: [0.989_4, -0.81, 0.0, 0.0, 0.0, 0.0],
+        };
+        for samples in [100, 400, 1000] {
+            let several = |seed: &u64| {
+                matches!(found(&simulated(filtered, samples, *seed)).model, NoiseModel::AutoregressiveOfOrder { .. })
+            };
+            let count = (0..40).filter(several).count();
+            assert!(count >= if samples > 100 { 39 } else { 30 }, "{samples}: {count}");
+        }
+    }
+
+    /// A walk that drowns white noise was found only if its steps were near one of those looked at first, which lie a factor of 15 apart.
+    #[test]
+    fn a_plain_walk_is_found_whatever_its_steps() {
+        for samples in [1000, 2000] {
+            for step in [0.7, 1.0] {
+                let near = |seed: &u64| {
+                    let (mut random, mut walk) = (crate::random::Rng::new(*seed), 0.0);
+                    let mut next = || {
+                        walk += step * random.normal();
+                        walk + random.normal()
+                    };
+                    let noise: Vec<f64> = (0..samples).map(|_| next()).collect();
+                    let found = found(&noise);
+                    let walks = found.likely.iter().filter(|likely| {
+                        matches!(likely.model, NoiseModel::WhiteAndWalk { step: found } if (found / step).ln().abs() < 0.5)
+                    });
+                    walks.map(|likely| likely.probability).sum::<f64>() > 0.3
+                };
+                let count = (0..20).filter(near).count();
+                println!("{samples} {step}: {count}");
+                assert!(count >= 15, "{samples} {step}: {count}");
+            }
+        }
     }
 
     #[test]

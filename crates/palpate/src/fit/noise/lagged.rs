@@ -12,12 +12,13 @@ const EVIDENCE: [f64; 2] = [4.0, 7.0];
 /// The partial autocorrelations of residuals, as many as speak for themselves; and whether those behind are above 0 together, by two standard
 /// deviations: then noise lasts longer than such an autoregression would.
 ///
-/// Each fitted parameter pulls the correlations of residuals down by some 1/N.
+/// Each fitted parameter pulls the correlations of residuals down by some 1/N, that of a sample with itself too: what adds it to the others
+/// alone makes correlations beyond 1 of smooth noise.
 pub(crate) fn partial(lags: &Lags, samples: usize, parameters: usize) -> (Few, bool) {
     /// Partial autocorrelations behind the first that are looked at together.
     const BEHIND: usize = 3;
     let taken = parameters as f64 / samples as f64;
-    let lags = lags.correlations.map(|correlation| correlation + taken);
+    let lags = lags.correlations.map(|correlation| (correlation + taken) / (1.0 + taken));
     let (mut kept, mut variance) = (Few::new(), 1.0);
     let (mut all, mut best) = (Few::new(), (0.0, 0));
     for (index, correlation) in lags.iter().enumerate() {

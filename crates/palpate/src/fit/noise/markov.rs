@@ -213,29 +213,53 @@ impl<'a> Beside<'a> {
         correlation_times.filter_map(found).collect()
     }
 
-    /// Walks of sizes evenly spaced in ln: from what no series of this length could show to steps of three white deviations; none where a few
-    /// of them show that none comes near this deviance.
-    pub(super) fn walks(&self, deviance: f64) -> Vec<(Likelihood, NoiseModel)> {
+    /// Walks of sizes evenly spaced in ln, and their part of the sizes there may be: from what no series of this length could show to steps of
+    /// three white deviations. Where one of them alone is likely, those about it; none where a few show that none comes near this deviance.
+    pub(super) fn walks(&self, deviance: f64) -> (Vec<(Likelihood, NoiseModel)>, f64) {
         /// Largest step.
         const LARGEST: f64 = 3.0;
         /// From one ln of a step to the next.
         const PACE: f64 = 0.9;
-        /// One of so many is looked at first, and how far from the best of them it may be.
+        /// One of so many is looked at first, and how far from the best of them it may be: by this, or as far as a size between two of them
+        /// changes the deviance a sample.
         const FIRST: usize = 3;
         const FARTHEST: f64 = 60.0;
-        let smallest = 2.0 / self.samples as f64;
-        let count = ((LARGEST / smallest).ln() / PACE).ceil() as usize + 1;
-        let found = |some: Vec<usize>| {
-            let steps: Vec<f64> = some.into_iter().map(|i| smallest * (PACE * i as f64).exp()).collect();
-            let walk = |(found, step): (Option<Likelihood>, f64)| Some((found?, NoiseModel::WhiteAndWalk { step }));
-            self.of_walks(&steps).into_iter().zip(steps).filter_map(walk).collect::<Vec<_>>()
+        const FARTHEST_BY_SAMPLE: f64 = 0.5;
+        /// Deviances between neighbours above which one of them alone is likely, and how often those about it are taken then.
+        const ALONE: f64 = 4.0;
+        const ROUNDS: usize = 3;
+        let smallest = (2.0 / self.samples as f64).ln();
+        let count = ((LARGEST.ln() - smallest) / PACE).ceil() as usize + 1;
+        let found = |logs: Vec<f64>| {
+            let steps: Vec<f64> = logs.iter().map(|log| log.exp()).collect();
+            let walk = |(found, log): (Option<Likelihood>, f64)| Some((log, found?));
+            self.of_walks(&steps).into_iter().zip(logs).filter_map(walk).collect::<Vec<_>>()
         };
-        let mut all = found((0..count).step_by(FIRST).collect());
-        if all.iter().all(|(found, _)| found.deviance > deviance + FARTHEST) {
-            return Vec::new();
+        let grid = |some: &dyn Fn(usize) -> bool| {
+            let chosen = (0..count).filter(|i| some(*i));
+            found(chosen.map(|i| smallest + PACE * i as f64).collect())
+        };
+        let mut all = grid(&|i| i % FIRST == 0);
+        let farthest = deviance + FARTHEST.max(FARTHEST_BY_SAMPLE * self.samples as f64);
+        if all.iter().all(|(_, found)| found.deviance > farthest) {
+            return (Vec::new(), 1.0);
         }
-        all.extend(found((0..count).filter(|i| i % FIRST != 0).collect()));
-        all
+        all.extend(grid(&|i| i % FIRST != 0));
+        let (mut pace, mut part) = (PACE, 1.0);
+        for _ in 0..ROUNDS {
+            let Some(best) = all.iter().copied().min_by(|a, b| a.1.deviance.total_cmp(&b.1.deviance)) else {
+                break;
+            };
+            let is_near = |other: &(f64, Likelihood)| other.0 != best.0 && other.1.deviance < best.1.deviance + ALONE;
+            if best.1.deviance > farthest || all.iter().any(is_near) {
+                break;
+            }
+            let finer = 2.0 * pace / (LANES + 1) as f64;
+            all = found((1..=LANES).map(|i| best.0 - pace + finer * i as f64).collect());
+            (pace, part) = (finer, LANES as f64 * finer / (PACE * count as f64));
+        }
+        let walk = |(log, found): (f64, Likelihood)| (found, NoiseModel::WhiteAndWalk { step: log.exp() });
+        (all.into_iter().map(walk).collect(), part)
     }
 }
 
