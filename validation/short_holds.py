@@ -19,7 +19,7 @@ HEAD = """# Holds shorter than the relaxation
 
 Coverage of 95 % intervals, in %, over {holds} simulated holds of {samples} samples with white noise (±{error:.1f} % a number, more where few fits have
 an interval): of the equilibrium, and of the parameter of the law that is covered least. *By curvature* are the same fits with intervals from the
-curvature at the optimum. *Open*: intervals of the equilibrium with an end that the data leave open, in % of those there are. *None*: holds whose
+curvature at the optimum. *After*: bands of the curve 1.5 and 5 times as long after the start of the hold as it lasts. *Open*: intervals of the equilibrium with an end that the data leave open, in % of those there are. *None*: holds whose
 fit did not reach an optimum inside its range, so that no interval is stated, in % of all. Noise is in % of the drop. Laws: latency with
 n = 5 and relative rate 2 /s, with n = 3 found; a standard linear solid of 2 s; a Prony series of 0.3 and 3 s. One command writes this page:
 
@@ -27,8 +27,8 @@ n = 5 and relative rate 2 /s, with n = 3 found; a standard linear solid of 2 s; 
 python validation/short_holds.py --holds {holds} --samples {samples} --write
 ```
 
-| law | hold, s | noise, % | equilibrium | by curvature | least | by curvature | open | none | profiles | ms a fit | by curvature |
-|---|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|
+| law | hold, s | noise, % | equilibrium | by curvature | least | by curvature | after 1.5 | by curvature | after 5 | by curvature | open | none | profiles | ms a fit | by curvature |
+|---|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|
 """
 
 TAIL = """
@@ -53,10 +53,12 @@ def line(case, rows, plain):
     law, seconds, noise = case
     counted = [f"{law} | {seconds:g} | {100 * noise:g}"]
     if rows[0]["found"] == 0:
-        return f"| {counted[0]} |  |  |  |  |  | 100 |  |  |  |"
+        return f"| {counted[0]} |  |  |  |  |  |  |  |  |  | 100 |  |  |  |"
     for of in (covered(rows[0]), covered(plain[0]), min(map(covered, rows)), min(map(covered, plain))):
         counted.append(f"{of:.0f}")
     first = rows[0]
+    for ahead in range(2):
+        counted += [f"{100 * of[0]['predicted'][ahead] / of[0]['predictions']:.0f}" for of in (rows, plain)]
     counted.append(f"{100 * first['open'] / first['found']:.0f}")
     counted.append(f"{100 * (1 - first['found'] / first['holds']):.0f}")
     counted.append(f"{100 * first['profiles'] / first['holds']:.0f}")

@@ -13,7 +13,10 @@ use palpate::fit::{IntervalMethod, LawOptions, Samples, fit_law};
 use palpate::test_problems::Rng;
 
 /// Durations of the holds, s: times of the laws are 0.3 to 3 s.
-const DURATIONS: [f64; 5] = [0.3, 1.0, 2.0, 4.0, 10.0];
+const DURATIONS: [f64; 6] = [0.3, 1.0, 2.0, 3.0, 4.0, 10.0];
+
+/// Times of predictions, in durations of the hold.
+const AHEAD: [f64; 2] = [1.5, 5.0];
 
 /// Standard deviations of the noise; the drop is 1.
 const SIZES: [f64; 3] = [1e-2, 1e-3, 1e-4];
@@ -42,6 +45,9 @@ fn report(known: &Known, duration: f64, size: f64, (holds, samples): (usize, usi
         ..LawOptions::default()
     };
     let (mut profiles, mut seconds) = (0, 0.0);
+    let ahead = AHEAD.map(|ahead| ahead * duration);
+    let later = ahead.map(|time| truth_over(time, known, white, 2).1[1]);
+    let (mut predictions, mut predicted) = (0, [0; 2]);
     for hold in 0..holds {
         let values = white.added(&times, &clean, size, &mut Rng::new(41 + ((hold as u64) << 20)));
         let begin = Instant::now();
@@ -49,6 +55,11 @@ fn report(known: &Known, duration: f64, size: f64, (holds, samples): (usize, usi
         seconds += begin.elapsed().as_secs_f64();
         let Ok(fit) = fit else { continue };
         profiles += usize::from(fit.interval_method == IntervalMethod::Profile);
+        let bands: Option<Vec<_>> = fit.predict_intervals(&ahead).iter().map(|band| band.interval).collect();
+        for (count, ((low, high), truth)) in predicted.iter_mut().zip(bands.iter().flatten().zip(later)) {
+            *count += usize::from((*low..=*high).contains(&truth));
+        }
+        predictions += usize::from(bands.is_some());
         for ((parameter, _), found) in known.truth.iter().zip(&mut found) {
             found.extend(fit.estimate(parameter).and_then(|estimate| estimate.interval));
         }
@@ -59,7 +70,7 @@ fn report(known: &Known, duration: f64, size: f64, (holds, samples): (usize, usi
         let open = count(&|low, high| low == 0.0 || !(low.is_finite() && high.is_finite()));
         println!(
             "{{\"seconds\":{duration},\"noise\":{size},\"law\":\"{}\",\"parameter\":\"{parameter}\",\"holds\":{holds},\
-             \"found\":{},\"profiles\":{profiles},\"below\":{below},\"above\":{above},\"open\":{open},\"milliseconds\":{:.3}}}",
+             \"found\":{},\"profiles\":{profiles},\"below\":{below},\"above\":{above},\"open\":{open},\"predictions\":{predictions},\"predicted\":{predicted:?},\"milliseconds\":{:.3}}}",
             known.name,
             found.len(),
             1e3 * seconds / holds as f64,

@@ -60,7 +60,7 @@ pub(crate) use problem::Condensed;
 pub use problem::RedundantTerm;
 use problem::{Model, ModelParameter, Sampled, build, condense, condense_to, redundant_terms, searched_name};
 pub use rate_domain::{fit_rates, fit_rates_watched};
-pub use result::{Domain, Fit, Parameter, ParameterRole, ParameterUnit};
+pub use result::{Domain, Fit, Parameter, ParameterRole, ParameterUnit, ProfileCurves};
 pub use samples::Samples;
 use samples::{Scaled, check_finite};
 pub use spectrum::{Smoothing, SpectrumFit, SpectrumOptions, SpectrumPeak, fit_spectrum};

@@ -211,6 +211,7 @@ impl Scaled {
             duration: 0.0,
             termination: solution.termination,
             redundant_terms: Vec::new(),
+            profile: None,
             work: effort.work,
         })
     }

@@ -72,6 +72,16 @@ pub struct Parameter {
     pub parts: Option<ErrorParts>,
 }
 
+/// Curves at the ends of the profiles of the parameters: what the data allow beside the best curve. Of an open profile the last that was looked at.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[non_exhaustive]
+pub struct ProfileCurves {
+    /// Coverage of the intervals.
+    pub confidence: f64,
+    /// The curves, as that of the fit.
+    pub curves: Vec<LawCurve>,
+}
+
 /// A fitted law: its parameters, their uncertainty, and why the search ended.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(remote = "Self")]
@@ -132,6 +142,9 @@ pub struct Fit {
     pub termination: Termination,
     /// Redundant terms: merged or vanishing ones.
     pub redundant_terms: Vec<RedundantTerm>,
+    /// Where the profiles of the parameters end, if intervals are those of profiles.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub profile: Option<ProfileCurves>,
     /// What it cost.
     pub work: Work,
 }
@@ -205,9 +218,14 @@ impl Fit {
     /// The signal at many times, as [`predict`](Self::predict).
     #[must_use]
     pub fn predict_many(&self, elapsed: &[f64]) -> Vec<f64> {
+        self.values_of(&self.curve, elapsed)
+    }
+
+    /// What the law shows with the parameters of this curve.
+    pub(super) fn values_of(&self, curve: &LawCurve, elapsed: &[f64]) -> Vec<f64> {
         match &self.loading {
-            None => self.curve.values(elapsed),
-            Some(loading) => self.curve.after(loading, elapsed),
+            None => curve.values(elapsed),
+            Some(loading) => curve.after(loading, elapsed),
         }
     }
 

@@ -50,8 +50,13 @@ impl Fitted {
 
     /// The law with the parameters found.
     pub(crate) fn curve(&self) -> LawCurve {
-        let (model, values) = (&self.model, self.values());
-        let parameters = self.natural_parameters(self.solution.at());
+        self.curve_at(self.solution.at())
+    }
+
+    /// The law with the parameters of another point.
+    pub(crate) fn curve_at(&self, point: Point<'_>) -> LawCurve {
+        let (model, values) = (&self.model, self.values_at(point));
+        let parameters = self.natural_parameters(point);
         let constants = usize::from(model.constant);
         let constant = if model.constant { values[0] } else { self.scaled.center };
         let terms = model.form.shapes.iter().enumerate().map(|(shape, kind)| Term {

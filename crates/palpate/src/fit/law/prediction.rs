@@ -1,7 +1,8 @@
 //! What a fit says about a time, with an interval.
 
-use crate::fit::{Estimate, Fit, Scale, searched_name};
+use crate::fit::{Estimate, Fit, ProfileCurves, Scale, Uncertainty, searched_name};
 use crate::laws::{Column, Kernel};
+use crate::statistics::coverage_factor;
 use crate::vector::add_multiple;
 
 impl Fit {
@@ -9,7 +10,8 @@ impl Fit {
     ///
     /// The interval is that of the curve, not of a sample: g ± t √(gᵀ C g) with g the derivatives of the curve by the searched
     /// parameters and C their covariance for noise that correlates as the residuals do. It knows of no other law: far beyond the
-    /// hold it is as good as the law is.
+    /// hold it is as good as the law is. Where the intervals of the parameters are those of profiles, the band also contains the curves at their
+    /// ends ([`profile`](Self::profile)), scaled to its coverage: what the data leave open, the prediction leaves open too.
     ///
     /// ```
     /// use palpate::fit::{LawOptions, Samples, fit_law};
@@ -31,7 +33,7 @@ impl Fit {
     /// The curve at many times, as [`predict_interval`](Self::predict_interval).
     #[must_use]
     pub fn predict_intervals(&self, elapsed: &[f64]) -> Vec<Estimate> {
-        self.predictions(elapsed, 0.0)
+        self.predictions(elapsed, |_| 0.0)
     }
 
     /// What one more sample would show there: the curve with its interval, and noise on top.
@@ -40,23 +42,60 @@ impl Fit {
         self.predict_samples(&[elapsed]).swap_remove(0)
     }
 
-    /// Further samples at many times, as [`predict_sample`](Self::predict_sample).
+    /// Further samples at many times, as [`predict_sample`](Self::predict_sample), each with the noise of a sample of the root mean square weight.
     #[must_use]
     pub fn predict_samples(&self, elapsed: &[f64]) -> Vec<Estimate> {
-        self.predictions(elapsed, self.uncertainty.as_ref().map_or(0.0, |uncertainty| uncertainty.deviation))
+        let deviation = self.uncertainty.as_ref().map_or(0.0, |uncertainty| uncertainty.deviation);
+        self.predictions(elapsed, |_| deviation)
     }
 
-    fn predictions(&self, elapsed: &[f64], deviation: f64) -> Vec<Estimate> {
+    /// Further samples at many times whose noise has these standard deviations, in the unit of the signal.
+    ///
+    /// # Panics
+    /// If there are fewer deviations than times.
+    #[must_use]
+    pub fn predict_samples_with(&self, elapsed: &[f64], deviations: &[f64]) -> Vec<Estimate> {
+        self.predictions(elapsed, |index| deviations[index])
+    }
+
+    fn predictions(&self, elapsed: &[f64], deviation: impl Fn(usize) -> f64) -> Vec<Estimate> {
         let values = self.predict_many(elapsed);
         let (Some(uncertainty), Some(white)) = (&self.uncertainty, &self.white_covariance) else {
             return values.into_iter().map(Estimate::fixed).collect();
         };
         let gradients = self.gradients(elapsed);
-        let mut found = uncertainty.estimates(&values, &gradients, white, deviation * deviation, |_| Scale::Linear);
+        let mut found =
+            uncertainty.estimates(&values, &gradients, white, |index| deviation(index).powi(2), |_| Scale::Linear);
+        if let Some(profile) = &self.profile {
+            self.widen(&mut found, profile, uncertainty, elapsed, deviation);
+        }
         for (estimate, _) in found.iter_mut().zip(elapsed).filter(|(_, time)| time.is_nan()) {
             *estimate = Estimate::fixed(f64::NAN);
         }
         found
+    }
+
+    /// Widens intervals to the curves at the ends of profiles; those of samples have noise on top.
+    fn widen(
+        &self,
+        found: &mut [Estimate],
+        profile: &ProfileCurves,
+        uncertainty: &Uncertainty,
+        elapsed: &[f64],
+        deviation: impl Fn(usize) -> f64,
+    ) {
+        let factor = coverage_factor(uncertainty.confidence, uncertainty.freedom);
+        let scale = factor / coverage_factor(profile.confidence, uncertainty.freedom);
+        for curve in &profile.curves {
+            for (index, (estimate, there)) in found.iter_mut().zip(self.values_of(curve, elapsed)).enumerate() {
+                let away = scale * (there - estimate.value);
+                let half = away.hypot(factor * deviation(index));
+                if let Some((low, high)) = &mut estimate.interval {
+                    let end = estimate.value + half.copysign(away);
+                    (*low, *high) = (low.min(end), high.max(end));
+                }
+            }
+        }
     }
 
     /// Derivatives of the curve by the searched parameters, in the order of `searched`: a column each.

@@ -76,6 +76,7 @@ impl Fitted {
             duration: self.scaled.duration,
             termination: solution.termination,
             redundant_terms: redundant_terms(&self.model, solution),
+            profile: None,
             work,
         }
     }

@@ -19,13 +19,13 @@ type Lanes = [f64; LANES];
 
 impl Uncertainty {
     /// Estimates of `values`, of which column a of `gradients` has the derivatives by parameter a (of ln value on the logarithmic scale), with
-    /// something of the variance `added` on top; `white` is the covariance of the parameters if noise were white.
+    /// something of the variances `added` on top; `white` is the covariance of the parameters if noise were white.
     pub(crate) fn estimates(
         &self,
         values: &[f64],
         gradients: &[impl AsRef<[f64]>],
         white: &[Vec<f64>],
-        added: f64,
+        added: impl Fn(usize) -> f64,
         scale: impl Fn(usize) -> Scale,
     ) -> Vec<Estimate> {
         let mut mixture = Mixture::new(self);
@@ -33,10 +33,11 @@ impl Uncertainty {
         for (index, some) in values.chunks(LANES).enumerate() {
             let block: SmallVec<[Lanes; 8]> =
                 gradients.iter().map(|column| lanes(&column.as_ref()[index * LANES..])).collect();
-            let [errors, halves] = mixture.errors(&block, added);
+            let added: Lanes = std::array::from_fn(|lane| added((index * LANES + lane).min(values.len() - 1)));
+            let [errors, halves] = mixture.errors(&block, &added);
             let white = variances(&block, white);
             for (lane, value) in some.iter().enumerate() {
-                let white = (white[lane] + added).sqrt();
+                let white = (white[lane] + added[lane]).sqrt();
                 found.push(estimate(*value, [errors[lane], white, halves[lane]], scale(index * LANES + lane)));
             }
         }
@@ -46,7 +47,7 @@ impl Uncertainty {
     /// Half an interval over the standard error of a number with this gradient.
     pub(crate) fn factor(&self, gradient: &[f64]) -> f64 {
         let block: SmallVec<[Lanes; 8]> = gradient.iter().map(|entry| [*entry; LANES]).collect();
-        let [errors, halves] = Mixture::new(self).errors(&block, 0.0);
+        let [errors, halves] = Mixture::new(self).errors(&block, &[0.0; LANES]);
         halves[0] / errors[0]
     }
 }
@@ -112,9 +113,10 @@ impl<'a> Mixture<'a> {
     }
 
     /// Standard errors and halves of intervals.
-    fn errors(&mut self, block: &[Lanes], added: f64) -> [Lanes; 2] {
+    fn errors(&mut self, block: &[Lanes], added: &Lanes) -> [Lanes; 2] {
         let Uncertainty { covariance, models, .. } = self.uncertainty;
-        let variance = variances(block, covariance).map(|variance| variance + added);
+        let variance = variances(block, covariance);
+        let variance: Lanes = std::array::from_fn(|lane| variance[lane] + added[lane]);
         let errors = variance.map(f64::sqrt);
         if models.is_empty() {
             return [errors, errors.map(|error| error * self.alone)];
@@ -123,7 +125,7 @@ impl<'a> Mixture<'a> {
             .iter()
             .map(|model| {
                 let own = variances(block, &model.covariance);
-                (model.probability, std::array::from_fn(|lane| variance[lane] / (own[lane] + added)))
+                (model.probability, std::array::from_fn(|lane| variance[lane] / (own[lane] + added[lane])))
             })
             .collect();
         let factors = accelerated(
@@ -253,7 +255,7 @@ mod tests {
         for (freedom, confidence) in [(3.0, 0.95), (20.0, 0.5), (996.0, 0.999)] {
             let found = mixture(freedom, confidence, &[(0.7, 1.0), (0.29, 3.0), (0.01, 50.0)]);
             let halves = on_every_level(|| {
-                let all = found.estimates(&[0.0; 11], &gradients, &found.covariance, 0.5, |_| Scale::Linear);
+                let all = found.estimates(&[0.0; 11], &gradients, &found.covariance, |_| 0.5, |_| Scale::Linear);
                 all.iter().map(|estimate| estimate.interval.unwrap().1).collect()
             });
             let alone = coverage_factor(confidence, freedom);

@@ -114,6 +114,7 @@ impl Assessed {
             (0..size).map(|i| (0..size).map(|j| entry(i, j)).collect()).collect()
         };
         let columns: Vec<&[f64]> = solution.columns.iter().chain(&solution.derivatives).map(Vec::as_slice).collect();
+        let times = times.filter(|_| choice == NoiseChoice::FromResiduals);
         let (times, time_unit) =
             times.map_or((None, 1.0), |(times, unit)| (Some(times).filter(|times| are_uneven(times)), unit));
         let spread = (may_vary && times.is_none() && choice == NoiseChoice::FromResiduals)
@@ -279,7 +280,7 @@ impl Assessed {
         let (Some(uncertainty), Some(white)) = (&self.uncertainty, &self.white) else {
             return values.iter().map(|value| Estimate::fixed(*value)).collect();
         };
-        let mut found = uncertainty.estimates(values, gradients, white, 0.0, scale);
+        let mut found = uncertainty.estimates(values, gradients, white, |_| 0.0, scale);
         for estimate in &mut found {
             // What no parameter moves was given.
             if estimate.white_standard_error == Some(0.0) {

@@ -17,11 +17,34 @@ const CLOSE: f64 = 1e-9;
 /// The same on condensed samples, which only show where to look.
 const ROUGH: f64 = 1e-3;
 
-/// Ends of a profile; `None` where it is open.
+/// Ends of a profile; none of one that cannot be followed.
 #[derive(Default)]
 pub(super) struct Ends {
-    pub(super) low: Option<Reached>,
-    pub(super) high: Option<Reached>,
+    pub(super) low: Option<End>,
+    pub(super) high: Option<End>,
+}
+
+/// Where a way along a profile ended.
+pub(super) struct End {
+    /// The farthest point that the data allow, as far as it is known.
+    pub(super) last: Reached,
+    /// Whether the profile meets its bound there: else it is open.
+    is_met: bool,
+}
+
+impl End {
+    fn open(last: Reached) -> Self {
+        Self { last, is_met: false }
+    }
+
+    fn met(last: Reached) -> Self {
+        Self { last, is_met: true }
+    }
+
+    /// Where the profile meets its bound.
+    pub(super) fn bound(&self) -> Option<&Reached> {
+        self.is_met.then_some(&self.last)
+    }
 }
 
 /// Which of the searched parameters.
@@ -89,8 +112,8 @@ impl Profile<'_> {
             false => self.end_among_valleys(few.as_ref(), side, effort),
         };
         Ok(Ends {
-            low: end(-1.0)?,
-            high: end(1.0)?,
+            low: Some(end(-1.0)?),
+            high: Some(end(1.0)?),
         })
     }
 
@@ -121,37 +144,30 @@ impl Profile<'_> {
     }
 
     /// Where the profile meets its bound on one side.
-    fn end(&self, few: Option<&Field<'_>>, side: f64, effort: &mut Effort<'_>) -> Result<Option<Reached>, Cancelled> {
+    fn end(&self, few: Option<&Field<'_>>, side: f64, effort: &mut Effort<'_>) -> Result<End, Cancelled> {
         let start = self.start();
         let guess = match few {
-            Some(few) => self.meet(few, side, &start, self.target, ROUGH, effort)?,
+            Some(few) => Some(self.meet(few, side, &start, self.target, ROUGH, effort)?),
             None => None,
         };
-        let first = guess.as_ref().map_or(self.target, |guess| guess.distance);
-        let nonlinear = guess.map_or_else(|| start.nonlinear.clone(), |guess| guess.nonlinear);
-        let met = self.meet(&self.all(), side, &Reached { nonlinear, ..start }, first, CLOSE, effort)?;
-        Ok(met.filter(|met| !met.at_edge))
+        let guess = guess.as_ref().and_then(End::bound);
+        let first = guess.map_or(self.target, |guess| guess.distance);
+        let nonlinear = guess.map_or_else(|| start.nonlinear.clone(), |guess| guess.nonlinear.clone());
+        self.meet(&self.all(), side, &Reached { nonlinear, ..start }, first, CLOSE, effort)
     }
 
     /// The same beside doubtful terms: each lies in one of many valleys, of which another may be the lowest when a parameter is held
     /// elsewhere. The profile jumps from one to the next, and is followed roughly.
-    fn end_among_valleys(
-        &self,
-        few: Option<&Field<'_>>,
-        side: f64,
-        effort: &mut Effort<'_>,
-    ) -> Result<Option<Reached>, Cancelled> {
+    fn end_among_valleys(&self, few: Option<&Field<'_>>, side: f64, effort: &mut Effort<'_>) -> Result<End, Cancelled> {
         let all = self.all();
         let field = few.unwrap_or(&all);
-        let (mut from, mut first) = (self.start(), self.target);
-        let mut met = None;
-        for _ in 0..VALLEYS {
-            met = self.meet(field, side, &from, first, ROUGH, effort)?.filter(|met| !met.at_edge);
-            let Some(end) = &met else { break };
+        let mut met = self.meet(field, side, &self.start(), self.target, ROUGH, effort)?;
+        for _ in 1..VALLEYS {
+            let Some(end) = met.bound() else { break };
             let Some(lower) = self.elsewhere(field, side, end, effort)? else {
                 break;
             };
-            (first, from) = (1.2 * end.distance, lower);
+            met = self.meet(field, side, &lower, 1.2 * end.distance, ROUGH, effort)?;
         }
         Ok(met)
     }
@@ -213,6 +229,9 @@ impl Profile<'_> {
     }
 
     /// Widens until z exceeds its bound, then closes in by regula falsi (Illinois): z is nearly straight in the parameter.
+    ///
+    /// The far end may lie in a valley of its own: places between are looked for from the near one, and from the far one where that leads beyond
+    /// the bound. Where z jumps over its bound, what lies between is not known, and the end counts as open.
     fn meet(
         &self,
         field: &Field<'_>,
@@ -221,15 +240,17 @@ impl Profile<'_> {
         first: f64,
         close: f64,
         effort: &mut Effort<'_>,
-    ) -> Result<Option<Reached>, Cancelled> {
+    ) -> Result<End, Cancelled> {
         /// Halvings of what is left, if no secant leads anywhere.
         const ROUNDS: usize = 40;
+        /// Share of the bound by which z may miss it.
+        const MISSES: f64 = 0.1;
         let farthest = self.farthest(side);
         let mut near = start.clone();
         let mut far = self.at(field, side, first.min(farthest), &near, effort)?;
         while far.z < self.target {
             if far.distance >= farthest {
-                return Ok(None);
+                return Ok(End::open(far));
             }
             let growth = (1.05 * self.target / far.z).clamp(1.1, 2.0);
             near = far;
@@ -241,10 +262,15 @@ impl Profile<'_> {
             let share = missing / (missing + over);
             let middle = near.distance + share * (far.distance - near.distance);
             let width = far.distance - near.distance;
-            let trial = self.at(field, side, middle, &far, effort)?;
+            let mut trial = self.at(field, side, middle, &near, effort)?;
+            if trial.z > self.target {
+                let other = self.at(field, side, middle, &far, effort)?;
+                trial = if other.z < trial.z { other } else { trial };
+            }
             let left = self.target - trial.z;
             if width < close * (1.0 + middle) || left.abs() < close {
-                return Ok(Some(trial));
+                let is_met = left.abs() <= MISSES * self.target && !trial.at_edge;
+                return Ok(if is_met { End::met(trial) } else { End::open(near) });
             }
             if left > 0.0 {
                 (near, missing, over) = (trial, left, 0.5 * over);
@@ -252,7 +278,8 @@ impl Profile<'_> {
                 (far, over, missing) = (trial, -left, 0.5 * missing);
             }
         }
-        Ok(Some(far))
+        let is_met = far.z - self.target <= MISSES * self.target && !far.at_edge;
+        Ok(if is_met { End::met(far) } else { End::open(near) })
     }
 
     /// The profile at a distance in standard errors.
