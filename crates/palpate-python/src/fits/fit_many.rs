@@ -10,7 +10,7 @@ use arrow_buffer::ScalarBuffer;
 use arrow_cast::cast;
 use arrow_schema::{DataType, Field};
 use numpy::{PyArray1, PyArrayMethods};
-use palpate::fit::{Fit, LawOptions, Parameter, Samples, fit_law};
+use palpate::fit::{Estimate, Fit, LawOptions, Parameter, Samples, Termination, fit_law};
 use palpate::laws::Response;
 use palpate::watch::{Cancelled, Progress};
 use palpate_report::result::word;
@@ -19,6 +19,7 @@ use pyo3_arrow::PyChunkedArray;
 use pyo3_arrow::input::AnyArray;
 use rayon::prelude::*;
 
+use crate::arrays::doubles;
 use crate::errors::{OptionError, PalpateError, refused, refused_plainly, unfitted};
 use crate::fits::fit::{Keywords, Requested, fitted, standard_deviations, without_nan};
 use crate::table::{Column, Table};
@@ -47,27 +48,16 @@ fn ragged(curves: &Bound<'_, PyAny>, name: &str, omit_nan: bool) -> PyResult<Rag
         }
     }
     let found = arrays.call_method1("as_ragged", (curves, name, omit_nan))?;
-    type Found<'py> = (Bound<'py, PyArray1<f64>>, Bound<'py, PyArray1<i64>>, HashMap<usize, String>);
+    type Found<'py> = (Bound<'py, PyAny>, Bound<'py, PyArray1<i64>>, HashMap<usize, String>);
     let (values, offsets, mut wrong): Found<'_> = found.extract()?;
     let offsets: Vec<usize> = offsets.try_readonly()?.as_array().iter().map(|offset| *offset as usize).collect();
-    let values = values.try_readonly()?;
-    let values = values.as_slice()?;
-    let (mut ragged, mut copied) = (Vec::with_capacity(offsets.len()), 0);
-    for (index, ends) in offsets.windows(2).enumerate() {
-        let curve = || ScalarBuffer::from(values[ends[0]..ends[1]].to_vec());
-        ragged.push(wrong.remove(&index).map_or_else(|| Ok(curve()), Err));
-        copied += ends[1] - ends[0];
-        if copied > AT_ONCE {
-            // A gigabyte takes a second to copy: Ctrl-C is heard in between.
-            curves.py().check_signals()?;
-            copied = 0;
-        }
-    }
-    Ok(ragged)
+    let values = ScalarBuffer::from(doubles(&values, name)?);
+    let curve = |(index, ends): (usize, &[usize])| match wrong.remove(&index) {
+        Some(error) => Err(error),
+        None => Ok(values.slice(ends[0], ends[1] - ends[0])),
+    };
+    Ok(offsets.windows(2).enumerate().map(curve).collect())
 }
-
-/// Parameters that are copied in some milliseconds.
-const AT_ONCE: usize = 4 << 20;
 
 fn of_arrow(column: &PyChunkedArray, name: &str, omit_nan: bool) -> PyResult<Ragged> {
     let wrong = |kind: &DataType| {
@@ -129,8 +119,37 @@ fn one_for_all(times: &Ragged, curves: usize, name: &str) -> PyResult<bool> {
     }
 }
 
+/// What the table shows of a fit: a fraction of its memory.
+struct Row {
+    /// In the order of the parameters of the table, those that are determined.
+    estimates: Vec<Option<Estimate>>,
+    rmse: f64,
+    residual_correlation: f64,
+    noise: String,
+    effective_samples: f64,
+    interval_method: &'static str,
+    samples: usize,
+    termination: Termination,
+}
+
+impl Row {
+    fn of(fit: &Fit, parameters: &[Parameter]) -> Self {
+        let estimate = |parameter: &Parameter| fit.parameter(parameter.name)?.determined(fit.termination).copied();
+        Self {
+            estimates: parameters.iter().map(estimate).collect(),
+            rmse: fit.rmse,
+            residual_correlation: fit.residual_correlation,
+            noise: fit.noise_in_words(),
+            effective_samples: fit.effective_samples(),
+            interval_method: fit.interval_method.name(),
+            samples: fit.samples,
+            termination: fit.termination,
+        }
+    }
+}
+
 /// A fit, or why there is none.
-type Fitted = Result<Fit, String>;
+type Fitted = Result<Row, String>;
 
 #[pyfunction]
 #[expect(clippy::needless_pass_by_value, reason = "arguments of Python")]
@@ -155,7 +174,9 @@ pub(crate) fn fit_many(
         }
         None => None,
     };
-    let shape = requested.clone();
+    let law = requested.law.to_string();
+    let parameters = parameters_of(&requested)?;
+    let reported = parameters.clone();
     let work = move |heard: Heard| {
         let fit = |index: usize| {
             let time = numbers(&times[if one_time { 0 } else { index }])?;
@@ -175,14 +196,14 @@ pub(crate) fn fit_many(
                 .map_err(|error| error.to_string())
         };
         let one = |index: usize| {
-            let fit = fit(index);
-            heard.step().map(|()| fit)
+            let row = fit(index).map(|fit| Row::of(&fit, &reported));
+            heard.step().map(|()| row)
         };
         in_parallel(|| (0..curves).into_par_iter().map(one).collect::<Result<Vec<Fitted>, Cancelled>>())
     };
     let fits = at_length_reported(py, progress.as_ref(), work)?.map_err(refused_plainly::<PalpateError>)?;
     let fits = fits.map_err(refused_plainly::<PalpateError>)?;
-    table(&shape, &fits)
+    table(&law, &parameters, &fits)
 }
 
 /// The parameters that every fit of a law has, whatever the curve, by their names.
@@ -199,31 +220,27 @@ fn parameters_of(requested: &Requested) -> PyResult<Vec<Parameter>> {
 }
 
 /// A row a curve; parameters that a fit does not have are missing.
-fn table(requested: &Requested, fits: &[Fitted]) -> PyResult<Table> {
+fn table(law: &str, parameters: &[Parameter], fits: &[Fitted]) -> PyResult<Table> {
     let good = || fits.iter().map(|fit| fit.as_ref().ok());
-    let floats = |pick: &dyn Fn(&Fit) -> Option<f64>| Column::column(good().map(|fit| pick(fit?)));
-    let law = requested.law.to_string();
+    let floats = |pick: &dyn Fn(&Row) -> Option<f64>| Column::column(good().map(|row| pick(row?)));
     let mut columns = vec![
         ("curve".to_owned(), Column::column(0..fits.len())),
-        ("law".to_owned(), Column::column(fits.iter().map(|_| law.as_str()))),
+        ("law".to_owned(), Column::column(fits.iter().map(|_| law))),
     ];
-    for parameter in &parameters_of(requested)? {
+    for (index, parameter) in parameters.iter().enumerate() {
         let name = parameter.name.to_string();
-        let known = |fit: &Fit| fit.parameter(parameter.name)?.determined(fit.termination).copied();
-        columns.push((name.clone(), floats(&|fit| Some(known(fit)?.value))));
-        columns.push((format!("{name}_standard_error"), floats(&|fit| known(fit)?.standard_error)));
-        columns.push((format!("{name}_low"), floats(&|fit| Some(known(fit)?.interval?.0))));
-        columns.push((format!("{name}_high"), floats(&|fit| Some(known(fit)?.interval?.1))));
+        columns.push((name.clone(), floats(&|row| Some(row.estimates[index]?.value))));
+        columns.push((format!("{name}_standard_error"), floats(&|row| row.estimates[index]?.standard_error)));
+        columns.push((format!("{name}_low"), floats(&|row| Some(row.estimates[index]?.interval?.0))));
+        columns.push((format!("{name}_high"), floats(&|row| Some(row.estimates[index]?.interval?.1))));
     }
-    columns.push(("rmse".to_owned(), floats(&|fit| Some(fit.rmse))));
-    columns.push(("residual_correlation".to_owned(), floats(&|fit| Some(fit.residual_correlation))));
-    columns.push(("noise".to_owned(), Column::column(good().map(|fit| Some(fit?.noise_in_words())))));
-    columns.push(("effective_samples".to_owned(), floats(&|fit| Some(fit.effective_samples()))));
-    let method = |fit: Option<&Fit>| fit.map(|fit| fit.interval_method.name().to_owned());
-    columns.push(("interval_method".to_owned(), Column::column(good().map(method))));
-    columns.push(("samples".to_owned(), Column::column(good().map(|fit| Some(fit?.samples)))));
-    let ended = good().map(|fit| Some(word(fit?.termination)));
-    columns.push(("termination".to_owned(), Column::column(ended)));
+    columns.push(("rmse".to_owned(), floats(&|row| Some(row.rmse))));
+    columns.push(("residual_correlation".to_owned(), floats(&|row| Some(row.residual_correlation))));
+    columns.push(("noise".to_owned(), Column::column(good().map(|row| Some(row?.noise.as_str())))));
+    columns.push(("effective_samples".to_owned(), floats(&|row| Some(row.effective_samples))));
+    columns.push(("interval_method".to_owned(), Column::column(good().map(|row| Some(row?.interval_method)))));
+    columns.push(("samples".to_owned(), Column::column(good().map(|row| Some(row?.samples)))));
+    columns.push(("termination".to_owned(), Column::column(good().map(|row| Some(word(row?.termination))))));
     columns.push(("error".to_owned(), Column::column(fits.iter().map(|fit| fit.as_ref().err().cloned()))));
     Table::of(columns.iter().map(|(name, values)| (name.as_str(), Arc::clone(values))).collect())
 }

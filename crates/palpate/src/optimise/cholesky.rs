@@ -18,14 +18,18 @@ pub(crate) struct Cholesky {
 impl Cholesky {
     /// Factors `matrix` (row-major, `size` × `size`) after scaling its diagonal to one; `None` if it is singular to rounding.
     pub(crate) fn new(matrix: &[f64], size: usize) -> Option<Self> {
-        let mut scale = Few::from_elem(1.0, size);
+        let mut made = Self {
+            size,
+            lower: Square::from_elem(0.0, size * size),
+            scale: Few::from_elem(1.0, size),
+        };
+        let (lower, scale) = (&mut made.lower, &mut made.scale);
         for (i, scale) in scale.iter_mut().enumerate() {
             *scale /= matrix[i * (size + 1)].sqrt();
         }
         if scale.iter().any(|s| !s.is_finite()) {
             return None;
         }
-        let mut lower = Square::from_elem(0.0, size * size);
         for i in 0..size {
             for j in 0..=i {
                 let mut sum = matrix[i * size + j] * scale[i] * scale[j];
@@ -43,7 +47,7 @@ impl Cholesky {
                 }
             }
         }
-        Some(Self { size, lower, scale })
+        Some(made)
     }
 
     /// Solves in place.

@@ -239,14 +239,17 @@ impl<'a> Table<'a> {
 
     fn residuals(&mut self, model: &Model, shape: usize, rates: &[f64], other: f64) -> Few {
         let nodes = self.nodes.times.len();
-        self.times.clear();
-        for rates_together in rates.chunks(LANES) {
+        let numbers = rates.len().next_multiple_of(LANES) * nodes;
+        self.times.resize(numbers, 0.0);
+        self.shapes.resize(numbers, 0.0);
+        for (rates_together, rows) in rates.chunks(LANES).zip(self.times.as_chunks_mut().0.chunks_mut(nodes)) {
             // The last rate stands in for those that are not there.
             let last = rates_together.len() - 1;
             let scales: [f64; LANES] = std::array::from_fn(|lane| (rates_together[lane.min(last)] - rates[0]).exp());
-            self.times.extend(self.nodes.times.iter().flat_map(|time| scales.map(|scale| time * scale)));
+            rows.iter_mut()
+                .zip(&self.nodes.times)
+                .for_each(|(row, time)| *row = scales.map(|scale| time * scale));
         }
-        self.shapes.resize(self.times.len(), 0.0);
         let parameters = model.parameters_of(shape).len();
         model.shape_value(shape, &self.times, &[rates[0], other][..parameters], &mut self.shapes);
         let mut residuals = Few::new();

@@ -56,6 +56,9 @@ fn is_free(name: &str, kind: ShapeParameterKind, options: &LawOptions) -> bool {
 /// Refuses options that no fit of this form can follow, whatever the samples.
 pub(crate) fn suits(form: &Form, options: &LawOptions) -> Result<(), FitError> {
     options.check()?;
+    if options.bounds.is_empty() && options.fixed.is_empty() {
+        return Ok(());
+    }
     let constant = form.constant_name();
     let parameters = form.parameters().into_iter().filter(|(_, _, kind)| *kind != ShapeParameterKind::Reference);
     let parameters: Vec<String> = parameters.map(|(_, name, _)| name).collect();

@@ -52,8 +52,8 @@ impl Point {
         let kept = shapes.spare().and_then(|spare| spare.0.borrow_mut().pop());
         kept.unwrap_or_else(|| Self {
             theta: vec![0.0; numbers],
-            columns: vec![vec![0.0; samples]; shapes.columns()],
-            derivatives: vec![vec![0.0; samples]; numbers],
+            columns: (0..shapes.columns()).map(|_| vec![0.0; samples]).collect(),
+            derivatives: (0..numbers).map(|_| vec![0.0; samples]).collect(),
             linear: vec![0.0; shapes.columns()],
             residuals: vec![0.0; samples],
             gram: vec![0.0; shapes.columns() * shapes.columns()],
