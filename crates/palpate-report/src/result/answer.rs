@@ -81,7 +81,7 @@ impl Answer {
             indistinguishable: others.as_ref().map(|of| of.iter().map(Law::to_string).collect()),
             holds_agreeing: agreeing,
             holds_compared: judged.len(),
-            sentence: sentence(law, agreeing, &judged.iter().map(|(_, found)| *found).collect::<Vec<_>>())
+            sentence: sentence(record, law, agreeing, &judged.iter().map(|(_, found)| *found).collect::<Vec<_>>())
                 + &others.as_deref().map_or_else(String::new, sentence_of_all),
             holds: judged.iter().filter_map(|(hold, found)| HoldAnswer::new(hold, found)).collect(),
         }
@@ -184,9 +184,14 @@ fn law_of_few(record: &ComparedRecord) -> Option<Law> {
     laws.into_iter().min_by(order)
 }
 
-fn sentence(law: Option<Law>, agreeing: usize, judged: &[&Comparison]) -> String {
+fn sentence(record: &ComparedRecord, law: Option<Law>, agreeing: usize, judged: &[&Comparison]) -> String {
     let Some(law) = law else {
-        return "No law can be recommended: no hold has enough samples and change to compare laws on it.".to_owned();
+        return match record.holds.iter().any(|hold| hold.comparison.is_some()) {
+            true => {
+                "No law can be recommended: no hold has enough samples and change to compare laws on it.".to_owned()
+            }
+            false => "Laws were not compared.".to_owned(),
+        };
     };
     let name = name_in_words(law);
     let compared = judged.len();

@@ -67,7 +67,9 @@ fn formula_line(hold: &HoldAnswer) -> Option<String> {
 
 /// A formula, and from when its t counts, s.
 pub(super) fn with_start(formula: &str, start: f64) -> String {
-    format!("{formula}, with t from {} s of the record", significant(start, 4))
+    // To a hundredth of a second, however late in the day.
+    let digits = 4.max(start.abs().max(1.0).log10().ceil() as usize + 2);
+    format!("{formula}, with t from {} s of the record", significant(start, digits))
 }
 
 /// Parameters, a line each.

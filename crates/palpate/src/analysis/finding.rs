@@ -312,6 +312,15 @@ pub enum Finding {
         /// Its confidence interval.
         interval: (f64, f64),
     },
+    /// A free exponent fits holds better than the best of the listed ones.
+    ExponentNotListed {
+        /// The best of the listed exponents for all holds.
+        best: f64,
+        /// Holds that a free exponent fits better, each with that exponent.
+        free: Vec<(usize, f64)>,
+        /// By how much their information criteria are lower together.
+        delta_bic: f64,
+    },
     /// The simulated record differs from the measured one.
     OverlayPoor {
         /// Root mean square of the difference as a share of the largest force.

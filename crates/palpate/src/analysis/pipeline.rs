@@ -5,7 +5,7 @@ use super::holds::{HoldAnalysis, complete_hold, fit_exponents, prepare_hold};
 use super::prepare::{ClockSkew, Prepared, corrected_watched, signal_findings};
 use super::together::{
     Across, EstimatedModulus, ImpliedModulus, LoadingModulus, ModulusSource, Overlay, across, changing_rate,
-    implied_modulus, loading_modulus, overlay,
+    exponent_not_listed, implied_modulus, loading_modulus, overlay,
 };
 use super::{AnalysisError, AnalysisOptions, Finding};
 use crate::budget::{Budget, Contribution, InputQuantity};
@@ -180,6 +180,7 @@ fn examined(
     findings.extend(specimen.as_ref().and_then(|specimen| uncertain_touch(&contact, specimen, &holds)));
     let across = across(&holds, &exponents, options, 4.0 * segmentation.settings.tolerance, watch)?;
     findings.extend(changing_rate(&across.joint));
+    findings.extend(exponent_not_listed(&holds, &across));
     let overlay = specimen.as_ref().filter(|_| !holds.is_empty()).and_then(|specimen| {
         let result = overlay(&record, &segmentation, specimen, &holds, across.common_exponent, options);
         result.map_err(|reason| findings.push(Finding::NoOverlay { reason })).ok()

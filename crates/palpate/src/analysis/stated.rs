@@ -2,13 +2,13 @@
 
 use super::{Analysis, Conditions, HoldAnalysis};
 use crate::fit::Estimate;
-use crate::segment::{After, HoldMode, Phase};
+use crate::segment::{After, HoldMode, Phase, Segment};
 use crate::statistics::{coverage_factor, effective_count, lag_one_correlation, noise, range};
 
 /// What a report states of one hold of the displacement; nothing is extrapolated.
 #[derive(Debug, Clone, PartialEq)]
 pub struct HoldReport {
-    /// Duration of the ramp before the hold, s: the time in which the displacement was applied.
+    /// Time in which the displacement was applied, s: from the last sample before the jaw moves to the first of the hold.
     pub applied_in: Option<f64>,
     /// Largest less smallest displacement over the hold, m: the variation of the constraint, with the noise of its measurement.
     pub constraint_variation: Option<f64>,
@@ -77,13 +77,25 @@ impl Analysis {
         // Of the usual times those count that were measured; of chosen ones all.
         let chosen = self.options.conditions.relaxation_at.as_deref().filter(|_| initial_force.is_some());
         HoldReport {
-            applied_in: ramp.map(|ramp| time[segment.start] - time[ramp.start]),
+            applied_in: ramp.map(|ramp| time[segment.start] - time[self.last_at_rest(ramp, segment.start)]),
             constraint_variation,
             relative_constraint_variation: constraint_variation.and_then(relative),
             initial_force,
             not_measured: chosen.unwrap_or_default().iter().copied().filter(|time| !measured(time)).collect(),
             relaxation: relaxation.unwrap_or_default(),
         }
+    }
+
+    /// The last sample before the jaw goes from where it was before a ramp; a rest too short for a phase of its own is part of its ramp.
+    fn last_at_rest(&self, ramp: &Segment, end: usize) -> usize {
+        let before = ramp.start.saturating_sub(1);
+        let Some(displacement) = self.record.displacement().filter(|_| self.segmentation.settings.from_displacement)
+        else {
+            return before;
+        };
+        let is_there =
+            |i: &usize| (displacement[*i] - displacement[before]).abs() <= self.segmentation.settings.tolerance;
+        (before..end).take_while(is_there).last().unwrap_or(before)
     }
 
     /// F₀ and R(t) of a hold of the displacement after loading, where the force exceeds its noise.

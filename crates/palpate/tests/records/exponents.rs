@@ -73,3 +73,20 @@ fn a_criterion_that_never_turns_is_reported_as_open() {
         "the information criterion of holds 1, 2 was lowest at an end of the listed exponents 14, 20; 30 was added, and it is still lowest at the largest"
     );
 }
+
+#[test]
+fn an_exponent_that_the_data_contradict_is_reported() {
+    // Mistake: n = 5 was "the lowest order not distinguishable from the best" for a body of n = 4, which the free exponent shows.
+    let reported = |exponents, listed: &[f64]| {
+        let analysis = analysis(exponents, listed);
+        analysis.findings.into_iter().find(|finding| finding.code() == "exponent_not_listed")
+    };
+    let Some(Finding::ExponentNotListed { free, delta_bic, .. }) = reported([4.0, 4.0], &[1.0, 2.0, 3.0, 5.0, 7.0])
+    else {
+        panic!("no finding")
+    };
+    assert!(delta_bic > 100.0 && free.len() == 2, "{free:?} {delta_bic}");
+    assert!(free.iter().all(|(_, exponent)| (exponent - 4.0).abs() < 0.1), "{free:?}");
+    assert_eq!(reported([5.0, 5.0], &[1.0, 2.0, 3.0, 5.0, 7.0]), None);
+    assert_eq!(reported([5.0, 3.0], &[3.0, 5.0]).map(|finding| finding.code()), Some("exponent_not_listed"));
+}

@@ -523,3 +523,30 @@ fn a_body_that_breaks_in_a_ramp_of_few_samples_is_observed() {
     };
     assert!((rupture.time - 36.3).abs() < 0.11 && found.holds().count() == 1, "{rupture:?}");
 }
+
+/// A rest of six samples and a ramp of three or four were one line, which met the level seconds after the jaw had stopped; and the rest counted as
+/// part of the time in which the displacement was applied.
+#[test]
+fn a_hold_after_a_short_rest_and_a_short_ramp_begins_where_the_jaw_stops() {
+    for (rest, ramp, rate) in [(5.0, 2.0, 1.0), (5.0, 3.0, 1.0), (5.0, 4.0, 1.0), (20.0, 4.0, 1.0), (0.5, 0.4, 10.0)] {
+        let jaw =
+            |t: f64| 5.0 * (((t - rest) / ramp).clamp(0.0, 1.0) - ((t - rest - ramp - 60.0) / ramp).clamp(0.0, 1.0));
+        let times: Vec<f64> = (0..=((rest + 2.0 * ramp + 80.0) * rate) as usize).map(|i| i as f64 / rate).collect();
+        let force = |t: &f64| {
+            let held = t - rest - ramp;
+            if held < 0.0 { 2.0 * jaw(*t) } else { jaw(*t) / 5.0 * (4.0 + 6.0 / (1.0 + held).sqrt()) }
+        };
+        let displacement = times.iter().map(|t| 1e-3 * jaw(*t)).collect();
+        let record = Record::new(times.clone(), Some(displacement), times.iter().map(force).collect()).unwrap();
+        let options = AnalysisOptions {
+            compare: None,
+            ..AnalysisOptions::default()
+        };
+        let analysis = analyze(&record, &options).unwrap();
+        let hold = &analysis.holds[0];
+        assert!((hold.start - rest - ramp).abs() < 1e-9, "{rest} {ramp}: {}", hold.start);
+        assert!((hold.end - rest - ramp - 60.0).abs() < 1e-9, "{rest} {ramp}: {}", hold.end);
+        let applied = analysis.hold_report(hold).applied_in.unwrap();
+        assert!((applied - ramp).abs() < 1e-9, "{rest} {ramp}: {applied}");
+    }
+}

@@ -182,7 +182,9 @@ fn with_provenance(page: Page, input: &Input) -> Page {
 fn without_comparison(analysis: &Analysis) -> String {
     match analysis.across.common_exponent {
         Some(n) => {
-            format!("The lowest listed exponent that is not distinguishable from the best fit to all holds is n = {n}.")
+            format!(
+                "Of the listed exponents, n = {n} is the lowest that is not distinguishable from the best for all holds."
+            )
         }
         None if analysis.holds.is_empty() => tables::modulus_sentence(analysis).unwrap_or_else(|| {
             "The record has no hold, and no modulus could be determined from its first ramp.".to_owned()
@@ -218,7 +220,7 @@ fn summary(analysis: &Analysis) -> String {
         let fitted = analysis.holds.iter().filter(|hold| !hold.fits.is_empty()).count();
         let which = if fitted == 1 { "this hold" } else { "all holds" };
         text.push_str(&format!(
-            " The lowest listed exponent that is not distinguishable from the best fit to {which} is n = {n}."
+            " Of the listed exponents, n = {n} is the lowest that is not distinguishable from the best for {which}."
         ));
     }
     if let Some(overlay) = &analysis.overlay {

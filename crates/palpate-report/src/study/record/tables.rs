@@ -176,7 +176,8 @@ fn paper_table(analysis: &Analysis, after: After) -> Option<Table> {
 
 /// Evidence for the exponent over all holds: the paper's "lowest order which fits the best".
 pub(super) fn exponents(analysis: &Analysis) -> Table {
-    let caption = "Common exponent of all holds: sum of the information criteria less the lowest sum.";
+    let caption =
+        "Common exponent of all holds: sum of the information criteria of the listed exponents less the lowest sum.";
     Table::of("exponents", caption, &analysis.across.evidence)
         .column("n", "exponent", "", |(n, _)| order(*n))
         .column("ΔBIC, all holds", "delta_bic", "", |(_, delta)| Cell::Number(*delta, 4))
@@ -187,8 +188,10 @@ pub(super) fn exponents(analysis: &Analysis) -> Table {
         })
         .column("Verdict", "verdict", "", |(n, delta)| {
             Cell::text(match delta {
-                _ if analysis.across.common_exponent == Some(*n) => "lowest order not distinguishable from the best",
-                delta if *delta <= 2.0 => "not distinguishable from the best",
+                _ if analysis.across.common_exponent == Some(*n) => {
+                    "lowest order not distinguishable from the best listed"
+                }
+                delta if *delta <= 2.0 => "not distinguishable from the best listed",
                 _ => "",
             })
         })

@@ -163,11 +163,13 @@ pub fn claims_text(claims: &[Claim]) -> String {
         for claim in of() {
             let head = format!("  {:<11} ", claim.place.to_string());
             text.push_str(&indented(&head, 14, width(), &claim.statement));
-            for comparison in claim.comparisons.iter().filter(|comparison| comparison.fails()) {
+            // What fails, or what does not decide.
+            let is_shown = |comparison: &&Comparison| comparison.fails() || verdict == Verdict::CannotBeChecked;
+            for comparison in claim.comparisons.iter().filter(is_shown) {
                 let line = format!("{}: {}", comparison.quantity, numbers(comparison));
                 text.push_str(&indented("              ", 16, width(), &line));
             }
-            if verdict == Verdict::CannotBeChecked {
+            if verdict == Verdict::CannotBeChecked && !claim.remark.is_empty() {
                 text.push_str(&indented("              ", 14, width(), &claim.remark));
             }
         }

@@ -464,6 +464,23 @@ impl Finding {
                 };
                 ("rate_coefficient_trend", severity, observed, meaning, remedy)
             }
+            Self::ExponentNotListed {
+                best,
+                free,
+                delta_bic,
+            } => {
+                let exponents = free.iter().map(|(hold, n)| format!("{} in hold {hold}", significant(*n, 3)));
+                caution(
+                    "exponent_not_listed",
+                    format!(
+                        "n = {best} is the best of the listed exponents, but a free exponent has a lower information criterion, by {}: n = {}",
+                        significant(*delta_bic, 3),
+                        listed(&exponents.collect::<Vec<_>>()),
+                    ),
+                    "the data contradict every listed exponent; parameters at one of them describe the holds only roughly",
+                    "use the fits with a free exponent, or list an exponent in between",
+                )
+            }
             Self::OverlayPoor { relative } => caution(
                 "overlay_poor",
                 format!(

@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::joint::{JointAnalysis, joint};
-use crate::analysis::{AnalysisOptions, HoldAnalysis, Signal};
+use crate::analysis::{AnalysisOptions, Finding, HoldAnalysis, Signal};
 use crate::fit::LatencyFit;
 use crate::segment::After;
 use crate::statistics::{coverage_factor, range};
@@ -100,6 +100,26 @@ fn summed_evidence(holds: &[HoldAnalysis], exponents: &[f64]) -> Vec<(f64, f64)>
     sums.retain(|(_, sum)| sum.is_finite() && counted > 0);
     let lowest = sums.iter().map(|(_, sum)| *sum).fold(f64::INFINITY, f64::min);
     sums.into_iter().map(|(n, sum)| (n, sum - lowest)).collect()
+}
+
+/// Difference of the criterion beyond which a law is refuted.
+const REFUTED: f64 = 10.0;
+
+/// A finding if a free exponent refutes the best of the listed ones.
+pub(in crate::analysis) fn exponent_not_listed(holds: &[HoldAnalysis], across: &Across) -> Option<Finding> {
+    let best = across.evidence.iter().min_by(|a, b| a.1.total_cmp(&b.1))?.0;
+    let better = holds.iter().filter_map(|hold| {
+        let candidates = &hold.order.as_ref()?.candidates;
+        let (free, listed) =
+            (candidates.iter().find(|c| c.free)?, candidates.iter().find(|c| !c.free && c.exponent == best)?);
+        Some((hold.number, free.exponent, listed.delta_bic - free.delta_bic))
+    });
+    let better: Vec<_> = better.filter(|(_, _, delta)| *delta > REFUTED).collect();
+    (!better.is_empty()).then(|| Finding::ExponentNotListed {
+        best,
+        delta_bic: better.iter().map(|(_, _, delta)| delta).sum(),
+        free: better.iter().map(|(hold, exponent, _)| (*hold, *exponent)).collect(),
+    })
 }
 
 fn trend(holds: &[HoldAnalysis], fit: impl Fn(&HoldAnalysis) -> Option<LatencyFit>) -> Option<Trend> {

@@ -14,8 +14,8 @@ mod loading;
 mod modulus;
 mod overlay;
 
-pub(super) use across::across;
 pub use across::{Across, LevelAgreement, Trend};
+pub(super) use across::{across, exponent_not_listed};
 pub(super) use joint::changing_rate;
 pub use joint::{JointAnalysis, JointHolds};
 pub use loading::LoadingModulus;

@@ -89,9 +89,12 @@ impl Column<'_> {
         };
         let (before, after) = (from..edge, edge..until);
         let (ramp, level) = if is_start { (before, after) } else { (after, before) };
-        let level = self.line(level);
-        if ramp.len() >= FEWEST
-            && let Some(meeting) = meeting(&self.line(ramp), &level)
+        let (ramp, level) = (self.line(ramp), self.line(level));
+        // Pieces of a ramp of few samples and of the rest before it make no line.
+        let is_straight = ramp.left() <= ramp.count * self.near * self.near;
+        if ramp.count >= FEWEST as f64
+            && is_straight
+            && let Some(meeting) = meeting(&ramp, &level)
         {
             let slack = SLACK * (self.time[edge] - self.time[edge - 1]);
             let is_before = |t: &f64| if is_start { *t < meeting - slack } else { *t <= meeting + slack };
