@@ -102,7 +102,7 @@ pub struct Observation {
     pub held_since: Option<f64>,
     /// True on the one tick at which a hold is detected.
     pub began: bool,
-    /// Filtered force, N: the fitted curve within a hold, the output of a filter elsewhere.
+    /// Filtered force, N: the fitted curve within a hold as long as the readings follow it, the output of a filter elsewhere.
     pub force: f64,
     /// Equilibrium force of a position hold, N; `None` until its interval is narrower than the force itself.
     pub equilibrium_force: Option<Estimate>,

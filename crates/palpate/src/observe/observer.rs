@@ -295,7 +295,8 @@ impl Observer {
             }
             return false;
         }
-        if self.is_open() {
+        // A reading off the place where the jaw stood may be the first of a ramp.
+        if self.is_open() || self.observed.jaw.is_doubtful() {
             return false;
         }
         self.observed.hold = if stands {

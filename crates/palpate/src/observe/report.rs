@@ -8,6 +8,9 @@ use crate::grip::TimeToSlip;
 /// of a hold nothing can be excluded.
 const FALSE_ALARM: f64 = 4.0;
 
+/// Standard deviations of the filtered readings within which they follow a law.
+const FOLLOWS: f64 = 5.0;
+
 /// How many times longer the time to slip has to be for a warning to be taken back.
 const STAYS: f64 = 2.0;
 
@@ -42,6 +45,7 @@ impl Observer {
                 stated.relative_rate = fit.relaxes().then(|| fit.relative_rate(elapsed));
             }
             self.say_filtered(&mut stated, hold.held);
+            stated.force = self.as_read(stated.force);
             if self.options.slip_force.is_some() {
                 stated.time_to_slip = Some(match (hold.held, hold.crossing) {
                     (Held::Force, _) => SlipForecast::NEVER,
@@ -52,6 +56,15 @@ impl Observer {
         }
         stated.slip = self.warning(&stated);
         stated
+    }
+
+    /// The force of a law or a material, if the readings follow it; else that of the readings.
+    fn as_read(&self, force: f64) -> f64 {
+        let read = self.observed.smooth.level;
+        let noise = self.observed.force_noise.deviation().map(|noise| noise * Smooth::kept());
+        // A reading off the place where the jaw stands says nothing of the hold until the next tells whether it was left.
+        let is_off = noise.is_some_and(|noise| (force - read).abs() > FOLLOWS * noise);
+        if is_off && !self.observed.jaw.is_doubtful() { read } else { force }
     }
 
     /// What a material tells of a hold, where the forces are its.

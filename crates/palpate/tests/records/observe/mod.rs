@@ -476,3 +476,37 @@ fn a_warning_does_not_flutter() {
     // One from none to soon, and one from soon to slipping.
     assert!(changes <= 2 * 20 + 4, "{changes}");
 }
+
+/// The fitted force of a law that the readings do not follow fell to that of slip 40 s before they did.
+#[test]
+fn readings_that_follow_another_law_say_when_slip_is() {
+    let force = |held: f64| 4.0 + 6.0 / (1.0 + held).sqrt();
+    // n = 3; 4.6 N after 99 s.
+    let course: Vec<(f64, f64, f64)> = (1..6000)
+        .map(|i| {
+            let time = 0.02 * f64::from(i);
+            (time, 5e-3 * time.min(1.0), if time < 1.0 { 10.0 * time } else { force(time - 1.0) })
+        })
+        .collect();
+    let (mut observer, mut noise) = (Observer::new(slipping_at(4.6)).unwrap(), Rng::new(5));
+    for (time, displacement, force) in &course {
+        let found = observer.feed(*time, Some(*displacement), force + 0.01 * noise.normal()).unwrap();
+        if *time > 3.0 {
+            assert!((found.force - force).abs() < 0.06, "{time} s: {} N, {force} N", found.force);
+        }
+        assert!(found.slip != Slip::Slipping || *time > 95.0, "{time} s: {found:?}");
+    }
+}
+
+/// The first reading of a ramp after a rest is off the place where the jaw stood, and already carries a force.
+#[test]
+fn the_first_reading_of_a_ramp_begins_no_hold() {
+    let mut observer = Observer::new(slipping_at(5.0)).unwrap();
+    let mut noise = Rng::new(8);
+    for i in 1..=40 {
+        let time = 0.1 * f64::from(i);
+        let jaw = 5e-3 * (time - 2.0).clamp(0.0, 1.0);
+        let found = observer.feed(time, Some(jaw), 2e3 * jaw + 5e-3 * noise.normal()).unwrap();
+        assert!(time > 3.0 || found.phase != ContactPhase::Holding, "{time} s: {found:?}");
+    }
+}
