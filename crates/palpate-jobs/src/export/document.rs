@@ -43,6 +43,10 @@ pub struct CardDocument {
     pub loading_error: Option<f64>,
     /// Root mean square error in loading as a share of the peak force.
     pub loading_rms_error: Option<f64>,
+    /// Displacement of the jaw from which on these hold, m.
+    pub loading_from_m: Option<f64>,
+    /// Force of the contact at first touch at the fastest speed, where the material has none, as a share of the peak force.
+    pub touch_error: Option<f64>,
     /// Largest error over the hold as a share of the peak force; of a Prony series of the latency law.
     pub worst_hold_error: Option<f64>,
     /// The hold.
@@ -114,6 +118,8 @@ impl CardDocument {
             prony: solid.map_or(Vec::new(), |solid| solid.series.terms().iter().map(term).collect()),
             loading_error: error.map(|error| error.loading),
             loading_rms_error: error.map(|error| error.loading_rms),
+            loading_from_m: error.map(|_| card.loading.shallowest() / card.body.contact_displacement(1.0)),
+            touch_error: error.map(|error| error.touch),
             worst_hold_error: solid.filter(|solid| solid.curve.latency().is_some()).map(|solid| solid.worst),
             hold: hold
                 .map(|((time, force), error)| CardHoldError {

@@ -8,6 +8,9 @@ use super::model::Model;
 use super::numbers::{short, signed};
 use super::options::Engine;
 
+/// Share of the peak force at first touch that is worth a line.
+const LEAST_TOUCH: f64 = 1e-3;
+
 /// Width of the lines of a comment.
 const WIDTH: usize = 110;
 
@@ -34,12 +37,11 @@ impl Card {
         let conditions = self.conditions;
         let share = self.body.contact_displacement(1.0);
         let at = |value: f64| short(1e3 * value);
-        let contact = |low: Option<f64>, high: f64, unit: &str| {
-            let low = low.map_or("0".to_owned(), at);
+        let contact = |low: f64, high: f64, unit: &str| {
             if share == 1.0 {
                 String::new()
             } else {
-                format!(" ({low} to {} {unit} at each contact)", at(share * high))
+                format!(" ({} to {} {unit} at each contact)", at(low), at(share * high))
             }
         };
         match &self.model {
@@ -55,12 +57,13 @@ impl Card {
                 at(conditions.fastest)
             ),
             _ => format!(
-                "Fitted to: loading from 0 to {} mm of jaw travel{} at {} to {} mm/s of the jaw{}",
+                "Fitted to: loading from {} to {} mm of jaw travel{} at {} to {} mm/s of the jaw{}",
+                at(self.loading.shallowest() / share),
                 at(conditions.depth),
-                contact(None, conditions.depth, "mm"),
+                contact(self.loading.shallowest(), conditions.depth, "mm"),
                 at(conditions.slowest),
                 at(conditions.fastest),
-                contact(Some(share * conditions.slowest), conditions.fastest, "mm/s")
+                contact(share * conditions.slowest, conditions.fastest, "mm/s")
             ),
         }
     }
@@ -82,6 +85,12 @@ impl Card {
                 )
             })),
         }
+        errors.extend(self.model.contact_error().filter(|error| error.touch > LEAST_TOUCH).map(|error| {
+            format!(
+                "Error at first touch: the damper has {} % of the peak force there at once, the material none",
+                percent(error.touch)
+            )
+        }));
         let at = HOLD_TIMES.iter().zip(self.model.hold_error());
         let at: Vec<String> = at.map(|(time, error)| format!("{} % at {time} s", signed(100.0 * error))).collect();
         errors.push(format!(

@@ -68,9 +68,10 @@ impl Export {
         for share in NARROWER {
             let mut conditions = widest;
             conditions.slowest = share * widest.fastest;
-            let narrower = fit(conditions)?;
-            if !needs_note(&narrower) {
-                return Ok(narrower);
+            // A range that determines no fit is none to choose.
+            match fit(conditions) {
+                Ok(narrower) if !needs_note(&narrower) => return Ok(narrower),
+                _ => {}
             }
         }
         Ok(found)

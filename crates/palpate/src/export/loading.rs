@@ -43,6 +43,8 @@ pub struct CardError {
     pub loading: f64,
     /// Root mean square error in loading.
     pub loading_rms: f64,
+    /// Force of the model at first touch at the fastest speed; the material has none there.
+    pub touch: f64,
     /// Error (model less simulation) in the hold at [`HOLD_TIMES`].
     pub hold: [f64; 3],
 }
@@ -87,6 +89,12 @@ impl Loading {
         })
     }
 
+    /// The least indentation of the samples, m.
+    #[must_use]
+    pub fn shallowest(&self) -> f64 {
+        self.indentation / DEPTHS as f64
+    }
+
     /// Error of a contact whose force is a function of indentation (m) and its speed (m/s).
     #[must_use]
     pub fn error(&self, force: impl Fn(f64, f64) -> f64) -> CardError {
@@ -95,9 +103,11 @@ impl Loading {
         let (largest, squares) =
             residuals.fold((0.0, 0.0), |(largest, squares): (f64, f64), by| (largest.max(by.abs()), squares + by * by));
         let still = force(self.indentation, 0.0);
+        let fastest = self.samples.iter().map(|sample| sample.speed).fold(0.0, f64::max);
         CardError {
             loading: largest,
             loading_rms: (squares / self.samples.len() as f64).sqrt(),
+            touch: force(f64::MIN_POSITIVE, fastest) / self.peak,
             hold: self.held.map(|held| (still - held) / self.peak),
         }
     }

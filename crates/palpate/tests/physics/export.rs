@@ -129,6 +129,12 @@ fn stated_errors_are_those_of_the_forces() {
                 stated.hold.map(|error| format!("{:+.1}", 100.0 * error)).join(" ")
             );
             assert!((largest - stated.loading).abs() < 1e-12 && stated.loading_rms <= stated.loading);
+            // Samples begin at a sixtieth of the depth: a damper has a force before, the material next to none.
+            let touch = force(f64::MIN_POSITIVE, loading.samples[0].speed) / loading.peak;
+            assert!(
+                (stated.touch - touch).abs() < 1e-12 && (touch < 1e-9 || kind != "Hunt and Crossley"),
+                "{kind}: {touch}"
+            );
             for ((time, held), error) in HOLD_TIMES.iter().zip(loading.held).zip(stated.hold) {
                 let found = (force(loading.indentation, 0.0) - held) / loading.peak;
                 assert!((found - error).abs() < 1e-12, "{name}, {kind}, {time} s");

@@ -98,7 +98,9 @@ fn notes(card: &Card, fit: &SoftConstraint) -> Vec<String> {
     let by = |du: f64, speed: f64| fit.force(u * (1.0 - du), speed);
     let stiffness = ((by(0.0, 0.0) - by(1e-4, 0.0)) / (1e-4 * u)).max(f64::MIN_POSITIVE);
     let resistance = (fit.force(u, 1.0) - fit.force(u, 0.0)).max(f64::MIN_POSITIVE);
-    let stable = (2.0 * fit.mass / stiffness).sqrt().min(fit.mass / resistance).min(2.0 / FRICTION_RATE);
+    // Two contacts, each with k and b: semi-implicit Euler is stable for dt² 2k/m + 2 dt 2b/m < 4.
+    let normal = ((resistance * resistance + 2.0 * fit.mass * stiffness).sqrt() - resistance) / stiffness;
+    let stable = normal.min(2.0 / FRICTION_RATE);
     // Friction carries half the weight at each jaw: R_t f = rate v with R_t = (1 − d)/(d m impratio).
     let impedance = fit.impedance(u);
     let points = contact_points(card.shape());
