@@ -37,11 +37,11 @@ pub struct Cycle {
     pub done: f64,
     /// Work that it gave back.
     pub given_back: f64,
-    /// The area of the loop of force against displacement, `done` − `given_back`: lost, but for what a body that has not come to rest
-    /// still holds.
-    pub lost: f64,
-    /// `lost`/`done`; 0 where no work was done.
-    pub share_lost: f64,
+    /// What it lost to heat, where the steps say so; else the area of a closed loop of force against displacement, `done` − `given_back`, which
+    /// is lost but for what a body that has not come to rest still holds. `None` of an open loop.
+    pub lost: Option<f64>,
+    /// `lost`/`done` of a closed loop; 0 where no work was done.
+    pub share_lost: Option<f64>,
     /// Whether the jaw ended where it began, to a hundredth of its travel: else the loop has no area.
     pub is_closed: bool,
 }
@@ -66,7 +66,8 @@ pub struct Cycle {
 /// assert_eq!(steps[2].work, 0.0); // the jaw stands still
 /// let cycles = cycles(&steps);
 /// assert_eq!(cycles.len(), 2);
-/// assert!(cycles[0].is_closed && (cycles[0].lost / cycles[1].lost - 1.0).abs() < 1e-3);
+/// let [first, second] = [0, 1].map(|i| cycles[i].lost.unwrap());
+/// assert!(cycles[0].is_closed && (first / second - 1.0).abs() < 1e-3);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 ///
@@ -131,17 +132,20 @@ pub fn cycles(steps: &[StepWork]) -> Vec<Cycle> {
     let cycle = |(from, until): (usize, usize)| {
         let inside = &steps[from..until];
         let given_back: f64 = inside.iter().map(|step| step.given_back).sum();
-        let lost: f64 = inside.iter().map(|step| step.work).sum();
-        let done = lost + given_back;
+        let area: f64 = inside.iter().map(|step| step.work).sum();
+        let done = area + given_back;
         let (low, high) = range(&at[from..=until]);
+        let is_closed = (at[until] - at[from]).abs() <= TURN * (high - low);
+        let to_heat: Option<f64> = inside.iter().map(|step| step.lost).sum();
+        let lost = to_heat.or(is_closed.then_some(area));
         Cycle {
             from: steps[from].from,
             until: steps[until - 1].until,
             done,
             given_back,
             lost,
-            share_lost: if done > 0.0 { lost / done } else { 0.0 },
-            is_closed: (at[until] - at[from]).abs() <= TURN * (high - low),
+            share_lost: lost.filter(|_| is_closed).map(|lost| if done > 0.0 { lost / done } else { 0.0 }),
+            is_closed,
         }
     };
     starts.iter().copied().zip(ends).map(cycle).collect()

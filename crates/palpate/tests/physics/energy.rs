@@ -188,8 +188,18 @@ fn steps_and_cycles_share_out_the_work_of_the_jaw() {
         assert_eq!(cycles.len(), 3);
         assert_eq!(cycles[0].until, steps[4].until);
         assert!(cycles[0].is_closed && cycles[1].is_closed && !cycles[2].is_closed);
-        assert!(cycles.iter().all(|cycle| (cycle.done - cycle.given_back - cycle.lost).abs() < 1e-15));
-        assert!(cycles[..2].iter().all(|cycle| 0.05 < cycle.share_lost && cycle.share_lost < 1.0), "{cycles:?}");
+        for cycle in &cycles {
+            let inside = || steps.iter().filter(|step| cycle.from <= step.from && step.until <= cycle.until);
+            let area = cycle.is_closed.then_some(cycle.done - cycle.given_back);
+            // An open loop has no area: a "loss" of done less given back was below 0 where a body gave back what an earlier cycle left in it.
+            match inside().map(|step| step.lost).sum::<Option<f64>>().or(area) {
+                Some(lost) => assert!((cycle.lost.unwrap() - lost).abs() < 1e-15 && lost >= 0.0, "{cycle:?}"),
+                None => assert_eq!(cycle.lost, None),
+            }
+        }
+        let share =
+            |cycle: &palpate::simulate::Cycle| cycle.share_lost.is_some_and(|share| 0.05 < share && share < 1.0);
+        assert!(cycles[..2].iter().all(share), "{cycles:?}");
     }
 }
 

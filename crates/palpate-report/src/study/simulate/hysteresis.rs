@@ -31,7 +31,7 @@ pub fn hysteresis_figure(trajectory: &Trajectory, cycles: &[Cycle], name: &str, 
 
 /// What a cycle cost, in words.
 fn cost(cycle: &Cycle) -> String {
-    let size = cycle.done.abs().max(cycle.lost.abs());
+    let size = cycle.done.abs().max(cycle.lost.unwrap_or_default().abs());
     let (factor, unit) = match size {
         _ if size >= 1.0 => (1.0, "J"),
         _ if size >= 1e-3 => (1e3, "mJ"),
@@ -39,10 +39,9 @@ fn cost(cycle: &Cycle) -> String {
         _ => (1e9, "nJ"),
     };
     let energy = |joule: f64| format!("{} {unit}", significant(factor * joule, 3));
-    if cycle.is_closed {
-        format!("{} of {} lost", energy(cycle.lost), energy(cycle.done))
-    } else {
-        format!("{} done, not closed", energy(cycle.done))
+    match cycle.lost {
+        Some(lost) if cycle.is_closed => format!("{} of {} lost", energy(lost), energy(cycle.done)),
+        _ => format!("{} done, not closed", energy(cycle.done)),
     }
 }
 
@@ -70,14 +69,15 @@ pub fn step_work_table(steps: &[StepWork]) -> Table {
 pub fn cycle_table(cycles: &[Cycle]) -> Table {
     let numbered: Vec<(i64, &Cycle)> = (1..).zip(cycles).collect();
     let number = |value: f64| Cell::Number(value, 6);
+    let if_known = |value: Option<f64>| value.map_or(Cell::missing("open loop"), number);
     Table::of("cycles", "Energy loss of each cycle of squeeze and release.", &numbered)
         .column("Cycle", "cycle", "", |(cycle, _)| Cell::Integer(*cycle))
         .column("From", "from_s", "s", |(_, cycle)| number(cycle.from))
         .column("Until", "until_s", "s", |(_, cycle)| number(cycle.until))
         .column("Done", "done_j", "J", |(_, cycle)| number(cycle.done))
         .column("Given back", "given_back_j", "J", |(_, cycle)| number(cycle.given_back))
-        .column("Lost", "lost_j", "J", |(_, cycle)| number(cycle.lost))
-        .column("Share lost", "share_lost", "", |(_, cycle)| number(cycle.share_lost))
+        .column("Lost", "lost_j", "J", |(_, cycle)| if_known(cycle.lost))
+        .column("Share lost", "share_lost", "", |(_, cycle)| if_known(cycle.share_lost))
         .column("Closed", "closed", "", |(_, cycle)| Cell::text(if cycle.is_closed { "yes" } else { "no" }))
         .table()
 }
