@@ -55,6 +55,15 @@ def spaces() -> tuple[gymnasium.spaces.Box, gymnasium.spaces.Box]:
     return gymnasium.spaces.Box(np.zeros(4, np.float32), high), gymnasium.spaces.Box(-1.0, 1.0, (1,), np.float32)
 
 
+def _mode(mode: AutoresetMode | str) -> AutoresetMode:
+    """A mode by itself, its name or its value."""
+    known = {**AutoresetMode.__members__, **{str(one.value): one for one in AutoresetMode}}
+    found = mode if isinstance(mode, AutoresetMode) else known.get(mode)
+    if found is None:
+        raise OptionError(f"autoreset_mode: expected one of {', '.join(AutoresetMode.__members__)}, found {mode!r}")
+    return found
+
+
 class SoftGripVectorEnv(VectorEnv[_Floats, _Floats, NDArray[Any]]):
     """Many soft bodies between two fingers each, stepped together.
 
@@ -117,7 +126,7 @@ class SoftGripVectorEnv(VectorEnv[_Floats, _Floats, NDArray[Any]]):
             if number is not None and (isinstance(number, bool) or not isinstance(number, (int, np.integer)) or number < 1):
                 raise OptionError(f"{name}: expected a whole number, 1 or more, found {number!r}")
         self.num_envs = int(num_envs)
-        self.autoreset_mode = AutoresetMode(autoreset_mode)
+        self.autoreset_mode = _mode(autoreset_mode)
         self.metadata = {"render_modes": [], "autoreset_mode": self.autoreset_mode}
         self.single_observation_space, self.single_action_space = spaces()
         self.observation_space = batch_space(self.single_observation_space, self.num_envs)
@@ -146,10 +155,11 @@ class SoftGripVectorEnv(VectorEnv[_Floats, _Floats, NDArray[Any]]):
     def step(self, actions: ArrayLike) -> tuple[_Floats, _Doubles, _Marks, _Marks, dict[str, Any]]:
         """Takes a step of every environment; see the class for actions, observations, rewards and ends."""
         task, fresh = self.task, None
+        # Refused actions leave everything as it was.
+        self._take(actions)
         if self.autoreset_mode is AutoresetMode.NEXT_STEP and self._ended.any():
             fresh = self._ended.copy()
             self._begin(fresh)
-        self._take(actions)
         self._move(fresh)
         np.add(self._steps, 1, out=self._steps)
         self._bear()

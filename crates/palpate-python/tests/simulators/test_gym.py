@@ -168,10 +168,21 @@ def until_lost(envs: SoftGripVectorEnv) -> tuple[Any, ...]:
     raise AssertionError("none was lost")
 
 
+def test_a_mode_has_a_name_and_a_value() -> None:
+    for mode in AutoresetMode:
+        for word in (mode, mode.name, mode.value):
+            assert SoftGripVectorEnv(1, autoreset_mode=word).autoreset_mode is mode
+    with pytest.raises(palpate.OptionError, match="autoreset_mode: expected one of NEXT_STEP, SAME_STEP, DISABLED, found 'next'"):
+        SoftGripVectorEnv(1, autoreset_mode="next")
+
+
 def test_the_next_step_begins_an_episode() -> None:
     envs = dropping(AutoresetMode.NEXT_STEP)
     observations, _, terminations, _, infos = until_lost(envs)
     lost = terminations.copy()
+    # A step that is refused was the first of the episode.
+    with pytest.raises(palpate.OptionError):
+        envs.step(np.zeros(4))
     assert lost[[1, 3]].all() and "final_obs" not in infos and (observations[lost, 2] > 0).all()
     observations, rewards, terminations, truncations, _ = envs.step(SQUEEZED)
     assert not observations[lost].any() and not rewards[lost].any() and not (terminations | truncations)[lost].any()
