@@ -1,7 +1,6 @@
 //! Jobs from files to files and to text, as the command does them.
 
 use std::io;
-use std::num::NonZeroUsize;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -21,6 +20,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::errors::{OptionError, PalpateError, failed, of_mapping, refused_plainly, undescribed};
 use crate::fits::fit;
+use crate::listed::{Listed, Threads};
 use crate::report_files::{csv_locale as readers, file_options};
 use crate::shown::shown;
 use crate::table::{Table, columns};
@@ -262,14 +262,14 @@ pub(crate) fn batch(
     out: PathBuf,
     test: Given<'_, '_>,
     columns: Given<'_, '_>,
-    laws: Option<Vec<String>>,
+    laws: Option<Listed<String>>,
     intervals: Option<&str>,
     fit_until_s: Option<f64>,
     map: Option<Vec<String>>,
     csv_locale: Option<&str>,
     restart: bool,
     shard: Option<&str>,
-    threads: Option<NonZeroUsize>,
+    threads: Option<Threads>,
 ) -> PyResult<BatchResult> {
     let (files, described) = (record_files(paths)?, described_with(test, None, columns)?);
     let question = Batch {
@@ -280,7 +280,7 @@ pub(crate) fn batch(
         csv_locale: readers(csv_locale)?,
         restart,
         shard: shard.map(self::shard).transpose()?,
-        threads,
+        threads: threads.map(|threads| threads.0),
         ..Batch::default()
     };
     let done = writing_job(py, move |watch| question.run(NamedRecords::find(files, described)?, &out, watch))?;
@@ -413,7 +413,7 @@ shown! {
 pub(crate) fn reproduce<'py>(
     py: Python<'py>,
     folder: PathBuf,
-    figures: Option<Vec<String>>,
+    figures: Option<Listed<String>>,
     column: Option<&str>,
     csv_locale: Option<&str>,
     seeds: Option<usize>,

@@ -24,6 +24,7 @@ mod errors;
 mod files;
 mod fits;
 mod html;
+mod listed;
 mod mappings;
 mod materials;
 mod observers;

@@ -239,12 +239,12 @@ fn finite(number: f64, place: &Place<'_>) -> PyResult<f64> {
 }
 
 /// Whether a value is a number with a unit, of pint.
-fn is_with_unit(value: &Bound<'_, PyAny>) -> PyResult<bool> {
+pub(crate) fn is_with_unit(value: &Bound<'_, PyAny>) -> PyResult<bool> {
     Ok(value.hasattr("magnitude")? && value.hasattr("to_base_units")?)
 }
 
 /// The module that converts such values.
-fn units<'py>(value: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyModule>> {
+pub(crate) fn units<'py>(value: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyModule>> {
     value.py().import("palpate._units")
 }
 

@@ -5,6 +5,7 @@ use palpate_report::table::CsvLocale;
 use pyo3::PyResult;
 
 use crate::errors::choice;
+use crate::listed::Listed;
 
 /// The language of the readers of CSV files; English if left out.
 pub(crate) fn csv_locale(name: Option<&str>) -> PyResult<CsvLocale> {
@@ -14,12 +15,12 @@ pub(crate) fn csv_locale(name: Option<&str>) -> PyResult<CsvLocale> {
 
 /// The options for the files of a report; the usual where they are left out.
 pub(crate) fn file_options(
-    figures: Option<Vec<String>>,
+    figures: Option<Listed<String>>,
     column: Option<&str>,
     locale: Option<&str>,
 ) -> PyResult<FileOptions> {
     let format = |name: &String| choice("figures", &["svg", "png", "pdf"], name);
-    let formats = figures.map(|names| names.iter().map(format).collect::<PyResult<_>>()).transpose()?;
+    let formats = figures.map(|names| names.0.iter().map(format).collect::<PyResult<_>>()).transpose()?;
     let usual = FileOptions::default();
     Ok(FileOptions {
         figures: formats.unwrap_or(usual.figures),

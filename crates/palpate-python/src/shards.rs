@@ -10,6 +10,7 @@ use pyo3::prelude::*;
 use crate::errors::{OptionError, failed, refused_plainly};
 use crate::files::{BatchResult, FileOfPython, Given, all_laws, described_with, named, shard};
 use crate::fits::fit;
+use crate::listed::Listed;
 use crate::report_files::csv_locale as readers;
 use crate::work::writing_job;
 
@@ -91,7 +92,7 @@ pub(crate) fn _sliced(py: Python<'_>, files: Vec<FileOfPython>, of: u32) -> PyRe
 fn question(
     test: Given<'_, '_>,
     columns: Given<'_, '_>,
-    laws: Option<Vec<String>>,
+    laws: Option<Listed<String>>,
     intervals: Option<&str>,
     fit_until_s: Option<f64>,
 ) -> PyResult<(Batch, Described)> {
@@ -110,7 +111,7 @@ fn question(
 pub(crate) fn _checked(
     test: Given<'_, '_>,
     columns: Given<'_, '_>,
-    laws: Option<Vec<String>>,
+    laws: Option<Listed<String>>,
     intervals: Option<&str>,
     fit_until_s: Option<f64>,
 ) -> PyResult<()> {
@@ -135,7 +136,7 @@ pub(crate) fn _run_slice(
     out: PathBuf,
     test: Given<'_, '_>,
     columns: Given<'_, '_>,
-    laws: Option<Vec<String>>,
+    laws: Option<Listed<String>>,
     intervals: Option<&str>,
     fit_until_s: Option<f64>,
     threads: usize,

@@ -77,6 +77,25 @@ def test_weights_are_those_of_lmfit() -> None:
     )
 
 
+def test_a_sample_has_the_noise_of_its_weight() -> None:
+    rng = np.random.default_rng(3)
+    time = np.linspace(0, 40, 401)
+    deviation = np.linspace(0.002, 0.05, 401)
+    truth = 1 + 2 * (1 + time) ** -0.5
+    inside = []
+    for _ in range(20):
+        fit = palpate.fit_hold(time, truth + rng.normal(0, deviation), law="latency:3", weights=1 / deviation)
+        value, low, high = fit.predict(time, interval=0.95, of="sample")
+        again = truth + rng.normal(0, deviation)
+        inside.append(np.mean((low <= again) & (again <= high)))
+        half = 0.5 * (high - low) / (1.966 * deviation)
+        assert np.all(np.abs(half - 1) < 0.2) and np.all((low < value) & (value < high))
+    assert 0.93 < np.mean(inside) < 0.97
+    # Between two samples, and beyond the last.
+    ends = fit.predict(elapsed_s=[20.05, 60.0], interval=0.95, of="sample")
+    assert np.allclose(0.5 * (ends[2] - ends[1]) / 1.966, [0.026, 0.05], rtol=0.15)
+
+
 def test_a_prediction_is_the_law_with_the_numbers_found() -> None:
     t, y = relaxation(noise=1e-4)
     fit = palpate.fit_hold(t, y)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import subprocess
 import sys
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -133,6 +134,31 @@ def test_wrong_options_are_named(root: Path) -> None:
             record.analyze(exponents=exponents)
     with pytest.raises(palpate.OptionError, match="confidence is a share between 0 and 1, found 1"):
         record.analyze(confidence=1.0)
+    time, force = np.arange(100.0), 1 + np.exp(-np.arange(100.0) / 20)
+    calls: list[Callable[[], Any]] = [
+        lambda: palpate.compare(time, force, laws="latency"),  # type: ignore[arg-type]
+        lambda: record.compare(laws="latency"),  # type: ignore[arg-type]
+        lambda: record.analyze(exponents=5),  # type: ignore[arg-type]
+        lambda: record.analyze(compare=False).report("nowhere", figures="svg"),  # type: ignore[arg-type]
+        lambda: palpate.calibrate(record),  # type: ignore[arg-type]
+    ]
+    for call in calls:
+        with pytest.raises(palpate.OptionError, match="(?s)expected a list.*put one into brackets"):
+            call()
+    with pytest.raises(palpate.OptionError, match="threads: expected a number of threads, 1 or more, found 0"):
+        palpate.batch("nothing.csv", "nowhere", threads=0)
+    assert not Path("nowhere").exists()
+
+
+def test_titles_distinguish_records_of_arrays() -> None:
+    t, d, f = steps()
+    records = [palpate.Record.from_arrays(time_s=t, displacement_m=d, force_n=f, title=f"specimen {i}") for i in range(2)]
+    analyses = [record.analyze(compare=False) for record in records]
+    assert [analysis.parameter_table["record"][0] for analysis in analyses] == ["arrays, specimen 0", "arrays, specimen 1"]
+    # Laws that were not compared are not refused.
+    assert all(analysis.sentence == "Laws were not compared." for analysis in analyses)
+    holds = analyses[0].holds
+    assert holds["lowest_exponent"][0] in analyses[0].fits["exponent"] and holds["preferred_exponent"][0] in analyses[0].fits["exponent"]
     with pytest.raises(palpate.OptionError, match="contact.tuch"):
         palpate.read(root / "examples/records/ball.csv", test={"contact": {"tuch": "auto"}})
     with pytest.raises(palpate.OptionError, match="found set"):

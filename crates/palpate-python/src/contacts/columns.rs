@@ -6,6 +6,7 @@ use pyo3::types::PyFloat;
 
 use crate::arrays::doubles;
 use crate::errors::{OptionError, refused_plainly};
+use crate::mappings::{is_with_unit, units};
 
 /// Numbers that are copied in less time than Rust takes to see that nobody else writes to them.
 const FEW: usize = 64;
@@ -27,6 +28,10 @@ impl<'py> Values<'py> {
         }
         let found = match values.cast::<PyUntypedArray>() {
             Ok(array) if array.ndim() > 0 => Self::of_array(values, name)?,
+            _ if is_with_unit(values)? => {
+                let bare = units(values)?.call_method1("in_si", (values, name))?;
+                return Self::new(&bare, name, count);
+            }
             _ => match values.extract::<f64>() {
                 Ok(one) => Self::One([one]),
                 Err(_) => Self::Copy(doubles(values, name)?),

@@ -1,6 +1,5 @@
 //! A protocol and its sweep, to a file.
 
-use std::num::NonZeroUsize;
 use std::path::PathBuf;
 
 use palpate_files::description::parse_sweep;
@@ -9,6 +8,7 @@ use pyo3::prelude::*;
 
 use super::protocol::StatedProtocol;
 use crate::files::{shard, stated};
+use crate::listed::Threads;
 use crate::work::writing_job;
 
 /// Refuses a protocol that has no sweep.
@@ -74,14 +74,14 @@ pub(crate) fn sweep(
     show: Option<String>,
     restart: bool,
     shard: Option<&str>,
-    threads: Option<NonZeroUsize>,
+    threads: Option<Threads>,
 ) -> PyResult<(u64, u64)> {
     let usual = Sweep::default();
     let question = Sweep {
         show: show.unwrap_or(usual.show),
         restart,
         shard: shard.map(self::shard).transpose()?,
-        threads,
+        threads: threads.map(|threads| threads.0),
     };
     let (path, text) = stated("described", protocol)?;
     let done = match path {

@@ -134,6 +134,30 @@ impl PyFit {
         self.fit.predict_many(&elapsed)
     }
 
+    /// Standard deviations of the noise of samples at these times: that of the root mean square weight over their share of it, between
+    /// samples that count as between their two, and beyond them as of the nearest.
+    fn deviations(&self, weights: &[f64], elapsed: &[f64]) -> Vec<f64> {
+        let mean = self.fit.uncertainty.as_ref().map_or(0.0, |uncertainty| uncertainty.deviation);
+        let counting: Vec<(f64, f64)> = self
+            .samples
+            .times
+            .iter()
+            .copied()
+            .zip(weights.iter().copied())
+            .filter(|(_, weight)| *weight > 0.0)
+            .collect();
+        let squares: f64 = counting.iter().map(|(_, weight)| weight * weight).sum();
+        let of_one = mean * (squares / counting.len() as f64).sqrt();
+        let at = |elapsed: &f64| {
+            let time = elapsed + self.fit.start;
+            let after = counting.partition_point(|(there, _)| *there < time);
+            let (left, right) = (counting[after.saturating_sub(1)], counting[after.min(counting.len() - 1)]);
+            let share = if right.0 > left.0 { (time - left.0) / (right.0 - left.0) } else { 0.0 };
+            of_one * (1.0 / left.1 + share * (1.0 / right.1 - 1.0 / left.1))
+        };
+        elapsed.iter().map(at).collect()
+    }
+
     fn criteria(&self) -> Criteria {
         criteria(self.fit.residual_square, self.fit.samples as f64, self.fit.free_parameters() as f64)
     }
@@ -238,7 +262,8 @@ shown! {
     /// interval : float, optional
     ///     Coverage of the band, between 0 and 1.
     /// of : str
-    ///     Band of the "curve", or of a "sample" with the noise of the fitted ones.
+    ///     Band of the "curve", or of a "sample" with the noise of the fitted ones: with weights that of those before and after it,
+    ///     linear in between.
     ///
     /// Returns
     /// -------
@@ -291,12 +316,16 @@ shown! {
             return shaped(PyArray1::from_vec(py, values));
         };
         let fit = self.with_confidence(confidence)?;
-        let predicted = if sample { Fit::predict_samples } else { Fit::predict_intervals };
         let mut estimates: Vec<Estimate> = Vec::with_capacity(elapsed.len());
         for some in elapsed.chunks(AT_ONCE) {
             // A band of millions of samples takes seconds: Ctrl-C is heard in between.
             py.check_signals()?;
-            briefly(py, || estimates.extend(predicted(&fit, some)))?;
+            let predicted = || match (sample, &self.samples.weights) {
+                (false, _) => fit.predict_intervals(some),
+                (true, None) => fit.predict_samples(some),
+                (true, Some(weights)) => fit.predict_samples_with(some, &self.deviations(weights, some)),
+            };
+            briefly(py, || estimates.extend(predicted()))?;
         }
         let column = |pick: fn(&Estimate) -> f64| shaped(array(py, estimates.iter().map(pick))?);
         let value = column(|estimate| estimate.value)?;

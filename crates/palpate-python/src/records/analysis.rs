@@ -21,6 +21,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::errors::{OptionError, PalpateError, keyword, refused_plainly, unwritten, warn_of};
 use crate::html::framed;
+use crate::listed::Listed;
 use crate::pickles::{Made, Piece, Pieces, made_again, unpickled};
 use crate::records::kept::Kept;
 use crate::report_files::file_options;
@@ -139,6 +140,11 @@ fn run(py: Python<'_>, requested: &Arc<Requested>) -> PyResult<Outcome<Analyzed>
     job(py, move |watch| requested.job.run(requested.measured.clone(), None, watch))
 }
 
+/// The exponent of one of the fits of a hold.
+fn exponent(hold: &HoldDocument, fit: Option<usize>) -> Option<f64> {
+    hold.fits.get(fit?)?.parameters.get("exponent")?.value
+}
+
 /// The parameters of fits, a column each with its uncertainty, by the names that any of the fits has.
 fn estimated(fits: &[&FitDocument]) -> Vec<(String, ArrayRef)> {
     let names: BTreeSet<&String> = fits.iter().flat_map(|fit| fit.parameters.keys()).collect();
@@ -163,10 +169,12 @@ shown! {
         /// The phases, a row each.
         segments: PyResult<Table> =
             Table::of(columns!(self.document.segments, row => phase, start_s, end_s, first_row, last_row)),
-        /// The holds, a row each.
+        /// The holds, a row each; ``preferred_exponent`` is that of the lowest information criterion, ``lowest_exponent`` the lowest listed
+        /// one that is not distinguishable from the best listed one.
         holds: PyResult<Table> = Table::of(columns!(self.document.holds, hold =>
             index, start_s, end_s, fit_start_s, fit_start_rule, displacement_m, after, mode, doubtful, relaxation, force_change_n,
-            force_change_standard_error_n, p_value, force_start_n, force_end_n, signal, preferred, lowest_order
+            force_change_standard_error_n, p_value, force_start_n, force_end_n, signal,
+            preferred_exponent = exponent(hold, hold.preferred), lowest_exponent = exponent(hold, hold.lowest_order)
         )),
         /// The latency law fitted to every hold, a row each: ``hold``, ``law``, ``domain``, ``exponent``, ``equilibrium``, ...,
         /// each parameter with its standard error and interval.
@@ -287,13 +295,13 @@ shown! {
         &self,
         py: Python<'_>,
         folder: PathBuf,
-        figures: Option<Vec<String>>,
+        figures: Option<Listed<String>>,
         column: Option<&str>,
-        holds: Option<Vec<usize>>,
+        holds: Option<Listed<usize>>,
         csv_locale: Option<&str>,
     ) -> PyResult<PathBuf> {
         let options = FileOptions {
-            holds,
+            holds: holds.map(|listed| listed.0),
             ..file_options(figures, column, csv_locale)?
         };
         let done = self.done(py)?;
@@ -397,7 +405,7 @@ pub(crate) fn report_all(
     py: Python<'_>,
     analyses: Vec<Py<Analysis>>,
     folder: PathBuf,
-    figures: Option<Vec<String>>,
+    figures: Option<Listed<String>>,
     column: Option<&str>,
     csv_locale: Option<&str>,
 ) -> PyResult<PathBuf> {

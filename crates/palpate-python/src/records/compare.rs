@@ -15,6 +15,7 @@ use crate::arrays::doubles;
 use crate::errors::{FitError, OptionError, refused_plainly};
 use crate::files::all_laws;
 use crate::fits::fit::{samples_of, standard_deviations_of};
+use crate::listed::Listed;
 use crate::shown::shown;
 use crate::table::{Table, columns};
 use crate::work::{at_length, job, plain, printed};
@@ -58,22 +59,22 @@ pub(crate) fn compare(
     py: Python<'_>,
     time_s: &Bound<'_, PyAny>,
     signal: &Bound<'_, PyAny>,
-    laws: Option<Vec<String>>,
+    laws: Option<Listed<String>>,
     weights: Option<&Bound<'_, PyAny>>,
     quantity: &str,
-    cuts: Option<Vec<f64>>,
+    cuts: Option<Listed<f64>>,
 ) -> PyResult<Comparison> {
     let (times, values) = (doubles(time_s, "time_s")?, doubles(signal, "signal")?);
     let standard_deviations = standard_deviations_of(weights, false)?;
     let (quantity, response) = quantity_of(quantity)?;
     let usual = CompareOptions::default();
     let options = CompareOptions {
-        laws: all_laws(&laws.unwrap_or_default())?,
+        laws: all_laws(laws.as_deref().unwrap_or_default())?,
         fit: LawOptions {
             response,
             ..LawOptions::default()
         },
-        cuts: cuts.unwrap_or(usual.cuts),
+        cuts: cuts.map_or(usual.cuts, |listed| listed.0),
         ..CompareOptions::default()
     };
     let compared = at_length(py, move |mut heard| {

@@ -9,6 +9,7 @@ use crate::arrays::doubles;
 use crate::errors::{FitError, OptionError, refused, refused_plainly};
 use crate::files::all_laws;
 use crate::fits::fit::{samples_of, standard_deviations_of};
+use crate::listed::Listed;
 use crate::table::{Table, columns};
 use crate::work::at_length;
 
@@ -59,7 +60,7 @@ pub(crate) fn forecast(
     time_s: &Bound<'_, PyAny>,
     signal: &Bound<'_, PyAny>,
     at_s: &Bound<'_, PyAny>,
-    laws: Option<Vec<String>>,
+    laws: Option<Listed<String>>,
     weights: Option<&Bound<'_, PyAny>>,
     quantity: &str,
     confidence: f64,
@@ -76,7 +77,7 @@ pub(crate) fn forecast(
         return Err(refused_plainly::<OptionError>(message));
     }
     let mut options = CompareOptions {
-        laws: all_laws(&laws.unwrap_or_default())?,
+        laws: all_laws(laws.as_deref().unwrap_or_default())?,
         ..CompareOptions::default()
     };
     options.fit = LawOptions {

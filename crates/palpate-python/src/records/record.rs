@@ -23,6 +23,7 @@ use crate::arrays::{array, doubles};
 use crate::errors::{OptionError, PalpateError, RecordError, choice, refused, refused_plainly};
 use crate::files::{self, Given, all_laws, described, read_or_parsed};
 use crate::fits::fit;
+use crate::listed::Listed;
 use crate::materials::calibration::Calibration;
 use crate::materials::material::{Material, rising_times};
 use crate::materials::prediction::Prediction;
@@ -100,6 +101,9 @@ fn column(table: &PyTable, name: &str) -> PyResult<Vec<f64>> {
 /// Samples that are checked and digested in a few milliseconds.
 const BRIEF: usize = 100_000;
 
+/// The title of a record of arrays that has none.
+const UNTITLED: &str = "record";
+
 impl Record {
     /// A record that was read, as it is described.
     pub(super) fn new(record: Measured, input: Input, described: Described) -> Self {
@@ -129,7 +133,8 @@ impl Record {
         let (record, sha256) = made.map_err(|error: Unlike| refused::<RecordError>(&error, Some(error.hint())))?;
         let input = Input {
             path: "arrays".to_owned(),
-            part: None,
+            // What tells one of several from the others.
+            part: Some(title.to_owned()).filter(|title| title != UNTITLED),
             sha256: sha256.map_err(refused_plainly::<PalpateError>)?,
             test_sha256: None,
             air_run_sha256: None,
@@ -213,7 +218,7 @@ shown! {
     /// OptionError
     ///     Columns that are no numbers.
     #[classmethod]
-    #[pyo3(signature = (*, time_s, force_n, displacement_m=None, title="record"))]
+    #[pyo3(signature = (*, time_s, force_n, displacement_m=None, title=UNTITLED))]
     fn from_arrays(
         class: &Bound<'_, PyType>,
         time_s: &Bound<'_, PyAny>,
@@ -241,7 +246,7 @@ shown! {
     /// RecordError
     ///     No such column, one that is no numbers or lacks some, or as for `from_arrays`.
     #[classmethod]
-    #[pyo3(signature = (table, *, time_s="time_s", force_n="force_n", displacement_m=None, title="record"))]
+    #[pyo3(signature = (table, *, time_s="time_s", force_n="force_n", displacement_m=None, title=UNTITLED))]
     fn from_arrow(
         class: &Bound<'_, PyType>,
         table: &Bound<'_, PyAny>,
@@ -317,7 +322,8 @@ shown! {
     /// test : path, mapping or Material, optional
     ///     A test description in place of that of the record, or a material, which knows the body.
     /// exponents : sequence of float, optional
-    ///     Exponents n to fit with each; those of the description, or 1, 2, 3, 5 and 7, if left out.
+    ///     Exponents n to fit with each; those of the description, or 1, 2, 3, 5 and 7, if left out. A list of two or more goes on beyond
+    ///     an end that has the lowest criterion, with the finding ``exponent_list_extended``.
     /// free_exponent : bool, optional
     ///     Whether n is found as well.
     /// confidence : float, optional
@@ -350,7 +356,7 @@ shown! {
         &self,
         py: Python<'_>,
         test: Option<&Bound<'_, PyAny>>,
-        exponents: Option<Vec<f64>>,
+        exponents: Option<Listed<f64>>,
         free_exponent: Option<bool>,
         confidence: Option<f64>,
         intervals: Option<&str>,
@@ -358,7 +364,7 @@ shown! {
         compare: bool,
     ) -> PyResult<Analysis> {
         let job = Analyze {
-            exponents,
+            exponents: exponents.map(|listed| listed.0),
             free_exponent,
             confidence,
             intervals: intervals.map(fit::intervals).transpose()?,
@@ -542,15 +548,15 @@ shown! {
         &self,
         py: Python<'_>,
         test: Option<&Bound<'_, PyAny>>,
-        laws: Option<Vec<String>>,
-        cuts: Option<Vec<f64>>,
+        laws: Option<Listed<String>>,
+        cuts: Option<Listed<f64>>,
         creep: bool,
         intervals: Option<&str>,
         fit_until_s: Option<f64>,
     ) -> PyResult<RecordComparison> {
         let question = Compare {
             laws: laws.map(|laws| all_laws(&laws)).transpose()?,
-            cuts,
+            cuts: cuts.map(|listed| listed.0),
             creep,
             intervals: intervals.map(fit::intervals).transpose()?,
             fit_until_s,

@@ -12,6 +12,7 @@ use serde::{Deserialize, Serialize};
 use crate::errors::{OptionError, PalpateError, choice, refused_plainly};
 use crate::files::law;
 use crate::html::framed;
+use crate::listed::Listed;
 use crate::materials::material::Material;
 use crate::records::record::Record;
 use crate::shown::shown;
@@ -68,7 +69,7 @@ pub(crate) struct SeveralCalibrations {
 )]
 pub(crate) fn calibrate(
     py: Python<'_>,
-    records: Vec<PyRef<'_, Record>>,
+    records: Listed<PyRef<'_, Record>>,
     shared: Option<&Bound<'_, PyAny>>,
     law: &str,
     test: Option<&Bound<'_, PyAny>>,
