@@ -9,6 +9,7 @@ reference: nothing in the tests reads it.
 
 import argparse
 import json
+import math
 import pathlib
 import subprocess
 
@@ -58,9 +59,9 @@ def table(holds, samples, *names):
     text = TABLE.format(samples=samples)
     for name, rows in kinds.items():
         covered = [100 * row["covered"] / row["found"] for row in rows]
-        widths = [row["width"] for row in rows]
+        widths = [math.inf if row["width"] is None else row["width"] for row in rows]
         numbers = [*(f"{number:.1f}" for number in (min(covered), sum(covered) / len(rows), max(covered))),
-                   *(f"{number:.2f}" for number in (min(widths), sum(widths) / len(rows), max(widths)))]
+                   *(f"{number:.2f}" if number < math.inf else "open" for number in (min(widths), sum(widths) / len(rows), max(widths)))]
         text += f"| {name} | {' | '.join(numbers)} |\n"
     return text
 

@@ -57,10 +57,13 @@ fn report(name: &str, noise: Noise, known: &Known, holds: usize, samples: usize)
         let right = 1.96 * (at(&values, 0.841) - at(&values, 0.159));
         println!(
             "{{\"noise\":\"{name}\",\"law\":\"{}\",\"parameter\":\"{parameter}\",\"holds\":{holds},\"samples\":{samples},\
-             \"found\":{},\"covered\":{covered},\"width\":{:.3},\"milliseconds\":{:.3}}}",
+             \"found\":{},\"covered\":{covered},\"width\":{},\"milliseconds\":{:.3}}}",
             known.name,
             found.len(),
-            at(&widths, 0.5) / right,
+            // Most of them may be open.
+            Some(at(&widths, 0.5) / right)
+                .filter(|width| width.is_finite())
+                .map_or("null".to_owned(), |width| format!("{width:.3}")),
             1e3 * seconds / holds as f64,
         );
     }

@@ -55,6 +55,7 @@ pub(crate) struct Comparison {
 ///     A law or a quantity that is not known.
 #[pyfunction]
 #[pyo3(signature = (time_s, signal, *, laws=None, weights=None, quantity="force", cuts=None))]
+#[expect(clippy::needless_pass_by_value, reason = "arguments of Python")]
 pub(crate) fn compare(
     py: Python<'_>,
     time_s: &Bound<'_, PyAny>,

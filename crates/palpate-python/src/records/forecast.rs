@@ -54,7 +54,11 @@ const SOME: usize = 1 << 14;
 /// [1.18, 1.12]
 #[pyfunction]
 #[pyo3(signature = (time_s, signal, at_s, *, laws=None, weights=None, quantity="force", confidence=0.95))]
-#[expect(clippy::too_many_arguments, reason = "arguments of Python")]
+#[expect(
+    clippy::needless_pass_by_value,
+    clippy::too_many_arguments,
+    reason = "arguments of Python"
+)]
 pub(crate) fn forecast(
     py: Python<'_>,
     time_s: &Bound<'_, PyAny>,
