@@ -353,7 +353,8 @@ class Record(_Series):
         test : path, mapping or Material, optional
             A test description in place of that of the record, or a material, which knows the body.
         exponents : sequence of float, optional
-            Exponents n to fit with each; those of the description, or 1, 2, 3, 5 and 7, if left out.
+            Exponents n to fit with each; those of the description, or 1, 2, 3, 5 and 7, if left out. A list of two or more goes on beyond
+            an end that has the lowest criterion, with the finding ``exponent_list_extended``.
         free_exponent : bool, optional
             Whether n is found as well.
         confidence : float, optional
@@ -582,7 +583,9 @@ class Analysis(_Summed, _Reported):
     segments: Final[Table]
     """The phases, a row each."""
     holds: Final[Table]
-    """The holds, a row each."""
+    """The holds, a row each; ``preferred_exponent`` is that of the lowest information criterion, ``lowest_exponent`` the lowest listed
+    one that is not distinguishable from the best listed one.
+    """
     fits: Final[Table]
     """The latency law fitted to every hold, a row each: ``hold``, ``law``, ``domain``, ``exponent``, ``equilibrium``, ...,
     each parameter with its standard error and interval.
@@ -1496,7 +1499,8 @@ class Fit(_Series):
         interval : float, optional
             Coverage of the band, between 0 and 1.
         of : str
-            Band of the "curve", or of a "sample" with the noise of the fitted ones.
+            Band of the "curve", or of a "sample" with the noise of the fitted ones: with weights that of those before and after it,
+            linear in between.
 
         Returns
         -------
