@@ -148,6 +148,12 @@ def test_wrong_options_are_named(root: Path) -> None:
     with pytest.raises(palpate.OptionError, match="threads: expected a number of threads, 1 or more, found 0"):
         palpate.batch("nothing.csv", "nowhere", threads=0)
     assert not Path("nowhere").exists()
+    with pytest.raises(palpate.OptionError, match="contact.tuch"):
+        palpate.read(root / "examples/records/ball.csv", test={"contact": {"tuch": "auto"}})
+    with pytest.raises(palpate.OptionError, match="found set"):
+        palpate.read(root / "examples/records/ball.csv", test={"contact": {"touch": {1}}})
+    with pytest.raises(FileNotFoundError):
+        palpate.read(root / "examples/records/ball.csv", test="nothing.toml")
 
 
 def test_titles_distinguish_records_of_arrays() -> None:
@@ -159,12 +165,6 @@ def test_titles_distinguish_records_of_arrays() -> None:
     assert all(analysis.sentence == "Laws were not compared." for analysis in analyses)
     holds = analyses[0].holds
     assert holds["lowest_exponent"][0] in analyses[0].fits["exponent"] and holds["preferred_exponent"][0] in analyses[0].fits["exponent"]
-    with pytest.raises(palpate.OptionError, match="contact.tuch"):
-        palpate.read(root / "examples/records/ball.csv", test={"contact": {"tuch": "auto"}})
-    with pytest.raises(palpate.OptionError, match="found set"):
-        palpate.read(root / "examples/records/ball.csv", test={"contact": {"touch": {1}}})
-    with pytest.raises(FileNotFoundError):
-        palpate.read(root / "examples/records/ball.csv", test="nothing.toml")
 
 
 def test_findings_that_forbid_a_number_are_warnings() -> None:

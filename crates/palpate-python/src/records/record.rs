@@ -101,7 +101,7 @@ fn column(table: &PyTable, name: &str) -> PyResult<Vec<f64>> {
 /// Samples that are checked and digested in a few milliseconds.
 const BRIEF: usize = 100_000;
 
-/// The title of a record of arrays that has none.
+/// The title of a record of arrays that has none, the default of `title`.
 const UNTITLED: &str = "record";
 
 impl Record {
@@ -218,7 +218,7 @@ shown! {
     /// OptionError
     ///     Columns that are no numbers.
     #[classmethod]
-    #[pyo3(signature = (*, time_s, force_n, displacement_m=None, title=UNTITLED))]
+    #[pyo3(signature = (*, time_s, force_n, displacement_m=None, title="record"))]
     fn from_arrays(
         class: &Bound<'_, PyType>,
         time_s: &Bound<'_, PyAny>,
@@ -246,7 +246,7 @@ shown! {
     /// RecordError
     ///     No such column, one that is no numbers or lacks some, or as for `from_arrays`.
     #[classmethod]
-    #[pyo3(signature = (table, *, time_s="time_s", force_n="force_n", displacement_m=None, title=UNTITLED))]
+    #[pyo3(signature = (table, *, time_s="time_s", force_n="force_n", displacement_m=None, title="record"))]
     fn from_arrow(
         class: &Bound<'_, PyType>,
         table: &Bound<'_, PyAny>,

@@ -37,8 +37,8 @@ pub struct Cycle {
     pub done: f64,
     /// Work that it gave back.
     pub given_back: f64,
-    /// What it lost to heat, where the steps say so; else the area of a closed loop of force against displacement, `done` − `given_back`, which
-    /// is lost but for what a body that has not come to rest still holds. `None` of an open loop.
+    /// The area of a closed loop of force against displacement, `done` − `given_back`: lost, but for what a body that has not come to rest still
+    /// holds. Of an open loop what was lost to heat, where the steps say so, else `None`.
     pub lost: Option<f64>,
     /// `lost`/`done` of a closed loop; 0 where no work was done.
     pub share_lost: Option<f64>,
@@ -136,8 +136,8 @@ pub fn cycles(steps: &[StepWork]) -> Vec<Cycle> {
         let done = area + given_back;
         let (low, high) = range(&at[from..=until]);
         let is_closed = (at[until] - at[from]).abs() <= TURN * (high - low);
-        let to_heat: Option<f64> = inside.iter().map(|step| step.lost).sum();
-        let lost = to_heat.or(is_closed.then_some(area));
+        let to_heat = || inside.iter().map(|step| step.lost).sum();
+        let lost = if is_closed { Some(area) } else { to_heat() };
         Cycle {
             from: steps[from].from,
             until: steps[until - 1].until,
