@@ -253,7 +253,7 @@ def page() -> str:
         [
             "## Cards",
             "",
-            "Errors in % of the force at the end of loading, against `Material.predict`, over the depth of the test and the speeds of the card: "
+            "Errors in % of the force at the end of loading, against `Material.predict`, from a sixtieth of the depth of the test to all of it, over the speeds of the card: "
             "from a share of the speed of the test to all of it, by default the widest range at which the error is not above 2 %, or from half of "
             "it where there is none. MuJoCo and Drake run the card at prescribed depth and speed; for the others stiffness and damping are read "
             "back from the text. In a hold these contacts keep their force: they have no memory. The force of a block jumps at first touch: no "
