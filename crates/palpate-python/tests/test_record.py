@@ -136,10 +136,10 @@ def test_wrong_options_are_named(root: Path) -> None:
         record.analyze(confidence=1.0)
     time, force = np.arange(100.0), 1 + np.exp(-np.arange(100.0) / 20)
     calls: list[Callable[[], Any]] = [
-        lambda: palpate.compare(time, force, laws="latency"),  # type: ignore[arg-type]
-        lambda: record.compare(laws="latency"),  # type: ignore[arg-type]
+        lambda: palpate.compare(time, force, laws="latency"),
+        lambda: record.compare(laws="latency"),
         lambda: record.analyze(exponents=5),  # type: ignore[arg-type]
-        lambda: record.analyze(compare=False).report("nowhere", figures="svg"),  # type: ignore[arg-type]
+        lambda: record.analyze(compare=False).report("nowhere", figures="svg"),
         lambda: palpate.calibrate(record),  # type: ignore[arg-type]
     ]
     for call in calls:
