@@ -76,6 +76,13 @@ impl Column<'_> {
         Line::through(self.time, self.values, range)
     }
 
+    /// Whether most samples of a ramp, with the pieces before it, are those of the rest that it comes from or goes to.
+    fn mostly_stands(&self, ramp: &Range<usize>, is_start: bool) -> bool {
+        let rest = self.values[if is_start { ramp.start } else { ramp.end - 1 }];
+        let stands = ramp.clone().filter(|i| (self.values[*i] - rest).abs() <= self.near).count();
+        2 * stands > ramp.len()
+    }
+
     /// First sample of a hold, or the sample after its last, where it was cut off its ramp at `cut`; the ramp goes no farther than to `limit`.
     fn edge(&self, cut: usize, hold: Standstill, limit: usize, is_start: bool) -> usize {
         let edge = if is_start { hold.start } else { hold.end };
@@ -89,12 +96,10 @@ impl Column<'_> {
         };
         let (before, after) = (from..edge, edge..until);
         let (ramp, level) = if is_start { (before, after) } else { (after, before) };
-        let (ramp, level) = (self.line(ramp), self.line(level));
-        // Pieces of a ramp of few samples and of the rest before it make no line.
-        let is_straight = ramp.left() <= ramp.count * self.near * self.near;
-        if ramp.count >= FEWEST as f64
-            && is_straight
-            && let Some(meeting) = meeting(&ramp, &level)
+        let level = self.line(level);
+        if ramp.len() >= FEWEST
+            && !self.mostly_stands(&ramp, is_start)
+            && let Some(meeting) = meeting(&self.line(ramp), &level)
         {
             let slack = SLACK * (self.time[edge] - self.time[edge - 1]);
             let is_before = |t: &f64| if is_start { *t < meeting - slack } else { *t <= meeting + slack };
