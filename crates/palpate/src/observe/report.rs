@@ -46,12 +46,17 @@ impl Observer {
             }
             self.say_filtered(&mut stated, hold.held);
             stated.force = self.as_read(stated.force);
-            if self.options.slip_force.is_some() {
+            if let Some(slip) = self.options.slip_force {
                 stated.time_to_slip = Some(match (hold.held, hold.crossing) {
                     (Held::Force, _) => SlipForecast::NEVER,
                     (_, Some(crossing)) => crossing.observed(elapsed),
                     _ => SlipForecast::Unknown,
                 });
+                // A law by which it slips now does not forecast readings that are above it.
+                let is_past = matches!(stated.time_to_slip, Some(SlipForecast::Known { best: TimeToSlip::After(best), .. }) if best <= 0.0);
+                if is_past && stated.force > slip {
+                    stated.time_to_slip = Some(SlipForecast::Unknown);
+                }
             }
         }
         stated.slip = self.warning(&stated);

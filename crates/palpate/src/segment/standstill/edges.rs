@@ -83,6 +83,11 @@ impl Column<'_> {
         2 * stands > ramp.len()
     }
 
+    /// Whether samples are farther from their line than from a level that they keep to.
+    fn bends(&self, line: &Line) -> bool {
+        line.left() > line.count * self.near * self.near
+    }
+
     /// First sample of a hold, or the sample after its last, where it was cut off its ramp at `cut`; the ramp goes no farther than to `limit`.
     fn edge(&self, cut: usize, hold: Standstill, limit: usize, is_start: bool) -> usize {
         let edge = if is_start { hold.start } else { hold.end };
@@ -96,10 +101,10 @@ impl Column<'_> {
         };
         let (before, after) = (from..edge, edge..until);
         let (ramp, level) = if is_start { (before, after) } else { (after, before) };
-        let level = self.line(level);
+        let (through, level) = (self.line(ramp.clone()), self.line(level));
         if ramp.len() >= FEWEST
-            && !self.mostly_stands(&ramp, is_start)
-            && let Some(meeting) = meeting(&self.line(ramp), &level)
+            && !(self.mostly_stands(&ramp, is_start) && self.bends(&through))
+            && let Some(meeting) = meeting(&through, &level)
         {
             let slack = SLACK * (self.time[edge] - self.time[edge - 1]);
             let is_before = |t: &f64| if is_start { *t < meeting - slack } else { *t <= meeting + slack };
