@@ -11,8 +11,9 @@ import tarfile
 import zipfile
 from pathlib import Path
 
-# Bytes of a wheel, which `uvx palpate` downloads. Linux has 12.3 million on x86-64; the aim is 8.
-WHEEL = 13_000_000
+# Bytes of a wheel, which `uvx palpate` downloads. Linux has 14.2 million on x86-64 (12.3 before contacts and noise were vector code); the aim
+# is 8, which leaves no room for Arrow and Parquet.
+WHEEL = 15_000_000
 
 LICENCES = {"LICENSE-MIT", "LICENSE-APACHE", "OFL.txt", "THIRD-PARTY-LICENSES"}
 
