@@ -82,9 +82,9 @@ def test_a_sample_has_the_noise_of_its_weight() -> None:
     time = np.linspace(0, 40, 401)
     deviation = np.linspace(0.002, 0.05, 401)
     truth = 1 + 2 * (1 + time) ** -0.5
+    fits = [palpate.fit_hold(time, truth + rng.normal(0, deviation), law="latency:3", weights=1 / deviation) for _ in range(20)]
     inside = []
-    for _ in range(20):
-        fit = palpate.fit_hold(time, truth + rng.normal(0, deviation), law="latency:3", weights=1 / deviation)
+    for fit in fits:
         value, low, high = fit.predict(time, interval=0.95, of="sample")
         again = truth + rng.normal(0, deviation)
         inside.append(np.mean((low <= again) & (again <= high)))
@@ -93,7 +93,7 @@ def test_a_sample_has_the_noise_of_its_weight() -> None:
         assert np.all(np.abs(half - 1) < 0.35) and np.all((low < value) & (value < high))
     assert 0.93 < np.mean(inside) < 0.97
     # Between two samples, and beyond the last.
-    ends = fit.predict(elapsed_s=[20.05, 60.0], interval=0.95, of="sample")
+    ends = fits[0].predict(elapsed_s=[20.05, 60.0], interval=0.95, of="sample")
     assert np.allclose(0.5 * (ends[2] - ends[1]) / 1.966, [0.026, 0.05], rtol=0.15)
 
 

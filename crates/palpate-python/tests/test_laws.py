@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import inspect
+from typing import Any
 
 import numpy as np
 import palpate
@@ -85,5 +86,5 @@ def test_times_have_any_shape(law: str) -> None:
     assert np.shape(function(1.0, *numbers)) == () and function(1.0, *numbers) == column[1]
     assert np.array_equal(function(times.reshape(2, 3), *numbers), column.reshape(2, 3))
     assert np.array_equal(function(list(range(6)), *numbers), column)
-    quantities = pint.UnitRegistry().Quantity(1e3 * times, "ms")
+    quantities: Any = pint.UnitRegistry().Quantity(1e3 * times, "ms")
     assert np.array_equal(function(quantities, *numbers), column) and function(quantities[1], *numbers) == column[1]

@@ -165,6 +165,7 @@ def _creep(fit: Any, elapsed_s: NDArray[np.float64], parameters: dict[str, float
         return np.asarray(start + flow)
     amplitudes = {name: -value for name, value in shape.items() if name.startswith("amplitude")}
     end = start - sum(amplitudes.values())
-    of_one_time = {"burgers": "standard-linear-solid", "kelvin-voigt": "standard-linear-solid"}
-    function = laws.function(of_one_time.get(fit.law, fit.law))
+    # What they have beside one time is taken off above.
+    is_of_one_time = fit.law in ("burgers", "kelvin-voigt")
+    function = laws.function("standard-linear-solid" if is_of_one_time else fit.law)
     return np.asarray(flow + function(elapsed_s, equilibrium=end, **{**shape, **amplitudes}))

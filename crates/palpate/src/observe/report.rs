@@ -52,9 +52,10 @@ impl Observer {
                     (_, Some(crossing)) => crossing.observed(elapsed),
                     _ => SlipForecast::Unknown,
                 });
-                // A law by which it slips now does not forecast readings that are above it.
+                // A law by which it slips now does not forecast readings that are clearly above it.
                 let is_past = matches!(stated.time_to_slip, Some(SlipForecast::Known { best: TimeToSlip::After(best), .. }) if best <= 0.0);
-                if is_past && stated.force > slip {
+                let noise = self.observed.force_noise.deviation().unwrap_or(0.0) * Smooth::kept();
+                if is_past && stated.force > slip + FOLLOWS * noise {
                     stated.time_to_slip = Some(SlipForecast::Unknown);
                 }
             }

@@ -496,7 +496,7 @@ fn readings_that_follow_another_law_say_when_slip_is() {
         }
         assert!(found.slip != Slip::Slipping || *time > 95.0, "{time} s: {found:?}");
         let says_now = matches!(found.time_to_slip, Some(SlipForecast::Known { best: TimeToSlip::After(best), .. }) if best == 0.0);
-        assert!(!says_now || found.force <= 4.6, "{time} s: {found:?}");
+        assert!(!says_now || found.force <= 4.65, "{time} s: {found:?}");
     }
 }
 
