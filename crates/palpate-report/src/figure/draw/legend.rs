@@ -9,6 +9,9 @@ use crate::figure::layout::{CAPTION, INSET, LEGEND_ROW, Occupancy, Position, Rec
 const SAMPLE: f64 = 18.0;
 /// Distance between sample and text, and between neighbours in a row.
 const SPACE: f64 = 4.0;
+/// How much wider a text may be in a browser that has none of the named fonts: DejaVu Sans beside Arimo.
+const OTHER_FONT: f64 = 1.17;
+
 /// One line of a legend.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub(crate) struct Entry {
@@ -17,6 +20,13 @@ pub(crate) struct Entry {
     /// Of points also whether they are so many that they are drawn as dots.
     points: Option<(Style, bool)>,
     band: Option<Style>,
+}
+
+impl Entry {
+    /// Width of the sample and the text, in whatever font there is.
+    fn room(&self) -> f64 {
+        SAMPLE + SPACE + OTHER_FONT * width(&self.label, CAPTION)
+    }
 }
 
 /// The entries of panels; layers with equal labels share one.
@@ -56,7 +66,7 @@ fn row_positions(entries: &[Entry], room: f64) -> Vec<(usize, f64)> {
     entries
         .iter()
         .map(|entry| {
-            let needed = SAMPLE + SPACE + width(&entry.label, CAPTION);
+            let needed = entry.room();
             if x > 0.0 && x + needed > room {
                 row += 1;
                 x = 0.0;
@@ -70,8 +80,8 @@ fn row_positions(entries: &[Entry], room: f64) -> Vec<(usize, f64)> {
 
 /// A place for the legend inside the axes that covers nothing, corners first.
 pub(crate) fn free_place(entries: &[Entry], taken: &Occupancy) -> Option<Rect> {
-    let widest = entries.iter().map(|entry| width(&entry.label, CAPTION)).fold(0.0, f64::max);
-    let (w, h) = (SAMPLE + SPACE + widest + 4.0, entries.len() as f64 * LEGEND_ROW + 2.0);
+    let widest = entries.iter().map(Entry::room).fold(0.0, f64::max);
+    let (w, h) = (widest + 4.0, entries.len() as f64 * LEGEND_ROW + 2.0);
     let area = taken.area;
     let (room_x, room_y) = (area.w - w - 2.0 * INSET, area.h - h - 2.0 * INSET);
     if room_x < 0.0 || room_y < 0.0 || w > 0.7 * area.w {
@@ -118,8 +128,7 @@ pub(crate) fn samples(entries: &[Entry], scale: f64) -> Vec<(String, String)> {
 fn draw_entry(svg: &mut Svg, entry: &Entry, x: f64, middle: f64) {
     svg.open_series("entry", Some(&entry.label));
     // What a page answers to lies around the text too.
-    let room = SAMPLE + SPACE + width(&entry.label, CAPTION);
-    svg.rect(Rect::new(x, middle - LEGEND_ROW / 2.0, room, LEGEND_ROW), "fill=\"#fff\" fill-opacity=\"0\"");
+    svg.rect(Rect::new(x, middle - LEGEND_ROW / 2.0, entry.room(), LEGEND_ROW), "fill=\"#fff\" fill-opacity=\"0\"");
     draw_sample(svg, entry, x, middle);
     let baseline = middle + 0.36 * CAPTION;
     svg.text(x + SAMPLE + SPACE, baseline, Anchor::Start, font(CAPTION), &entry.label);
@@ -139,5 +148,24 @@ fn draw_sample(svg: &mut Svg, entry: &Entry, x: f64, middle: f64) {
         Some((style, true)) => series::draw_dots(svg, &[-4.5, 0.0, 4.5].map(|along| (centre + along, middle)), style),
         Some((style, false)) => series::draw_markers(svg, &[(centre, middle)], style, 2.0),
         None => {}
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_entry_stays_in_its_panel_where_the_browser_has_a_wider_font() {
+        /// Width of "latency law, n estimated" in DejaVu Sans at 10 points, as a browser sets it.
+        const WIDE: f64 = 123.22;
+        let entry = Entry {
+            label: "latency law, n estimated".to_owned(),
+            ..Entry::default()
+        };
+        let area = Rect::new(0.0, 0.0, 200.0, 100.0);
+        let place = free_place(std::slice::from_ref(&entry), &Occupancy::new(area)).expect("there is room");
+        let end = place.x + 2.0 + SAMPLE + SPACE + WIDE * CAPTION / 10.0;
+        assert!(end <= area.right(), "ends at {end}");
     }
 }
