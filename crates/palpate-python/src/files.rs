@@ -21,6 +21,7 @@ use serde::{Deserialize, Serialize};
 use crate::errors::{OptionError, PalpateError, failed, of_mapping, refused_plainly, undescribed};
 use crate::fits::fit;
 use crate::listed::{Listed, Threads};
+use crate::mappings::quantity;
 use crate::report_files::{csv_locale as readers, file_options};
 use crate::shown::shown;
 use crate::table::{Table, columns};
@@ -264,7 +265,7 @@ pub(crate) fn batch(
     columns: Given<'_, '_>,
     laws: Option<Listed<String>>,
     intervals: Option<&str>,
-    fit_until_s: Option<f64>,
+    #[pyo3(from_py_with = quantity::seconds)] fit_until_s: Option<f64>,
     map: Option<Vec<String>>,
     csv_locale: Option<&str>,
     restart: bool,
@@ -417,8 +418,8 @@ pub(crate) fn reproduce<'py>(
     column: Option<&str>,
     csv_locale: Option<&str>,
     seeds: Option<usize>,
-    sample_rate_hz: Option<f64>,
-    repeatability_n: Option<f64>,
+    #[pyo3(from_py_with = quantity::hertz)] sample_rate_hz: Option<f64>,
+    #[pyo3(from_py_with = quantity::newtons)] repeatability_n: Option<f64>,
     record: Given<'py, '_>,
     name: Option<&str>,
     test: Given<'py, '_>,
@@ -499,9 +500,9 @@ pub(crate) fn watch<'py>(
     columns: Given<'py, '_>,
     material: Option<PathBuf>,
     exponent: Option<f64>,
-    slip_force_n: Option<f64>,
-    warn_before_s: Option<f64>,
-    every_s: Option<f64>,
+    #[pyo3(from_py_with = quantity::newtons)] slip_force_n: Option<f64>,
+    #[pyo3(from_py_with = quantity::seconds)] warn_before_s: Option<f64>,
+    #[pyo3(from_py_with = quantity::seconds)] every_s: Option<f64>,
 ) -> PyResult<Bound<'py, PyAny>> {
     let (file, described) = (record_file(path, name)?, described_with(test, part, columns)?);
     let usual = WatchLog::default();

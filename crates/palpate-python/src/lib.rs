@@ -9,7 +9,7 @@
 //! | `observers/` | a contact watched tick by tick |
 //! | `table.rs`, `html.rs` | results as Arrow, and as notebooks show them |
 //! | `shown.rs` | classes that show what a result says |
-//! | `arrays.rs`, `mappings.rs` | numbers in; mappings as the text of a description |
+//! | `arrays.rs`, `mappings/` | arrays and single numbers in; mappings as the text of a description |
 //! | `work.rs` | long work without the GIL, ended by Ctrl-C |
 //! | `errors.rs` | exceptions and warnings |
 //! | `report_files.rs` | how the files of a report are written |

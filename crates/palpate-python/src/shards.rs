@@ -11,6 +11,7 @@ use crate::errors::{OptionError, failed, refused_plainly};
 use crate::files::{BatchResult, FileOfPython, Given, all_laws, described_with, named, shard};
 use crate::fits::fit;
 use crate::listed::Listed;
+use crate::mappings::quantity;
 use crate::report_files::csv_locale as readers;
 use crate::work::writing_job;
 
@@ -113,7 +114,7 @@ pub(crate) fn _checked(
     columns: Given<'_, '_>,
     laws: Option<Listed<String>>,
     intervals: Option<&str>,
-    fit_until_s: Option<f64>,
+    #[pyo3(from_py_with = quantity::seconds)] fit_until_s: Option<f64>,
 ) -> PyResult<()> {
     question(test, columns, laws, intervals, fit_until_s).map(drop)
 }
@@ -138,7 +139,7 @@ pub(crate) fn _run_slice(
     columns: Given<'_, '_>,
     laws: Option<Listed<String>>,
     intervals: Option<&str>,
-    fit_until_s: Option<f64>,
+    #[pyo3(from_py_with = quantity::seconds)] fit_until_s: Option<f64>,
     threads: usize,
 ) -> PyResult<()> {
     let (number, of, plan_sha256, total, first, _, start, end) = slice;

@@ -13,10 +13,12 @@ from typing import Any
 
 import numpy as np
 import palpate
+import pint
 import pytest
 from conftest import ROOT
 
 PATH = ROOT / "examples/records/ball-material.toml"
+UNITS: Any = pint.UnitRegistry()
 LOAD: dict[str, Any] = {"mass_kg": 0.25, "friction": 0.6}
 FLAGS = ["--mass", "250g", "--friction", "0.6"]
 
@@ -270,3 +272,26 @@ def test_what_is_missing_or_bonded_is_refused(material: palpate.Material, tmp_pa
     (tmp_path / "bonded.toml").write_text(PATH.read_text().replace("separation = true", "separation = false"))
     with pytest.raises(palpate.ModelError, match="the material was tested in grips that can pull"):
         palpate.Material.read(tmp_path / "bonded.toml").grip(**LOAD)
+
+
+def test_single_numbers_may_be_quantities(material: palpate.Material) -> None:
+    grams, mm, minutes = UNITS.Quantity(300.0, "g"), UNITS.Quantity(200.0, "mm/min"), UNITS.Quantity(2.0, "min")
+    ours: Any = material.grip(mass_kg=grams, friction=0.6, speed_m_per_s=mm, hold_s=minutes)
+    assert ours == material.grip(mass_kg=0.3, friction=0.6, speed_m_per_s=0.2 / 60, hold_s=120.0)
+    band: Any = UNITS.Quantity([2.1, 3.0], "N")
+    kept: Any = material.grip(mass_kg=0.3, friction=0.6, band_n=band)
+    assert kept == material.grip(mass_kg=0.3, friction=0.6, band_n=(2.1, 3.0))
+    force: Any = UNITS.Quantity(500.0, "mN")
+    assert palpate.Observer(exponent=5, slip_force_n=force).slip_force_n == 0.5
+
+
+@pytest.mark.parametrize(
+    ("mass", "found"), [(3.0 * UNITS.second, "s"), (UNITS.Quantity(3.0, ""), "no unit"), (2.0 * UNITS.N, "N")]
+)
+def test_a_quantity_of_another_unit_is_refused_by_the_name_of_the_argument(material: palpate.Material, mass: Any, found: str) -> None:
+    with pytest.raises(palpate.OptionError, match=f"^expected a quantity in kg, found one in {found}") as refused:
+        material.grip(mass_kg=mass, friction=0.6)
+    assert refused.value.__notes__ == ["while processing 'mass_kg'"]
+    torque: Any = UNITS.Quantity(1.0, "m")
+    with pytest.raises(palpate.OptionError, match="^expected a quantity in N m, found one in m"):
+        material.grip(mass_kg=0.3, friction=0.6, torque_n_m=torque)

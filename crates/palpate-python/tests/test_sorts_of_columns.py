@@ -175,3 +175,13 @@ def test_what_is_no_long_table_is_stated() -> None:
     with pytest.raises(palpate.OptionError, match="time: expected by beside it"):
         palpate.fit_many(T, Y, time="t")  # type: ignore[call-overload] # pyright: ignore
     assert len(palpate.fit_many(frame.iloc[:0], by="run", time="t", signal="y")) == 0
+
+
+def test_labels_do_not_replace_results() -> None:
+    """A column `exponent` of labels stood in place of the fitted exponents, beside their intervals."""
+    frame = pandas.DataFrame(LONG)
+    for name in ("exponent", "error", "curve"):
+        with pytest.raises(palpate.OptionError, match=f"by: '{name}' is the name of a column of the result\nhint: rename"):
+            palpate.fit_many(frame.rename(columns={"run": name}), by=name, time="t", signal="y")
+    mixed = frame.assign(run=["1"] * (len(frame) // 2) + [2] * (len(frame) - len(frame) // 2))
+    assert palpate.fit_many(mixed, by="run", time="t", signal="y")["run"] == ["1", "2"]

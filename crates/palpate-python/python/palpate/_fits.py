@@ -277,5 +277,8 @@ def fit_many(
     with bar(progress, curves, "fit") as tell:
         table = _palpate.fit_many(time_s, signal, weights, keywords, tell)
     for name, values in reversed(labels.items()):
+        if name in table.column_names:
+            other = ", ".join(f"{name}_label" if column == name else column for column in labels)
+            raise OptionError(f"by: {name!r} is the name of a column of the result\nhint: rename that of the table, such as to {other}")
         table = table._labelled(name, values)
     return table

@@ -57,6 +57,9 @@ def curves(table: Any, by: str | Sequence[str], columns: Sequence[str]) -> tuple
 
 
 def _plain(values: Any) -> list[Any]:
-    """Labels as plain objects; those of other kinds as texts."""
+    """Labels as plain objects; those of other kinds as texts, and all of them where some are."""
     listed = values.to_pylist() if hasattr(values, "to_pylist") else np.asarray(values).tolist()
-    return [label if label is None or isinstance(label, (int, float, str)) else str(label) for label in listed]
+    plain = [label if label is None or isinstance(label, (int, float, str)) else str(label) for label in listed]
+    if not any(isinstance(label, str) for label in plain):
+        return plain
+    return [label if label is None or label != label else str(label) for label in plain]

@@ -6,6 +6,7 @@ use pyo3::types::{PyBytes, PyType};
 
 use super::described::{described, model_of};
 use crate::errors::{ModelError, refused_plainly};
+use crate::mappings::quantity;
 use crate::pickles::{Made, PICKLE, check_pickle};
 use crate::shown::shown;
 
@@ -93,7 +94,7 @@ shown! {
     /// ------
     /// ModelError
     ///     A step below 0, a displacement beyond the body; the state stays as it was.
-    fn step(&mut self, dt_s: f64, displacement_m: f64) -> PyResult<f64> {
+    fn step(&mut self, #[pyo3(from_py_with = quantity::seconds)] dt_s: f64, #[pyo3(from_py_with = quantity::metres)] displacement_m: f64) -> PyResult<f64> {
         self.state.step(&self.model, dt_s, displacement_m).map_err(refused_plainly::<ModelError>)
     }
 
@@ -115,7 +116,7 @@ shown! {
     /// ------
     /// ModelError
     ///     A step below 0, a force that the body cannot bear; the state stays as it was.
-    fn step_force(&mut self, dt_s: f64, force_n: f64) -> PyResult<f64> {
+    fn step_force(&mut self, #[pyo3(from_py_with = quantity::seconds)] dt_s: f64, #[pyo3(from_py_with = quantity::newtons)] force_n: f64) -> PyResult<f64> {
         self.state.step_force(&self.model, dt_s, force_n).map_err(refused_plainly::<ModelError>)
     }
 

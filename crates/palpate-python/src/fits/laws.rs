@@ -7,6 +7,7 @@ use pyo3::prelude::*;
 
 use crate::arrays::{AT_ONCE, doubles};
 use crate::errors::{ModelError, refused_plainly};
+use crate::mappings::quantity;
 
 /// y_e + Δ φ(t; λ, n) with φ = (1 + (n − 1) λ t)^(−1/(n − 1)).
 #[pyfunction]
@@ -15,7 +16,7 @@ pub(crate) fn latency<'py>(
     elapsed_s: &Bound<'py, PyAny>,
     equilibrium: f64,
     amplitude: f64,
-    relative_rate_per_s: f64,
+    #[pyo3(from_py_with = quantity::per_second)] relative_rate_per_s: f64,
     exponent: f64,
 ) -> PyResult<Bound<'py, PyArray1<f64>>> {
     if !(exponent.is_finite() && exponent > 0.0) {

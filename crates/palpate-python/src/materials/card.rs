@@ -4,6 +4,7 @@ use palpate_jobs::{Engine, Export, MaterialSource, Results};
 use pyo3::prelude::*;
 
 use crate::errors::{one_of, warn};
+use crate::mappings::quantity;
 use crate::materials::material::Material;
 use crate::work::job;
 
@@ -17,11 +18,11 @@ pub(crate) fn card(
     py: Python<'_>,
     material: &Material,
     engine: &str,
-    depth_m: Option<f64>,
-    speed_m_per_s: Option<f64>,
-    slowest_m_per_s: Option<f64>,
-    hold_s: f64,
-    mass_kg: Option<f64>,
+    #[pyo3(from_py_with = quantity::metres)] depth_m: Option<f64>,
+    #[pyo3(from_py_with = quantity::metres_per_second)] speed_m_per_s: Option<f64>,
+    #[pyo3(from_py_with = quantity::metres_per_second)] slowest_m_per_s: Option<f64>,
+    #[pyo3(from_py_with = quantity::seconds)] hold_s: f64,
+    #[pyo3(from_py_with = quantity::kilograms)] mass_kg: Option<f64>,
     friction: Option<f64>,
     poisson_ratio: Option<f64>,
     terms_per_decade: f64,

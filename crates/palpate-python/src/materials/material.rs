@@ -19,6 +19,7 @@ use crate::errors::{
 };
 use crate::files::stated;
 use crate::fits::fit::{PyEstimate, reported, square};
+use crate::mappings::quantity;
 use crate::materials::grip::Grip;
 use crate::materials::prediction::Prediction;
 use crate::pickles::Made;
@@ -379,27 +380,27 @@ shown! {
     fn grip(
         &self,
         py: Python<'_>,
-        mass_kg: f64,
+        #[pyo3(from_py_with = quantity::kilograms)] mass_kg: f64,
         friction: f64,
         safety: f64,
-        acceleration_up_m_per_s2: f64,
-        acceleration_across_m_per_s2: f64,
-        acceleration_closing_m_per_s2: f64,
-        torque_n_m: f64,
-        off_centre_m: f64,
-        gravity_m_per_s2: f64,
-        speed_m_per_s: Option<f64>,
-        stroke_m: Option<f64>,
-        most_force_n: Option<f64>,
-        close_within_s: Option<f64>,
+        #[pyo3(from_py_with = quantity::metres_per_second_squared)] acceleration_up_m_per_s2: f64,
+        #[pyo3(from_py_with = quantity::metres_per_second_squared)] acceleration_across_m_per_s2: f64,
+        #[pyo3(from_py_with = quantity::metres_per_second_squared)] acceleration_closing_m_per_s2: f64,
+        #[pyo3(from_py_with = quantity::newton_metres)] torque_n_m: f64,
+        #[pyo3(from_py_with = quantity::metres)] off_centre_m: f64,
+        #[pyo3(from_py_with = quantity::metres_per_second_squared)] gravity_m_per_s2: f64,
+        #[pyo3(from_py_with = quantity::metres_per_second)] speed_m_per_s: Option<f64>,
+        #[pyo3(from_py_with = quantity::metres)] stroke_m: Option<f64>,
+        #[pyo3(from_py_with = quantity::newtons)] most_force_n: Option<f64>,
+        #[pyo3(from_py_with = quantity::seconds)] close_within_s: Option<f64>,
         control: &str,
-        squeeze_m: Option<f64>,
-        force_n: Option<f64>,
-        hold_s: Option<f64>,
+        #[pyo3(from_py_with = quantity::metres)] squeeze_m: Option<f64>,
+        #[pyo3(from_py_with = quantity::newtons)] force_n: Option<f64>,
+        #[pyo3(from_py_with = quantity::seconds)] hold_s: Option<f64>,
         objective: Option<&str>,
-        band_n: Option<(f64, f64)>,
+        #[pyo3(from_py_with = quantity::newtons)] band_n: Option<(f64, f64)>,
         regrip: Option<&str>,
-        shortest_pause_s: Option<f64>,
+        #[pyo3(from_py_with = quantity::seconds)] shortest_pause_s: Option<f64>,
         confidence: f64,
     ) -> PyResult<Grip> {
         if objective.is_some() && squeeze_m.is_some() {

@@ -7,6 +7,7 @@ use pyo3::types::{PyBytes, PyType};
 
 use crate::arrays::doubles;
 use crate::errors::{ModelError, OptionError, PalpateError, RecordError, refused, refused_plainly};
+use crate::mappings::quantity;
 use crate::materials::material::Material;
 use crate::observers::observation::{Observation, columns};
 use crate::pickles::{Made, damaged};
@@ -126,13 +127,13 @@ shown! {
         material: Option<PyRef<'_, Material>>,
         exponent: Option<f64>,
         exponent_standard_error: Option<f64>,
-        slip_force_n: Option<f64>,
-        warn_before_s: f64,
+        #[pyo3(from_py_with = quantity::newtons)] slip_force_n: Option<f64>,
+        #[pyo3(from_py_with = quantity::seconds)] warn_before_s: f64,
         confidence: f64,
-        displacement_noise_m: Option<f64>,
-        force_noise_n: Option<f64>,
+        #[pyo3(from_py_with = quantity::metres)] displacement_noise_m: Option<f64>,
+        #[pyo3(from_py_with = quantity::newtons)] force_noise_n: Option<f64>,
         stiffness_standard_error: f64,
-        touch_standard_error_m: f64,
+        #[pyo3(from_py_with = quantity::metres)] touch_standard_error_m: f64,
     ) -> PyResult<Self> {
         let material = material.map(|material| material.clone());
         for (name, given) in [("exponent", exponent), ("exponent_standard_error", exponent_standard_error)] {
@@ -192,7 +193,7 @@ shown! {
     /// ModelError
     ///     A displacement that the body of the material cannot take; the observer stays as it was.
     #[pyo3(signature = (time_s, force_n, displacement_m=None))]
-    fn feed(&mut self, time_s: f64, force_n: f64, displacement_m: Option<f64>) -> PyResult<Observation> {
+    fn feed(&mut self, #[pyo3(from_py_with = quantity::seconds)] time_s: f64, #[pyo3(from_py_with = quantity::newtons)] force_n: f64, #[pyo3(from_py_with = quantity::metres)] displacement_m: Option<f64>) -> PyResult<Observation> {
         let observed = self.watcher.feed(time_s, displacement_m, force_n);
         observed.map(|observed| Observation { observed }).map_err(|error| refused_at("", &error))
     }

@@ -24,6 +24,7 @@ use crate::errors::{OptionError, PalpateError, RecordError, choice, refused, ref
 use crate::files::{self, Given, all_laws, described, read_or_parsed};
 use crate::fits::fit;
 use crate::listed::Listed;
+use crate::mappings::quantity;
 use crate::materials::calibration::Calibration;
 use crate::materials::material::{Material, rising_times};
 use crate::materials::prediction::Prediction;
@@ -360,7 +361,7 @@ shown! {
         free_exponent: Option<bool>,
         confidence: Option<f64>,
         intervals: Option<&str>,
-        fit_until_s: Option<f64>,
+        #[pyo3(from_py_with = quantity::seconds)] fit_until_s: Option<f64>,
         compare: bool,
     ) -> PyResult<Analysis> {
         let job = Analyze {
@@ -457,7 +458,7 @@ shown! {
         equilibrium: Option<&str>,
         poisson_ratio: Option<f64>,
         rate: &str,
-        fit_until_s: Option<f64>,
+        #[pyo3(from_py_with = quantity::seconds)] fit_until_s: Option<f64>,
         confidence: Option<f64>,
         profile: bool,
     ) -> PyResult<Calibration> {
@@ -552,7 +553,7 @@ shown! {
         cuts: Option<Listed<f64>>,
         creep: bool,
         intervals: Option<&str>,
-        fit_until_s: Option<f64>,
+        #[pyo3(from_py_with = quantity::seconds)] fit_until_s: Option<f64>,
     ) -> PyResult<RecordComparison> {
         let question = Compare {
             laws: laws.map(|laws| all_laws(&laws)).transpose()?,

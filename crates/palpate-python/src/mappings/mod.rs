@@ -1,5 +1,7 @@
 //! A mapping of Python as the text of a description: numbers in SI under a key that says the unit become texts with it.
 
+pub(crate) mod quantity;
+
 use std::fmt;
 
 use numpy::PyUntypedArray;
