@@ -209,4 +209,27 @@ mod tests {
         assert!((width(curve.interval) / curve.standard_error.unwrap() - 2.0 * 1.966).abs() < 1e-3);
         assert!((width(sample.interval) / sum - 2.0 * 1.966).abs() < 1e-3);
     }
+
+    /// Large products of the covariance of an equilibrium far below the hold took each other away to less than nothing: bands were NaN.
+    #[test]
+    fn bands_of_a_hold_that_is_nearly_straight_are_numbers() {
+        let times: Vec<f64> = (0..200).map(|i| f64::from(i) / 199.0).collect();
+        let drop = 1.0 - (-0.01_f64).exp();
+        for (law, noise) in [("standard-linear-solid", 1e-3), ("latency", 1e-6), ("prony:2", 0.0)] {
+            for seed in 0..8 {
+                let mut random = crate::random::Rng::new(seed);
+                let values: Vec<f64> =
+                    times.iter().map(|t| 1.0 + (-t / 100.0).exp() / drop + noise * random.normal()).collect();
+                let fit =
+                    fit_law(&Samples::new(&times, &values), law.parse().unwrap(), &LawOptions::default()).unwrap();
+                if !fit.termination.is_good() || fit.uncertainty.is_none() {
+                    continue;
+                }
+                for estimate in fit.predict_intervals(&times).into_iter().chain(fit.predict_samples(&times)) {
+                    let (low, high) = estimate.interval.unwrap_or_else(|| panic!("{law} {seed}: no interval"));
+                    assert!(low <= estimate.value && estimate.value <= high, "{law} {seed}: {low} {high}");
+                }
+            }
+        }
+    }
 }

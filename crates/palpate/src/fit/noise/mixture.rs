@@ -134,7 +134,11 @@ impl<'a> Mixture<'a> {
         );
         let [.., before, last] = factors;
         self.near = [last, last / before];
-        [errors, std::array::from_fn(|lane| errors[lane] * factors[lane])]
+        // What no parameter moves has no interval under any model.
+        [
+            errors,
+            std::array::from_fn(|lane| if errors[lane] > 0.0 { errors[lane] * factors[lane] } else { errors[lane] }),
+        ]
     }
 
     /// The factors k for weights of models and ratios v/v_m, by Halley's method for ln k: the logarithm of a tail is about straight in that of k.
@@ -220,9 +224,25 @@ fn variances(block: &[Lanes], covariance: &[Vec<f64>]) -> Lanes {
                     all[lane] += one[lane] * sum[lane];
                 }
             }
-            all
+            if all.iter().any(|variance| *variance < 0.0) {
+                at_least_rounding(all, block, covariance)
+            } else {
+                all
+            }
         },
     )
+}
+
+/// Variances of which some are below 0: large products took each other away, and what is left is known to their rounding.
+#[inline(never)]
+fn at_least_rounding(variances: Lanes, block: &[Lanes], covariance: &[Vec<f64>]) -> Lanes {
+    /// Roundings that may add up.
+    const ROUNDINGS: f64 = 8.0;
+    std::array::from_fn(|lane| {
+        let row = |row: &Vec<f64>| row.iter().zip(block).map(|(entry, g)| (entry * g[lane]).abs()).sum::<f64>();
+        let all: f64 = covariance.iter().zip(block).map(|(entries, g)| g[lane].abs() * row(entries)).sum();
+        if variances[lane] < 0.0 { ROUNDINGS * f64::EPSILON * all } else { variances[lane] }
+    })
 }
 
 #[cfg(test)]

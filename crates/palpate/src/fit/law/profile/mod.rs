@@ -25,7 +25,7 @@ use crate::fit::{
 use crate::laws::{Law, ShapeParameterKind};
 use crate::optimise::{Effort, Few};
 use crate::watch::{Cancelled, Progress};
-use path::{End, Ends, Profile, Searched};
+use path::{Closeness, End, Ends, Profile, Searched};
 
 /// Half an interval over the parameter beyond which its curvature is not to be trusted.
 const WIDE: f64 = 1.0 / 3.0;
@@ -77,7 +77,7 @@ pub fn profile_interval(
     let (Some(uncertainty), Some(quantity), true) = (&fit.uncertainty, quantity, fit.termination.is_good()) else {
         return Ok(Interval::OPEN);
     };
-    let about = About::new(&fitted, &fit, options);
+    let about = About::new(&fitted, &fit, options, Closeness::EXACT);
     let ends = fitted.ends(place, &fit, uncertainty, &about, &mut Effort::default())?;
     let value = |end: &Option<End>| {
         let reached = end.as_ref().and_then(End::bound)?;
@@ -124,7 +124,7 @@ impl Fitted {
         let (Some(uncertainty), true) = (fit.uncertainty.clone(), fit.termination.is_good()) else {
             return Ok(());
         };
-        let about = About::new(self, fit, options);
+        let about = About::new(self, fit, options, Closeness::USUAL);
         let all = (0..fit.values.len()).map(|place| self.ends(place, fit, &uncertainty, &about, effort));
         let all = all.collect::<Result<Vec<Ends>, Cancelled>>()?;
         let values_at = |end: &Option<End>| -> Option<Vec<f64>> {
@@ -209,6 +209,7 @@ impl Fitted {
             target: (uncertainty.factor(&gradient) * widening).hypot(about.doubtful.z),
             freedom: uncertainty.freedom,
             most_iterations: about.most_iterations,
+            closeness: about.closeness,
         };
         if !(profile.error > 0.0 && profile.target.is_finite()) {
             return Ok(Ends::default());
@@ -247,14 +248,16 @@ struct About {
     nodes: Condensed,
     doubtful: Doubtful,
     most_iterations: usize,
+    closeness: Closeness,
 }
 
 impl About {
-    fn new(fitted: &Fitted, fit: &Fit, options: &LawOptions) -> Self {
+    fn new(fitted: &Fitted, fit: &Fit, options: &LawOptions, closeness: Closeness) -> Self {
         Self {
             nodes: condense(&fitted.scaled),
             doubtful: fitted.doubtful(fit),
             most_iterations: options.most_iterations,
+            closeness,
         }
     }
 }

@@ -11,11 +11,34 @@ const VALLEYS: usize = 6;
 /// Standard errors from the best value beyond which an end counts as open.
 const FARTHEST: f64 = 2000.0;
 
-/// Distance of an end, in standard errors, at which its search stops.
-const CLOSE: f64 = 1e-9;
+/// How closely an end is sought.
+#[derive(Clone, Copy)]
+pub(super) struct Closeness {
+    /// Share of the bound by which z may miss it.
+    share: f64,
+    /// Relative fall of the residual square below which a step counts as none.
+    gain: f64,
+}
 
-/// The same on condensed samples, which only show where to look.
-const ROUGH: f64 = 1e-3;
+impl Closeness {
+    /// As far as double precision goes.
+    pub(super) const EXACT: Self = Self {
+        share: 5e-10,
+        gain: 1e-14,
+    };
+
+    /// A hundred thousandth of half an interval.
+    pub(super) const USUAL: Self = Self {
+        share: 1e-5,
+        gain: 1e-10,
+    };
+
+    /// On condensed samples, which only show where to look.
+    const ROUGH: Self = Self {
+        share: 5e-4,
+        gain: 1e-9,
+    };
+}
 
 /// Ends of a profile; none of one that cannot be followed.
 #[derive(Default)]
@@ -69,6 +92,7 @@ pub(super) struct Profile<'a> {
     pub(super) target: f64,
     pub(super) freedom: f64,
     pub(super) most_iterations: usize,
+    pub(super) closeness: Closeness,
 }
 
 /// A point of a profile: its residual square, z, and the parameters there.
@@ -139,7 +163,7 @@ impl Profile<'_> {
             inside: nodes.inside,
             least: 1.0,
         };
-        let least = self.at(&field, 1.0, 0.0, &self.start(), effort)?.square;
+        let least = self.at(&field, 1.0, 0.0, &self.start(), Closeness::EXACT, effort)?.square;
         Ok(Some(Field { least, ..field }))
     }
 
@@ -147,13 +171,13 @@ impl Profile<'_> {
     fn end(&self, few: Option<&Field<'_>>, side: f64, effort: &mut Effort<'_>) -> Result<End, Cancelled> {
         let start = self.start();
         let guess = match few {
-            Some(few) => Some(self.meet(few, side, &start, self.target, ROUGH, effort)?),
+            Some(few) => Some(self.meet(few, side, &start, self.target, Closeness::ROUGH, effort)?),
             None => None,
         };
         let guess = guess.as_ref().and_then(End::bound);
         let first = guess.map_or(self.target, |guess| guess.distance);
         let nonlinear = guess.map_or_else(|| start.nonlinear.clone(), |guess| guess.nonlinear.clone());
-        self.meet(&self.all(), side, &Reached { nonlinear, ..start }, first, CLOSE, effort)
+        self.meet(&self.all(), side, &Reached { nonlinear, ..start }, first, self.closeness, effort)
     }
 
     /// The same beside doubtful terms: each lies in one of many valleys, of which another may be the lowest when a parameter is held
@@ -161,13 +185,13 @@ impl Profile<'_> {
     fn end_among_valleys(&self, few: Option<&Field<'_>>, side: f64, effort: &mut Effort<'_>) -> Result<End, Cancelled> {
         let all = self.all();
         let field = few.unwrap_or(&all);
-        let mut met = self.meet(field, side, &self.start(), self.target, ROUGH, effort)?;
+        let mut met = self.meet(field, side, &self.start(), self.target, Closeness::ROUGH, effort)?;
         for _ in 1..VALLEYS {
             let Some(end) = met.bound() else { break };
             let Some(lower) = self.elsewhere(field, side, end, effort)? else {
                 break;
             };
-            met = self.meet(field, side, &lower, 1.2 * end.distance, ROUGH, effort)?;
+            met = self.meet(field, side, &lower, 1.2 * end.distance, Closeness::ROUGH, effort)?;
         }
         Ok(met)
     }
@@ -189,7 +213,7 @@ impl Profile<'_> {
             for place in PLACES {
                 let mut start = met.clone();
                 start.nonlinear[term] = place;
-                let found = self.at(field, side, met.distance, &start, effort)?;
+                let found = self.at(field, side, met.distance, &start, Closeness::ROUGH, effort)?;
                 if found.z < lowest.as_ref().map_or(LOWER * self.target, |lowest| lowest.z) {
                     lowest = Some(found);
                 }
@@ -238,23 +262,26 @@ impl Profile<'_> {
         side: f64,
         start: &Reached,
         first: f64,
-        close: f64,
+        closeness: Closeness,
         effort: &mut Effort<'_>,
     ) -> Result<End, Cancelled> {
         /// Halvings of what is left, if no secant leads anywhere.
         const ROUNDS: usize = 40;
         /// Share of the bound by which z may miss it.
         const MISSES: f64 = 0.1;
-        let farthest = self.farthest(side);
+        let (farthest, close) = (self.farthest(side), closeness.share * self.target);
         let mut near = start.clone();
-        let mut far = self.at(field, side, first.min(farthest), &near, effort)?;
+        let mut far = self.at(field, side, first.min(farthest), &near, closeness, effort)?;
         while far.z < self.target {
             if far.distance >= farthest {
                 return Ok(End::open(far));
             }
             let growth = (1.05 * self.target / far.z).clamp(1.1, 2.0);
             near = far;
-            far = self.at(field, side, (near.distance * growth).min(farthest), &near, effort)?;
+            far = self.at(field, side, (near.distance * growth).min(farthest), &near, closeness, effort)?;
+        }
+        if far.z - self.target < close && !far.at_edge {
+            return Ok(End::met(far));
         }
         // What is missing at the near end, what is over at the far one.
         let (mut missing, mut over) = (self.target - near.z, far.z - self.target);
@@ -262,9 +289,9 @@ impl Profile<'_> {
             let share = missing / (missing + over);
             let middle = near.distance + share * (far.distance - near.distance);
             let width = far.distance - near.distance;
-            let mut trial = self.at(field, side, middle, &near, effort)?;
+            let mut trial = self.at(field, side, middle, &near, closeness, effort)?;
             if trial.z > self.target {
-                let other = self.at(field, side, middle, &far, effort)?;
+                let other = self.at(field, side, middle, &far, closeness, effort)?;
                 trial = if other.z < trial.z { other } else { trial };
             }
             let left = self.target - trial.z;
@@ -289,6 +316,7 @@ impl Profile<'_> {
         side: f64,
         distance: f64,
         near: &Reached,
+        closeness: Closeness,
         effort: &mut Effort<'_>,
     ) -> Result<Reached, Cancelled> {
         let value = self.value(side, distance);
@@ -298,7 +326,8 @@ impl Profile<'_> {
         if let Searched::Nonlinear(_, free) = self.parameter {
             theta.remove(free);
         }
-        let point = refine(&shapes, field.target, &theta, Ending::tight(self.most_iterations), effort)?.point;
+        let ending = Ending::new(closeness.gain, self.most_iterations);
+        let point = refine(&shapes, field.target, &theta, ending, effort)?.point;
         let square = point.square + field.inside;
         let at_edge = point.theta.iter().enumerate().any(|(i, value)| {
             let (low, high) = shapes.bounds(i);
