@@ -3,7 +3,7 @@
 use std::cmp::Ordering;
 
 use super::confidence_set::{MARGIN, is_worse, losses};
-use super::probability::{NEAR, Signs, probability};
+use super::probability::{NEAR, NOTHING_TRIED, Signs, probability};
 use super::result::{Certainty, Comparison, Ranking, Reservation, Row, Verdict};
 use crate::laws::Law;
 
@@ -15,6 +15,9 @@ pub(super) const REFUTED: f64 = 10.0;
 
 /// A law whose forecasts miss by more than this share of the change predicts nothing.
 const UNPREDICTIVE: f64 = 1.0 / 3.0;
+
+/// Share of a relaxation that may lie beyond the end of a hold whose forecasts tell laws apart.
+const UNFINISHED: f64 = 0.5;
 
 /// Probabilities from which on a choice is likely, and clear.
 const PROBABLE: (f64, f64) = (0.75, 0.9);
@@ -64,6 +67,16 @@ pub(super) fn preferred(a: (Law, f64), b: (Law, f64)) -> Ordering {
     spectrum(a.0).cmp(&spectrum(b.0)).then(a.1.total_cmp(&b.1))
 }
 
+/// Share of the relaxation that is still to come at the end of a hold, by the law of a row; `None` of a law that never levels off.
+fn remaining(row: &Row, duration: f64) -> Option<f64> {
+    /// Durations after which all has relaxed.
+    const AT_LAST: f64 = 1e30;
+    let curve = row.fit.as_ref().ok()?.predict_many(&[0.0, duration, AT_LAST * duration]);
+    let [first, end, last] = curve[..] else { return None };
+    let share = (end - last) / (first - last);
+    share.is_finite().then_some(share)
+}
+
 /// Judges ranked rows.
 pub(super) fn judge(comparison: &Comparison) -> Option<Verdict> {
     let with_figure = || comparison.rows.iter().filter(|row| comparison.figure(row).is_some());
@@ -90,7 +103,8 @@ pub(super) fn judge(comparison: &Comparison) -> Option<Verdict> {
         })
     });
     let reservation = match figure {
-        _ if !any_stands && with_figure().any(is_law) => Some(Reservation::Refuted),
+        // The spectrum is what is left where every law ended at a bound: it is refuted as they are.
+        _ if !any_stands && (with_figure().any(is_law) || evidence(chosen) > REFUTED) => Some(Reservation::Refuted),
         error if comparison.ranking == Ranking::Forward && error > UNPREDICTIVE => Some(Reservation::Unpredictive),
         _ => None,
     };
@@ -106,7 +120,14 @@ pub(super) fn judge(comparison: &Comparison) -> Option<Verdict> {
             change: comparison.change,
         }
     });
-    let probability = probability(signs.as_ref().filter(|_| comparison.ranking == Ranking::Forward));
+    let near_best = comparison.count_near_best(chosen);
+    let mut probability = probability(signs.as_ref().filter(|_| comparison.ranking == Ranking::Forward));
+    // Another law was better every time that was tried, or cut points lie so early that laws have not parted yet: no more is known than where
+    // nothing was tried.
+    let says_little = near_best == 0 || remaining(chosen, comparison.duration).is_some_and(|share| share > UNFINISHED);
+    if says_little && comparison.ranking == Ranking::Forward {
+        probability = probability.at_most(NOTHING_TRIED);
+    }
     let certainty = match probability.value {
         _ if reservation.is_some() => Certainty::Open,
         value if value >= PROBABLE.1 => Certainty::Clear,
@@ -120,7 +141,7 @@ pub(super) fn judge(comparison: &Comparison) -> Option<Verdict> {
         probability_range: (probability.low, probability.high),
         certainty,
         reservation,
-        cuts_near_best: comparison.count_near_best(chosen),
+        cuts_near_best: near_best,
         costs: costs.collect(),
     })
 }
