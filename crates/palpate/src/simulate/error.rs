@@ -123,7 +123,9 @@ pub enum SimulateError {
         index: usize,
     },
     /// More samples than a trajectory holds.
-    #[error("{found:.3e} samples exceed the limit of {limit:.0e}: reduce the sample rate")]
+    #[error(
+        "{found:.3e} samples exceed the limit of {limit:.0e}: state a lower sample_rate, or the times, under [output] of the protocol"
+    )]
     TooManySamples {
         /// How many are requested.
         found: f64,

@@ -128,7 +128,10 @@ pub(crate) fn samples(entries: &[Entry], scale: f64) -> Vec<(String, String)> {
 fn draw_entry(svg: &mut Svg, entry: &Entry, x: f64, middle: f64) {
     svg.open_series("entry", Some(&entry.label));
     // What a page answers to lies around the text too.
-    svg.rect(Rect::new(x, middle - LEGEND_ROW / 2.0, entry.room(), LEGEND_ROW), "fill=\"#fff\" fill-opacity=\"0\"");
+    svg.rect(
+        Rect::new(x, middle - LEGEND_ROW / 2.0, entry.room(), LEGEND_ROW),
+        "fill=\"#fff\" fill-opacity=\"0\"",
+    );
     draw_sample(svg, entry, x, middle);
     let baseline = middle + 0.36 * CAPTION;
     svg.text(x + SAMPLE + SPACE, baseline, Anchor::Start, font(CAPTION), &entry.label);
