@@ -126,14 +126,15 @@ pub(super) fn fits(analysis: &Analysis) -> Table {
 fn rate_bias_note(hold: &HoldAnalysis) -> Option<String> {
     let bias = hold.rate_bias.filter(|_| hold.rate_fits.iter().any(Option::is_some))?;
     Some(format!(
-        "Rate domain, hold {}: on simulated holds with the parameters of the fit in the time domain (n = {:.3}) and this noise it estimates v at {:.2} of the true value ({:.2} to {:.2} in {} of them) and the equilibrium with an error of {:.1} % of the relaxation.",
+        "Rate domain, hold {}: on simulated holds with the parameters of the fit in the time domain (n = {:.3}) and this noise it estimates v at {:.2} of the true value ({:.2} to {:.2} in {} of them) and the equilibrium with an error of {} % of the relaxation.",
         hold.number,
         bias.exponent,
         bias.coefficient,
         bias.coefficient_range.0,
         bias.coefficient_range.1,
         bias.repetitions,
-        100.0 * bias.equilibrium
+        // No negative zero.
+        format!("{:.1}", (1e3 * bias.equilibrium).round() / 10.0 + 0.0).replace('-', "−")
     ))
 }
 
