@@ -40,11 +40,11 @@ def in_si(values: Any, name: str) -> Any:
         raise OptionError(f"{name}: expected a quantity in {unit}, found one in {values.units}") from None
 
 
-def number(quantity: Any, unit: str) -> tuple[bool, Any]:
-    """Whether a quantity is one of a unit, and its number in it; otherwise what it is in."""
+def number(quantity: Any, unit: str) -> float:
+    """One quantity in a unit."""
     if not quantity.is_compatible_with(_of_pint(unit)):
-        return False, f"{quantity.units:~P}" or "no unit"
-    return True, float(quantity.to(_of_pint(unit)).magnitude)
+        raise OptionError(f"expected a quantity in {unit}, found one in {f'{quantity.units:~P}' or 'no unit'}")
+    return float(quantity.to(_of_pint(unit)).magnitude)
 
 
 def stated(quantity: Any, key: str) -> str | float:

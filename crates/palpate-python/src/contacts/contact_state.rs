@@ -94,7 +94,11 @@ shown! {
     /// ------
     /// ModelError
     ///     A step below 0, a displacement beyond the body; the state stays as it was.
-    fn step(&mut self, #[pyo3(from_py_with = quantity::seconds)] dt_s: f64, #[pyo3(from_py_with = quantity::metres)] displacement_m: f64) -> PyResult<f64> {
+    fn step(
+        &mut self,
+        #[pyo3(from_py_with = quantity::seconds)] dt_s: f64,
+        #[pyo3(from_py_with = quantity::metres)] displacement_m: f64,
+    ) -> PyResult<f64> {
         self.state.step(&self.model, dt_s, displacement_m).map_err(refused_plainly::<ModelError>)
     }
 
@@ -116,7 +120,11 @@ shown! {
     /// ------
     /// ModelError
     ///     A step below 0, a force that the body cannot bear; the state stays as it was.
-    fn step_force(&mut self, #[pyo3(from_py_with = quantity::seconds)] dt_s: f64, #[pyo3(from_py_with = quantity::newtons)] force_n: f64) -> PyResult<f64> {
+    fn step_force(
+        &mut self,
+        #[pyo3(from_py_with = quantity::seconds)] dt_s: f64,
+        #[pyo3(from_py_with = quantity::newtons)] force_n: f64,
+    ) -> PyResult<f64> {
         self.state.step_force(&self.model, dt_s, force_n).map_err(refused_plainly::<ModelError>)
     }
 

@@ -4,7 +4,6 @@ use pyo3::prelude::*;
 use pyo3::types::{PyFloat, PyInt};
 
 use super::{is_with_unit, units};
-use crate::errors::{OptionError, refused_plainly};
 
 /// One number, none, or the two ends of a range.
 pub(crate) trait Quantity: Sized {
@@ -16,18 +15,8 @@ impl Quantity for f64 {
     fn in_unit(value: &Bound<'_, PyAny>, unit: &str) -> PyResult<Self> {
         let is_plain = value.is_instance_of::<PyFloat>() || value.is_instance_of::<PyInt>();
         match !is_plain && is_with_unit(value)? {
-            true => {
-                let (is_right, found) =
-                    units(value)?.call_method1("number", (value, unit))?.extract::<(bool, Bound<'_, PyAny>)>()?;
-                match is_right {
-                    true => found.extract(),
-                    // PyO3 adds the name of the argument.
-                    false => {
-                        let message = format!("expected a quantity in {unit}, found one in {found}");
-                        Err(refused_plainly::<OptionError>(message))
-                    }
-                }
-            }
+            // PyO3 adds the name of the argument to what is refused.
+            true => units(value)?.call_method1("number", (value, unit))?.extract(),
             false => value.extract(),
         }
     }

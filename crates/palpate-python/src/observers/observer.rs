@@ -193,7 +193,12 @@ shown! {
     /// ModelError
     ///     A displacement that the body of the material cannot take; the observer stays as it was.
     #[pyo3(signature = (time_s, force_n, displacement_m=None))]
-    fn feed(&mut self, #[pyo3(from_py_with = quantity::seconds)] time_s: f64, #[pyo3(from_py_with = quantity::newtons)] force_n: f64, #[pyo3(from_py_with = quantity::metres)] displacement_m: Option<f64>) -> PyResult<Observation> {
+    fn feed(
+        &mut self,
+        #[pyo3(from_py_with = quantity::seconds)] time_s: f64,
+        #[pyo3(from_py_with = quantity::newtons)] force_n: f64,
+        #[pyo3(from_py_with = quantity::metres)] displacement_m: Option<f64>,
+    ) -> PyResult<Observation> {
         let observed = self.watcher.feed(time_s, displacement_m, force_n);
         observed.map(|observed| Observation { observed }).map_err(|error| refused_at("", &error))
     }

@@ -55,13 +55,6 @@ const FORWARD: [[f64; 6]; 3] = [
 /// The same without any sign, where nothing was held out: shares of holds.
 const NOTHING_HELD_OUT: [f64; 3] = [0.32, 0.19, 0.58];
 
-/// What is known where nothing was held out.
-pub(super) const NOTHING_TRIED: Probability = Probability {
-    value: NOTHING_HELD_OUT[0],
-    low: NOTHING_HELD_OUT[1],
-    high: NOTHING_HELD_OUT[2],
-};
-
 impl Probability {
     /// The lower of both.
     pub(super) fn at_most(self, other: Self) -> Self {

@@ -3,7 +3,7 @@
 use std::cmp::Ordering;
 
 use super::confidence_set::{MARGIN, is_worse, losses};
-use super::probability::{NEAR, NOTHING_TRIED, Signs, probability};
+use super::probability::{NEAR, Signs, probability};
 use super::result::{Certainty, Comparison, Ranking, Reservation, Row, Verdict};
 use crate::laws::Law;
 
@@ -121,13 +121,15 @@ pub(super) fn judge(comparison: &Comparison) -> Option<Verdict> {
         }
     });
     let near_best = comparison.count_near_best(chosen);
-    let mut probability = probability(signs.as_ref().filter(|_| comparison.ranking == Ranking::Forward));
     // Another law was better every time that was tried, or cut points lie so early that laws have not parted yet: no more is known than where
     // nothing was tried.
     let says_little = near_best == 0 || remaining(chosen, comparison.duration).is_some_and(|share| share > UNFINISHED);
-    if says_little && comparison.ranking == Ranking::Forward {
-        probability = probability.at_most(NOTHING_TRIED);
-    }
+    let untried = probability(None);
+    let probability = match signs.as_ref().filter(|_| comparison.ranking == Ranking::Forward) {
+        Some(signs) if says_little => probability(Some(signs)).at_most(untried),
+        Some(signs) => probability(Some(signs)),
+        None => untried,
+    };
     let certainty = match probability.value {
         _ if reservation.is_some() => Certainty::Open,
         value if value >= PROBABLE.1 => Certainty::Clear,
