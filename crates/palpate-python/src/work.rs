@@ -184,20 +184,23 @@ static POOLS: Mutex<Vec<(u32, Arc<ThreadPool>)>> = Mutex::new(Vec::new());
 /// # Errors
 /// Where the system gives no threads.
 pub(crate) fn in_parallel<T: Send>(work: impl FnOnce() -> T + Send) -> Result<T, ThreadPoolBuildError> {
+    Ok(threads()?.install(work))
+}
+
+/// The threads of this process for parallel work.
+///
+/// # Errors
+/// Where the system gives none.
+pub(crate) fn threads() -> Result<Arc<ThreadPool>, ThreadPoolBuildError> {
     let make = || ThreadPoolBuilder::new().build().map(Arc::new);
-    let threads = match POOLS.try_lock() {
-        Ok(mut pools) => match pools.iter().find(|(process, _)| *process == process::id()) {
-            Some((_, threads)) => Arc::clone(threads),
-            None => {
-                let threads = make()?;
-                pools.push((process::id(), Arc::clone(&threads)));
-                threads
-            }
-        },
-        // Another thread makes one; or it did when this process was forked, and never lets go here.
-        Err(_) => make()?,
-    };
-    Ok(threads.install(work))
+    // Another thread makes one; or it did when this process was forked, and never lets go here.
+    let Ok(mut pools) = POOLS.try_lock() else { return make() };
+    if let Some((_, threads)) = pools.iter().find(|(process, _)| *process == process::id()) {
+        return Ok(Arc::clone(threads));
+    }
+    let threads = make()?;
+    pools.push((process::id(), Arc::clone(&threads)));
+    Ok(threads)
 }
 
 /// Runs a job that writes no file; Ctrl-C ends it.

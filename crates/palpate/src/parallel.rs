@@ -1,5 +1,8 @@
 //! The same work on many things, on all cores where there are threads.
 
+#[cfg(feature = "rayon")]
+use std::sync::atomic::{AtomicUsize, Ordering};
+
 /// What `of` makes of every number below `count`, in their order.
 pub(crate) fn for_each<T: Send>(count: usize, of: impl Fn(usize) -> T + Sync + Send) -> Vec<T> {
     #[cfg(feature = "rayon")]
@@ -11,13 +14,155 @@ pub(crate) fn for_each<T: Send>(count: usize, of: impl Fn(usize) -> T + Sync + S
     (0..count).map(of).collect()
 }
 
-/// What two pieces of work return, side by side where there are threads.
-#[cfg(feature = "std")]
-pub(crate) fn both<A: Send, B: Send>(a: impl FnOnce() -> A + Send, b: impl FnOnce() -> B + Send) -> (A, B) {
+/// The threads that work is spread over.
+#[derive(Clone, Copy, Default)]
+pub(crate) struct Threads<'a> {
+    /// The calling thread and those of this pool; without it those of the pool that the calling thread is of, or of the process.
     #[cfg(feature = "rayon")]
-    {
-        rayon::join(a, b)
-    }
+    pub(crate) pool: Option<&'a rayon::ThreadPool>,
     #[cfg(not(feature = "rayon"))]
-    (a(), b())
+    none: std::marker::PhantomData<&'a ()>,
+}
+
+#[cfg(feature = "rayon")]
+impl Threads<'_> {
+    /// How many there are.
+    pub(crate) fn count(self) -> usize {
+        self.pool.map_or_else(rayon::current_num_threads, rayon::ThreadPool::current_num_threads)
+    }
+
+    /// What `work` makes of every part, in their order; the first part is the calling thread's.
+    ///
+    /// The calling thread does not leave its processor: parts may take microseconds, and a thread that sleeps is woken late.
+    pub(crate) fn map<T: Send, R: Send>(self, parts: Vec<T>, work: &(impl Fn(T) -> R + Sync)) -> Vec<R> {
+        let mut results: Vec<Option<R>> = parts.iter().map(|_| None).collect();
+        let under_way = AtomicUsize::new(parts.len().saturating_sub(1));
+        match self.pool {
+            None => rayon::in_place_scope(|scope| share(scope, &mut results, parts, work, &under_way)),
+            Some(pool) => pool.in_place_scope(|scope| share(scope, &mut results, parts, work, &under_way)),
+        }
+        results.into_iter().flatten().collect()
+    }
+}
+
+/// Gives all parts but the first to other threads, works on the first, and waits.
+#[cfg(feature = "rayon")]
+fn share<'scope, T: Send + 'scope, R: Send>(
+    scope: &rayon::Scope<'scope>,
+    results: &'scope mut [Option<R>],
+    parts: Vec<T>,
+    work: &'scope (impl Fn(T) -> R + Sync),
+    under_way: &'scope AtomicUsize,
+) {
+    /// How often to look whether the others are done before this thread sleeps: for some 50 us.
+    const LOOKS: u32 = 2000;
+
+    let mut pairs = results.iter_mut().zip(parts);
+    let own = pairs.next();
+    for (result, part) in pairs {
+        scope.spawn(move |_| {
+            *result = Some(work(part));
+            under_way.fetch_sub(1, Ordering::Release);
+        });
+    }
+    if let Some((result, part)) = own {
+        *result = Some(work(part));
+    }
+    for _ in 0..LOOKS {
+        if under_way.load(Ordering::Acquire) == 0 {
+            break;
+        }
+        std::hint::spin_loop();
+    }
+}
+
+#[cfg(not(feature = "rayon"))]
+impl Threads<'_> {
+    /// How many there are.
+    pub(crate) fn count(self) -> usize {
+        1
+    }
+
+    /// What `work` makes of every part, in their order.
+    pub(crate) fn map<T, R>(self, parts: Vec<T>, work: &impl Fn(T) -> R) -> Vec<R> {
+        parts.into_iter().map(work).collect()
+    }
+}
+
+/// Whether work comes so densely that the threads which shared the last of it have not gone to sleep: to wake them takes longer than a step of
+/// ten thousand contacts.
+#[cfg(feature = "rayon")]
+pub(crate) mod dense {
+    use std::sync::OnceLock;
+    use std::sync::atomic::{AtomicU64, Ordering};
+    use std::time::Instant;
+
+    /// How long threads of `rayon` stay awake at least, ns.
+    const AWAKE: u64 = 8_000;
+
+    /// When the last work ended, ns since the first.
+    static ENDED: AtomicU64 = AtomicU64::new(0);
+
+    fn now() -> u64 {
+        static BEGINNING: OnceLock<Instant> = OnceLock::new();
+        let since = BEGINNING.get_or_init(Instant::now).elapsed();
+        u64::try_from(since.as_nanos()).unwrap_or(u64::MAX)
+    }
+
+    /// Whether the work that begins now does.
+    pub(crate) fn is_dense() -> bool {
+        let ended = ENDED.load(Ordering::Relaxed);
+        ended != 0 && now().saturating_sub(ended) < AWAKE
+    }
+
+    /// Notes that work has ended.
+    pub(crate) fn ended() {
+        ENDED.store(now().max(1), Ordering::Relaxed);
+    }
+}
+
+/// Without threads nothing is shared.
+#[cfg(not(feature = "rayon"))]
+pub(crate) mod dense {
+    pub(crate) fn is_dense() -> bool {
+        false
+    }
+
+    pub(crate) fn ended() {}
+}
+
+#[cfg(all(test, feature = "rayon"))]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn results_of_parts_are_in_their_order_on_any_number_of_threads() {
+        for threads in [1, 2, 5] {
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+            let square = |part: usize| {
+                // The first ones end last.
+                std::thread::sleep(std::time::Duration::from_micros(300 * (9 - part as u64)));
+                part * part
+            };
+            let expected: Vec<usize> = (0..9).map(|part| part * part).collect();
+            let beside = Threads { pool: Some(&pool) };
+            assert_eq!((beside.count(), beside.map((0..9).collect(), &square)), (threads, expected.clone()));
+            assert_eq!(pool.install(|| Threads::default().map((0..9).collect(), &square)), expected);
+            assert!(beside.map(Vec::<usize>::new(), &square).is_empty());
+        }
+    }
+
+    #[test]
+    fn work_is_dense_where_the_last_of_it_has_just_ended() {
+        dense::ended();
+        assert!(dense::is_dense());
+        std::thread::sleep(std::time::Duration::from_millis(1));
+        // Other tests may have ended some meanwhile.
+        let mut looks = 0;
+        while dense::is_dense() {
+            looks += 1;
+            assert!(looks < 1000);
+            std::thread::sleep(std::time::Duration::from_millis(1));
+        }
+    }
 }

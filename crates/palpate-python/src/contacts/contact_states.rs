@@ -14,7 +14,7 @@ use crate::arrays::AT_ONCE;
 use crate::errors::{ModelError, OptionError, PalpateError, one_of, refused_plainly};
 use crate::pickles::{Made, PICKLE, Piece, Pieces, check_pickle, in_pieces};
 use crate::shown::shown;
-use crate::work::{briefly, in_parallel};
+use crate::work::{briefly, in_parallel, threads};
 
 /// Contacts that are moved side by side, such as those of many grippers, or of one with many values of its parameters.
 ///
@@ -132,13 +132,13 @@ impl ContactStates {
             Self::at_length(py, models, (states, results, failed), &step, at_once)?;
             return Ok(array);
         }
-        let mut advance = || models.step(states, &step, results, failed);
         let stepped = match work > TINY {
-            false => advance(),
+            false => models.step(states, &step, results, failed),
             true if ContactModels::is_spread(self.count, request.imposed) => {
-                briefly(py, || in_parallel(advance))?.map_err(refused_plainly::<PalpateError>)?
+                let pool = threads().map_err(refused_plainly::<PalpateError>)?;
+                briefly(py, || models.step_on(&pool, states, &step, results, failed))?
             }
-            true => briefly(py, advance)?,
+            true => briefly(py, || models.step(states, &step, results, failed))?,
         };
         stepped.map_err(refused_plainly::<ModelError>)?;
         Ok(array)

@@ -30,7 +30,7 @@ pub(super) struct Bodies {
     /// How far the layer may be stretched: nothing, or without end where it is bonded.
     pub(super) hold: Lanes,
     /// The same with the sign of a stretch.
-    slack: Lanes,
+    pub(super) slack: Lanes,
 }
 
 /// Whether the force of a body is E ε A(u) with the area of a ball, a pad or a prism.
@@ -167,13 +167,13 @@ pub(super) struct Block {
     exponent: Lanes,
     rate_coefficient: Lanes,
     /// (n − 1) v; to the bit the product in `LatencyLaw` where it is used, because n − 1 is 1, 2 or 4 there.
-    rate: Lanes,
-    thickness: Lanes,
-    per_thickness: Lanes,
+    pub(super) rate: Lanes,
+    pub(super) thickness: Lanes,
+    pub(super) per_thickness: Lanes,
     /// m
     layers: Lanes,
     /// Half of the excess strain that a displacement brings, 1/m.
-    half_drive: Lanes,
+    pub(super) half_drive: Lanes,
 }
 
 /// Contacts after a step.

@@ -4,14 +4,20 @@
 use std::borrow::Cow;
 use std::mem;
 
+use fearless_simd::{Simd, dispatch};
+
 use super::alone::{check_move, finite, forced_alone, moved_alone};
 use super::block::{Block, Bodies, MOST_LAYERS, Moved, is_extreme};
 use super::lanes::{Column, Lanes, lanes, store};
 use super::parameters::{ContactParameter, Parameters, Value, ValueProblem, of_model, own_model, renew};
 use super::part::{ContactsStep, Imposed, OneStepError, Part, Refusal};
+use super::row::is_root;
 use crate::latency::lanes::{Power, by_power};
 use crate::simulate::{ContactModel, ContactState};
-use crate::vector::{LANES, accelerated};
+use crate::vector::{LANES, accelerated, level};
+
+/// Blocks from which on several of them are under way at a time.
+const LONG: usize = 4;
 
 /// Contacts of the latency law.
 #[derive(Debug, Clone, PartialEq)]
@@ -159,21 +165,23 @@ impl LatencyModels {
     /// Steps the contacts of a part; returns how many failed.
     pub(super) fn step(&self, part: Part<'_>, step: &ContactsStep<'_>) -> Result<usize, OneStepError> {
         match step.imposed {
-            Imposed::Displacement => accelerated(
-                #[inline(always)]
-                || self.step_displacement(part, step),
-            ),
+            Imposed::Displacement => dispatch!(level(), simd => self.step_displacement(simd, part, step)),
             Imposed::Force => self.step_force(part, step),
         }
     }
 
     #[inline(always)]
-    fn step_displacement(&self, mut part: Part<'_>, step: &ContactsStep<'_>) -> Result<usize, OneStepError> {
-        part.failed.fill(false);
+    fn step_displacement<S: Simd>(
+        &self,
+        simd: S,
+        mut part: Part<'_>,
+        step: &ContactsStep<'_>,
+    ) -> Result<usize, OneStepError> {
+        clear(part.failed);
         let (count, mut at, mut failures) = (part.results.len(), 0, 0);
         while at < count {
             if at + LANES <= count {
-                at += LANES * self.step_in_row(&mut part, at, step);
+                at += LANES * self.step_in_row(simd, &mut part, at, step);
             }
             if at < count {
                 failures += self.step_block(&mut part, at, step)?;
@@ -185,25 +193,27 @@ impl LatencyModels {
 
     /// Steps complete blocks from contact `at` on until one has contacts that leave or meet their bodies, or another power; returns how many.
     #[inline(always)]
-    fn step_in_row(&self, part: &mut Part<'_>, at: usize, step: &ContactsStep<'_>) -> usize {
+    fn step_in_row<S: Simd>(&self, simd: S, part: &mut Part<'_>, at: usize, step: &ContactsStep<'_>) -> usize {
         let [jaw, behind] = &mut part.rows[..] else { return 0 };
         let from = part.from + at;
         let rows = (jaw[at..].as_chunks_mut().0, behind[at..].as_chunks_mut().0, part.results[at..].as_chunks_mut().0);
         let columns = (Column::new(step.dt).from(from), Column::new(step.to).from(from));
         let (dt, to) = (columns.0.rows(), columns.1.rows());
+        let blocks = if self.blocks.len() == 1 { &self.blocks[..] } else { &self.blocks[from / LANES..] };
+        let is_one = blocks.len() == 1;
         let steps = (0..).map(
             #[inline(always)]
             |index| (dt.block(index), to.block(index)),
         );
-        let blocks = if self.blocks.len() == 1 { &self.blocks[..] } else { &self.blocks[from / LANES..] };
-        let is_one = blocks.len() == 1;
-        // One part is a loop of its own, and so is one block with one time step.
-        by_power!(blocks[0].power, power => match (step.parts(), is_one, columns.0.shared(), columns.1.each()) {
-            (1, true, Some(dt), Some(to)) => {
-                let steps = to.iter().map(#[inline(always)] |to| (dt, *to));
-                Block::moved_in_row(#[inline(always)] |_| &blocks[0], power, rows, steps, 1)
+        // Roots of one part are a loop of their own, which begins slowly, and so is one block with one time step.
+        let is_long = rows.0.len() >= LONG;
+        by_power!(blocks[0].power, power => match (step.parts(), is_long && is_root(power), columns.0.shared(), columns.1.each()) {
+            (1, true, Some(dt), Some(to)) if is_one => {
+                Block::pressed_in_row(simd, #[inline(always)] |_| &blocks[0], power, rows, #[inline(always)] |index: usize| (dt, to[index]))
             }
-            (1, false, ..) => Block::moved_in_row(#[inline(always)] |index| &blocks[index], power, rows, steps, 1),
+            (1, true, ..) if !is_one => {
+                Block::pressed_in_row(simd, #[inline(always)] |index: usize| &blocks[index], power, rows, #[inline(always)] |index: usize| (dt.block(index), to.block(index)))
+            }
             (parts, ..) => {
                 let block = |index: usize| &blocks[if is_one { 0 } else { index }];
                 Block::moved_in_row(block, power, rows, steps, parts)
@@ -320,4 +330,10 @@ impl LatencyModels {
             },
         );
     }
+}
+
+/// Clears marks: whole pages at once take several times as long.
+#[inline(always)]
+fn clear(failed: &mut [bool]) {
+    failed.chunks_mut(512).for_each(|some| some.fill(false));
 }

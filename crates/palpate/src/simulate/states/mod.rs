@@ -21,6 +21,7 @@ mod models;
 mod parameters;
 mod part;
 mod quantity;
+mod row;
 #[cfg(test)]
 mod tests;
 

@@ -9,6 +9,7 @@ use super::linear::LinearModels;
 use super::parameters::{ContactModelsError, ContactParameter, Parameters};
 use super::part::{ContactsStep, Imposed, OneStepError, Part, Refusal, is_spread, spread};
 use crate::contact::RateDependence;
+use crate::parallel::Threads;
 use crate::simulate::{Contact, ContactModel};
 use crate::vector::LANES;
 
@@ -210,7 +211,7 @@ impl ContactModels {
         }
     }
 
-    /// Whether a step of so many contacts is spread over cores.
+    /// Whether a step of so many contacts may be spread over cores.
     #[must_use]
     pub fn is_spread(count: usize, imposed: Imposed) -> bool {
         is_spread(count, imposed == Imposed::Force)
@@ -235,6 +236,36 @@ impl ContactModels {
         results: &mut [f64],
         failed: &mut [bool],
     ) -> Result<usize, OneStepError> {
+        self.step_by(Threads::default(), states, step, results, failed)
+    }
+
+    /// As [`step`](Self::step) on the calling thread and those of a pool, which are given work where that takes less time.
+    ///
+    /// # Errors
+    /// As for [`step`](Self::step).
+    ///
+    /// # Panics
+    /// As for [`step`](Self::step).
+    #[cfg(feature = "rayon")]
+    pub fn step_on(
+        &self,
+        pool: &rayon::ThreadPool,
+        states: &mut [f64],
+        step: &ContactsStep<'_>,
+        results: &mut [f64],
+        failed: &mut [bool],
+    ) -> Result<usize, OneStepError> {
+        self.step_by(Threads { pool: Some(pool) }, states, step, results, failed)
+    }
+
+    fn step_by(
+        &self,
+        threads: Threads<'_>,
+        states: &mut [f64],
+        step: &ContactsStep<'_>,
+        results: &mut [f64],
+        failed: &mut [bool],
+    ) -> Result<usize, OneStepError> {
         let keep = |numbers: &[f64]| SmallVec::<[f64; FEW]>::from_slice(numbers);
         let mut kept = None;
         if step.refusal == Refusal::All {
@@ -243,10 +274,10 @@ impl ContactModels {
                 // Sooner than a check, or what cannot be known beforehand.
                 kept = Some((keep(states), keep(results)));
             } else {
-                self.check(states, step, results, failed)?;
+                self.check(threads, states, step, results, failed)?;
             }
         }
-        let stepped = self.step_range(0..results.len(), states, step, results, failed);
+        let stepped = self.step_range_by(threads, 0..results.len(), states, step, results, failed);
         if let (Err(_), Some((old_states, old_results))) = (&stepped, kept) {
             states.copy_from_slice(&old_states);
             results.copy_from_slice(&old_results);
@@ -269,10 +300,22 @@ impl ContactModels {
         results: &mut [f64],
         failed: &mut [bool],
     ) -> Result<usize, OneStepError> {
+        self.step_range_by(Threads::default(), range, states, step, results, failed)
+    }
+
+    fn step_range_by(
+        &self,
+        threads: Threads<'_>,
+        range: Range<usize>,
+        states: &mut [f64],
+        step: &ContactsStep<'_>,
+        results: &mut [f64],
+        failed: &mut [bool],
+    ) -> Result<usize, OneStepError> {
         self.assert_lengths(states, step, (results.len(), failed.len()));
         assert!(range.start.is_multiple_of(LANES), "a range begins at a multiple of {LANES}");
         let part = Part::of(range, states, results, failed);
-        spread(part, step.imposed == Imposed::Force, &|part| match &self.law {
+        spread(threads, part, step.imposed == Imposed::Force, &|part| match &self.law {
             Law::Latency(models) => models.step(part, step),
             Law::Linear(models) => models.step(part, step),
         })
@@ -281,6 +324,7 @@ impl ContactModels {
     /// Checks that all contacts can take a step of their displacements.
     fn check(
         &self,
+        threads: Threads<'_>,
         states: &mut [f64],
         step: &ContactsStep<'_>,
         results: &mut [f64],
@@ -292,7 +336,7 @@ impl ContactModels {
             Law::Latency(models) => models.check(&part, step).map(|()| 0),
             Law::Linear(models) => models.check(&part, step).map(|()| 0),
         };
-        spread(part, false, &check).map(|_| ())
+        spread(threads, part, false, &check).map(|_| ())
     }
 
     fn assert_lengths(&self, states: &[f64], step: &ContactsStep<'_>, (count, failed): (usize, usize)) {

@@ -4,7 +4,8 @@ use std::ops::Range;
 
 use smallvec::SmallVec;
 
-use crate::parallel::both;
+use crate::parallel::Threads;
+use crate::parallel::dense::{ended, is_dense};
 use crate::simulate::StepError;
 use crate::vector::LANES;
 
@@ -90,6 +91,19 @@ impl<'a> Part<'a> {
         }
     }
 
+    /// As many pieces as that, of about the same number of contacts.
+    fn pieces(self, count: usize) -> Vec<Self> {
+        let each = self.results.len().div_ceil(count).next_multiple_of(LANES);
+        let (mut pieces, mut rest) = (Vec::with_capacity(count), self);
+        while rest.results.len() > each {
+            let (piece, others) = rest.split_at(each);
+            pieces.push(piece);
+            rest = others;
+        }
+        pieces.push(rest);
+        pieces
+    }
+
     fn split_at(self, at: usize) -> (Self, Self) {
         let (first, second): (SmallVec<_>, SmallVec<_>) = self.rows.into_iter().map(|row| row.split_at_mut(at)).unzip();
         let (results, failed) = (self.results.split_at_mut(at), self.failed.split_at_mut(at));
@@ -103,23 +117,23 @@ impl<'a> Part<'a> {
     }
 }
 
-/// Contacts that one core steps at once where there are several.
-const AT_ONCE: usize = 32768;
+/// Contacts that are worth a thread of their own.
+const LEAST: usize = 2048;
+
+/// Contacts that are worth waking one.
+const LEAST_ASLEEP: usize = 32768;
 
 /// The same where they are stepped one by one.
-const ALONE_AT_ONCE: usize = 256;
+const LEAST_ALONE: usize = 128;
 
-/// Whether a step of so many contacts is spread over cores.
+/// Whether a step of so many contacts may be spread over cores.
 pub(super) fn is_spread(count: usize, is_alone: bool) -> bool {
-    count > at_once(is_alone)
+    count >= 2 * if is_alone { LEAST_ALONE } else { LEAST }
 }
 
-fn at_once(is_alone: bool) -> usize {
-    if is_alone { ALONE_AT_ONCE } else { AT_ONCE }
-}
-
-/// Steps the contacts of a part, on all cores if there are many; returns how many failed, or why the first one did.
+/// Steps the contacts of a part, on all threads if there are many; returns how many failed, or why the first one did.
 pub(super) fn spread(
+    threads: Threads<'_>,
     part: Part<'_>,
     is_alone: bool,
     work: &(impl Fn(Part<'_>) -> Result<usize, OneStepError> + Sync),
@@ -128,7 +142,16 @@ pub(super) fn spread(
     if !is_spread(count, is_alone) {
         return work(part);
     }
-    let (first, second) = part.split_at((count / 2).next_multiple_of(LANES));
-    let (first, second) = both(|| spread(first, is_alone, work), || spread(second, is_alone, work));
-    Ok(first? + second?)
+    let least = match is_alone {
+        true => LEAST_ALONE,
+        false if is_dense() => LEAST,
+        false => LEAST_ASLEEP,
+    };
+    let pieces = (count / least).clamp(1, threads.count());
+    let failures = match pieces {
+        1 => work(part),
+        _ => threads.map(part.pieces(pieces), work).into_iter().sum(),
+    };
+    ended();
+    failures
 }

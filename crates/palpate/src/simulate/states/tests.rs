@@ -5,6 +5,7 @@ use crate::contact::{Equilibrium, Layers, Shape, Sides, Specimen};
 use crate::latency::LatencyLaw;
 use crate::simulate::{Contact, LinearContact, LinearLaw, LinearTerm, Memory, Separation, StepError};
 use crate::test_problems::Rng;
+use crate::vector::tests::on_every_level;
 
 /// Bodies of every kind.
 fn specimen(index: usize) -> Specimen {
@@ -106,6 +107,61 @@ fn contacts_side_by_side_are_contacts_alone() {
         }
         assert!(left > 100, "{exponents:?}: {left} steps without contact");
         shows_what_contacts_show(&together, &models);
+    }
+}
+
+/// Contacts that stay in contact go several blocks at a time, up to one that leaves its body or is refused.
+#[test]
+fn closed_contacts_in_a_row_are_contacts_alone() {
+    let count = 91;
+    for exponent in [2.0, 3.0, 5.0] {
+        let mut each = models(&[exponent], count);
+        // Without bodies that are stepped alone, but for one.
+        for (index, model) in each.iter_mut().enumerate().filter(|(index, _)| *index != 60) {
+            model.specimen = specimen(index - usize::from(index % 4 == 3));
+            model.separation = Separation::Unilateral;
+        }
+        for models in [each.clone(), vec![each[40].clone(); count]] {
+            let is_one = models[0] == models[1];
+            let found = on_every_level(|| {
+                let mut together = match is_one {
+                    true => ContactStates::alike(models[0].clone(), count),
+                    false => ContactStates::of_each(models.clone()),
+                };
+                let (mut alone, mut forces) = (vec![ContactState::default(); count], vec![0.0; count]);
+                let (mut random, mut places) = (Rng::new(5), vec![0.002; count]);
+                let mut left = 0;
+                for tick in 0..120 {
+                    let mut dt: Vec<f64> = (0..count).map(|_| 0.01 * random.uniform()).collect();
+                    dt.truncate(if tick % 2 == 0 { 1 } else { count });
+                    wander(&mut places, &mut random, |index| index % 9 != 4);
+                    let mut to = places.clone();
+                    to[77] = if tick % 7 == 3 { f64::NAN } else { to[77] };
+                    let failures =
+                        together.advance(&of_displacement(&dt, &to, 1, Refusal::Masked), &mut forces).unwrap();
+                    assert_eq!((failures == 1, together.failed()[77]), (to[77].is_nan(), to[77].is_nan()));
+                    for (index, (state, model)) in alone.iter_mut().zip(&models).enumerate() {
+                        let dt = dt[index.min(dt.len() - 1)];
+                        let force = match state.step(model, dt, to[index]) {
+                            Ok(force) => force,
+                            Err(_) => state.force(model),
+                        };
+                        left += usize::from(!state.is_touching(model));
+                        let found = together.state(index);
+                        let off = (found.behind - state.behind).abs() / model.specimen.depth();
+                        assert!(off < 1e-13 && found.jaw == state.jaw, "n = {exponent}, {index}: {off:e}");
+                        assert!(
+                            (forces[index] - force).abs() <= 1e-11 * force.abs().max(1e-2),
+                            "n = {exponent}, {index}"
+                        );
+                        assert!(exponent != 5.0 || (found, forces[index]) == (*state, force), "{index}");
+                    }
+                }
+                assert!(left > 20, "{left} steps without contact");
+                [together.states(), &forces].concat()
+            });
+            assert_eq!(found.len(), 3 * count);
+        }
     }
 }
 
@@ -457,8 +513,8 @@ fn one_term_of_a_linear_law_is_the_latency_law_of_exponent_one() {
 #[test]
 #[cfg(feature = "rayon")]
 fn the_number_of_threads_changes_no_bit() {
-    let count = 20_001;
-    let places: Vec<f64> = (0..count).map(|index| 8e-3 * f64::from(index as u32) / 2e4 - 1e-3).collect();
+    let count = 140_001;
+    let places: Vec<f64> = (0..count).map(|index| 8e-3 * f64::from(index as u32) / 1.4e5 - 1e-3).collect();
     let run = |threads: usize| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
         pool.install(|| {
@@ -468,15 +524,18 @@ fn the_number_of_threads_changes_no_bit() {
                 contacts.advance(&of_displacement(&[dt], &places, 2, Refusal::Masked), &mut forces).unwrap();
             }
             contacts.step_force(&[0.1], &[0.2]).unwrap();
-            contacts
+            let (mut states, mut failed) = (contacts.states().to_vec(), vec![false; count]);
+            let step = of_displacement(&[0.01], &places, 1, Refusal::All);
+            contacts.models().step_on(&pool, &mut states, &step, &mut forces, &mut failed).unwrap();
+            (contacts, states, forces)
         })
     };
     let one = run(1);
     for threads in [2, 3, 5] {
         assert_eq!(run(threads), one);
     }
-    let mut contacts = one;
+    let (mut contacts, ..) = one;
     let mut wrong = places;
-    (wrong[19_000], wrong[12_000]) = (1.0, 2.0);
-    assert_eq!(contacts.step(&[0.01], &wrong).unwrap_err().index, 12_000);
+    (wrong[139_000], wrong[82_000]) = (1.0, 2.0);
+    assert_eq!(contacts.step(&[0.01], &wrong).unwrap_err().index, 82_000);
 }
