@@ -123,6 +123,7 @@ pub(crate) use columns;
 pub(crate) fn parameter_columns(rows: &[ParameterRow]) -> Vec<(&'static str, ArrayRef)> {
     let column = |column: ParameterColumn| match column {
         ParameterColumn::Text(of) => Column::column(rows.iter().map(of)),
+        ParameterColumn::OptionalText(of) => Column::column(rows.iter().map(of)),
         ParameterColumn::Count(of) => Column::column(rows.iter().map(of)),
         ParameterColumn::Number(of) => Column::column(rows.iter().map(of)),
         ParameterColumn::Flag(of) => Column::column(rows.iter().map(of)),

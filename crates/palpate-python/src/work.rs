@@ -6,9 +6,9 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::process;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::sync::mpsc::{Receiver, RecvTimeoutError, channel};
-use std::sync::{Arc, Mutex};
+use std::sync::{Arc, Mutex, OnceLock};
 use std::thread;
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 use palpate::watch::{Cancelled, Progress, Watch};
 use palpate_jobs::JobError;
@@ -191,7 +191,7 @@ pub(crate) fn in_parallel<T: Send>(work: impl FnOnce() -> T + Send) -> Result<T,
 ///
 /// # Errors
 /// Where the system gives none.
-pub(crate) fn threads() -> Result<Arc<ThreadPool>, ThreadPoolBuildError> {
+fn threads() -> Result<Arc<ThreadPool>, ThreadPoolBuildError> {
     let make = || ThreadPoolBuilder::new().build().map(Arc::new);
     // Another thread makes one; or it did when this process was forked, and never lets go here.
     let Ok(mut pools) = POOLS.try_lock() else { return make() };
@@ -201,6 +201,28 @@ pub(crate) fn threads() -> Result<Arc<ThreadPool>, ThreadPoolBuildError> {
     let threads = make()?;
     pools.push((process::id(), Arc::clone(&threads)));
     Ok(threads)
+}
+
+/// How long the threads stay awake at least when they have worked, ns.
+const AWAKE: u64 = 8_000;
+
+/// Does short work on all processors, which is told whether the threads are still awake from the last of it.
+///
+/// # Errors
+/// Where the system gives no threads.
+pub(crate) fn shortly<T>(work: impl FnOnce(&ThreadPool, bool) -> T) -> Result<T, ThreadPoolBuildError> {
+    /// When the last work ended, ns since the first began.
+    static ENDED: AtomicU64 = AtomicU64::new(0);
+    static BEGINNING: OnceLock<Instant> = OnceLock::new();
+    let now = || {
+        let since = BEGINNING.get_or_init(Instant::now).elapsed();
+        u64::try_from(since.as_nanos()).unwrap_or(u64::MAX)
+    };
+    let pool = threads()?;
+    let ended = ENDED.load(Ordering::Relaxed);
+    let result = work(&pool, ended != 0 && now().saturating_sub(ended) < AWAKE);
+    ENDED.store(now().max(1), Ordering::Relaxed);
+    Ok(result)
 }
 
 /// Runs a job that writes no file; Ctrl-C ends it.

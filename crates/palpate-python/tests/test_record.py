@@ -66,7 +66,7 @@ def test_tables_say_what_the_document_says(root: Path) -> None:
     ends = [fit["parameters"]["rate_coefficient_per_s"]["interval"] for _, fit in rows]
     assert fits["rate_coefficient_per_s_low"].to_list() == [None if pair is None else pair[0] for pair in ends]
     tidy = polars.DataFrame(analysis.parameter_table)
-    assert tidy.columns[:5] == ["record", "hold", "law", "parameter", "unit"]
+    assert tidy.columns[:6] == ["record", "part", "hold", "law", "parameter", "unit"]
     assert len(tidy) == sum(len(fit["parameters"]) for _, fit in rows)
     codes = {finding["code"] for finding in document["findings"]}
     codes |= {finding["code"] for hold in document["holds"] for finding in hold["findings"]}

@@ -20,6 +20,8 @@ pub(crate) struct Threads<'a> {
     /// The calling thread and those of this pool; without it those of the pool that the calling thread is of, or of the process.
     #[cfg(feature = "rayon")]
     pub(crate) pool: Option<&'a rayon::ThreadPool>,
+    /// Whether they have just worked: to wake one takes longer than a step of ten thousand contacts.
+    pub(crate) are_awake: bool,
     #[cfg(not(feature = "rayon"))]
     none: std::marker::PhantomData<&'a ()>,
 }
@@ -89,48 +91,6 @@ impl Threads<'_> {
     }
 }
 
-/// Whether work comes so densely that the threads which shared the last of it have not gone to sleep: to wake them takes longer than a step of
-/// ten thousand contacts.
-#[cfg(feature = "rayon")]
-pub(crate) mod dense {
-    use std::sync::OnceLock;
-    use std::sync::atomic::{AtomicU64, Ordering};
-    use std::time::Instant;
-
-    /// How long threads of `rayon` stay awake at least, ns.
-    const AWAKE: u64 = 8_000;
-
-    /// When the last work ended, ns since the first.
-    static ENDED: AtomicU64 = AtomicU64::new(0);
-
-    fn now() -> u64 {
-        static BEGINNING: OnceLock<Instant> = OnceLock::new();
-        let since = BEGINNING.get_or_init(Instant::now).elapsed();
-        u64::try_from(since.as_nanos()).unwrap_or(u64::MAX)
-    }
-
-    /// Whether the work that begins now does.
-    pub(crate) fn is_dense() -> bool {
-        let ended = ENDED.load(Ordering::Relaxed);
-        ended != 0 && now().saturating_sub(ended) < AWAKE
-    }
-
-    /// Notes that work has ended.
-    pub(crate) fn ended() {
-        ENDED.store(now().max(1), Ordering::Relaxed);
-    }
-}
-
-/// Without threads nothing is shared.
-#[cfg(not(feature = "rayon"))]
-pub(crate) mod dense {
-    pub(crate) fn is_dense() -> bool {
-        false
-    }
-
-    pub(crate) fn ended() {}
-}
-
 #[cfg(all(test, feature = "rayon"))]
 mod tests {
     use super::*;
@@ -145,24 +105,13 @@ mod tests {
                 part * part
             };
             let expected: Vec<usize> = (0..9).map(|part| part * part).collect();
-            let beside = Threads { pool: Some(&pool) };
+            let beside = Threads {
+                pool: Some(&pool),
+                are_awake: true,
+            };
             assert_eq!((beside.count(), beside.map((0..9).collect(), &square)), (threads, expected.clone()));
             assert_eq!(pool.install(|| Threads::default().map((0..9).collect(), &square)), expected);
             assert!(beside.map(Vec::<usize>::new(), &square).is_empty());
-        }
-    }
-
-    #[test]
-    fn work_is_dense_where_the_last_of_it_has_just_ended() {
-        dense::ended();
-        assert!(dense::is_dense());
-        std::thread::sleep(std::time::Duration::from_millis(1));
-        // Other tests may have ended some meanwhile.
-        let mut looks = 0;
-        while dense::is_dense() {
-            looks += 1;
-            assert!(looks < 1000);
-            std::thread::sleep(std::time::Duration::from_millis(1));
         }
     }
 }

@@ -171,7 +171,7 @@ fn a_folder_becomes_one_table_of_holds_and_laws() {
     assert!((number("relative_rate_per_s", 0) - 1.0).abs() < 1e-2);
     assert!(number("exponent_low", 5) < number("exponent", 5) && number("exponent", 5) < number("exponent_high", 5));
     let parameters = lines(folder, "holds_parameters.csv");
-    let header = "record,hold,law,parameter,unit,value,standard_error,low,high,termination,white_standard_error,role,domain,recommended";
+    let header = "record,part,hold,law,parameter,unit,value,standard_error,low,high,termination,white_standard_error,role,domain,recommended";
     assert_eq!(parameters[0], header);
     let of_law = |law: &str| column(&parameters, "law").iter().filter(|found| *found == law).count();
     // Equilibrium, amplitude, λ, v, n, and in the time domain the force at the start, in four records.
@@ -225,6 +225,9 @@ fn a_record_of_creep_has_a_row_for_each_hold() {
     );
     let findings = column(&table, "findings");
     assert!(findings[0].contains("feedback_controlled"), "{findings:?}");
+    // It stated the way between the means of the first tenth and of the last, 0.6 mm.
+    let error = refused(folder, &["analyze", "creep.csv"]);
+    assert!(error.contains("the jaw moves by 0.800 mm in the hold"), "{error}");
 }
 
 /// A file named by itself and by its folder was in the table twice, and a second batch read the table and the journal of the first.
@@ -268,6 +271,23 @@ fn parquet_holds_what_csv_holds() {
     }
     let others = rows.iter().filter(|row| row.iter().any(|cell| cell == "standard-linear-solid")).count();
     assert_eq!(others, 3);
+}
+
+/// A link to a file that is no longer there was passed over without a word.
+#[test]
+#[cfg(unix)]
+fn a_link_that_leads_nowhere_is_a_record_that_failed() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    records(folder, 2);
+    std::os::unix::fs::symlink("moved.csv", folder.join("curves/lost.csv")).unwrap();
+    for records in ["curves", "curves/**/*.csv"] {
+        let output = palpate(folder, &["batch", records, "--out", "holds.csv", "--restart"]);
+        let error = String::from_utf8(output.stderr).unwrap();
+        assert!(error.contains("failed: curves/lost.csv: "), "{error}");
+        assert!(error.contains("12 rows of 2 tests in 3 files, 1 of 3 tests failed"), "{error}");
+        assert_eq!(output.status.code(), Some(1), "{error}");
+    }
 }
 
 #[test]

@@ -1,6 +1,7 @@
 //! Files that hold several tests: listed, all analysed, one chosen by its name or number.
 #![expect(clippy::unwrap_used, reason = "a test that cannot run has failed")]
 
+use std::collections::BTreeSet;
 use std::fs;
 use std::path::Path;
 
@@ -78,6 +79,20 @@ fn a_batch_has_rows_of_each() {
     assert!(error.starts_with("12 rows of 2 tests in 1 file"), "{error}");
     let table = fs::read_to_string(folder.join("holds.csv")).unwrap();
     assert_eq!(table.lines().filter(|line| line.contains(",left / 1,")).count(), 6, "{table}");
+    // The table of parameters named the test and its file in one column, by which no row of the other was found.
+    let parameters = fs::read_to_string(folder.join("holds_parameters.csv")).unwrap();
+    let keys = |table: &str| -> BTreeSet<String> {
+        let mut reader = csv::ReaderBuilder::new().comment(Some(b'#')).from_reader(table.as_bytes());
+        let header = reader.headers().unwrap().clone();
+        let places =
+            ["record", "part", "hold", "law"].map(|name| header.iter().position(|column| column == name).unwrap());
+        reader
+            .records()
+            .map(Result::unwrap)
+            .map(|row| places.map(|place| row[place].to_owned()).join("|"))
+            .collect()
+    };
+    assert_eq!((keys(&table), keys(&table).len()), (keys(&parameters), 12));
 }
 
 /// A first description of a file of several tests was refused.

@@ -12,7 +12,6 @@ use serde_json::Value;
 
 use super::{Entry, parameters, rows};
 use crate::JobError;
-use crate::input::called;
 use crate::output::{check_figure, file_name};
 
 /// Short names of quantities, as the theory writes them.
@@ -54,14 +53,16 @@ impl CurveMap {
         let place = |name: &str| fields.iter().position(|field| field.name == name).unwrap_or(usize::MAX);
         let [record, part, hold, x, y, recommended] =
             ["record", "part", "hold", "x_m", "y_m", "recommended"].map(place);
-        let of = parameters::fields().iter().position(|field| field.name == "record").unwrap_or(usize::MAX);
+        let fields_of = parameters::fields();
+        let of =
+            ["record", "part"].map(|name| fields_of.iter().position(|field| field.name == name).unwrap_or(usize::MAX));
         let mut lines = &entry.parameters[..];
         // Of each test the first row: that of the law recommended for its first hold, if there is one.
         let tests = entry.rows.chunk_by(|a, b| (&a[record], &a[part]) == (&b[record], &b[part]));
         for row in tests.filter_map(<[_]>::first) {
-            let called = called(Path::new(row[record].as_str().unwrap_or_default()), row[part].as_str());
+            let test = [&row[record], &row[part]];
             // The parameters stand in the order of the tests.
-            let count = lines.iter().take_while(|line| line[of].as_str() == Some(&called)).count();
+            let count = lines.iter().take_while(|line| of.map(|column| &line[column]) == test).count();
             let own;
             (own, lines) = lines.split_at(count);
             let (Some(x), Some(y)) = (row[x].as_f64(), row[y].as_f64()) else {

@@ -11,7 +11,6 @@ use serde_json::Value;
 
 use super::table::{self, Format, Out, Taken, of_parameters};
 use super::{Batched, Entry, failures, map, parameters, rows};
-use crate::input::called;
 use crate::output::{keep_apart, unwritten_table};
 use crate::shard::{Manifest, Places, ShardTable};
 use crate::{JobError, Outcome};
@@ -57,7 +56,7 @@ pub(super) fn each(places: Places<'_>, take: Taken<'_>) -> Result<(), JobError> 
     let mut parameters = Lines::open(places.table(ShardTable::Parameters), parameters::fields())?;
     let mut lines = Lines::open(places.table(ShardTable::Rows), rows::fields())?;
     let [record, part] = ["record", "part"].map(|name| lines.place(name));
-    let of = parameters.place("record");
+    let of = ["record", "part"].map(|name| parameters.place(name));
     let mut entry = Entry::default();
     while let Some(row) = lines.next()? {
         let same = |last: &Vec<Value>| (&last[record], &last[part]) == (&row[record], &row[part]);
@@ -65,8 +64,8 @@ pub(super) fn each(places: Places<'_>, take: Taken<'_>) -> Result<(), JobError> 
             if entry.rows.len() >= AT_ONCE {
                 take(std::mem::take(&mut entry))?;
             }
-            let test = called(Path::new(row[record].as_str().unwrap_or_default()), row[part].as_str());
-            while parameters.peek()?.is_some_and(|line| line[of].as_str() == Some(&test)) {
+            let test = [&row[record], &row[part]];
+            while parameters.peek()?.is_some_and(|line| of.map(|column| &line[column]) == test) {
                 entry.parameters.extend(parameters.next()?);
             }
         }

@@ -8,7 +8,7 @@ use serde_json::Value;
 /// The columns of the table, in order.
 pub(super) fn fields() -> Vec<Field> {
     let kind = |column| match column {
-        ParameterColumn::Text(_) => Kind::Text,
+        ParameterColumn::Text(_) | ParameterColumn::OptionalText(_) => Kind::Text,
         ParameterColumn::Number(_) => Kind::Number,
         ParameterColumn::Count(_) | ParameterColumn::Flag(_) => Kind::Count,
     };
@@ -19,6 +19,7 @@ pub(super) fn fields() -> Vec<Field> {
 pub(super) fn rows(document: &AnalysisDocument) -> Vec<Vec<Value>> {
     let value = |column, row: &ParameterRow| match column {
         ParameterColumn::Text(of) => of(row).into(),
+        ParameterColumn::OptionalText(of) => of(row).into(),
         ParameterColumn::Number(of) => of(row).into(),
         ParameterColumn::Count(of) => of(row).into(),
         ParameterColumn::Flag(of) => i64::from(of(row)).into(),

@@ -14,7 +14,7 @@ use crate::arrays::AT_ONCE;
 use crate::errors::{ModelError, OptionError, PalpateError, one_of, refused_plainly};
 use crate::pickles::{Made, PICKLE, Piece, Pieces, check_pickle, in_pieces};
 use crate::shown::shown;
-use crate::work::{briefly, in_parallel, threads};
+use crate::work::{briefly, in_parallel, shortly};
 
 /// Contacts that are moved side by side, such as those of many grippers, or of one with many values of its parameters.
 ///
@@ -135,8 +135,8 @@ impl ContactStates {
         let stepped = match work > TINY {
             false => models.step(states, &step, results, failed),
             true if ContactModels::is_spread(self.count, request.imposed) => {
-                let pool = threads().map_err(refused_plainly::<PalpateError>)?;
-                briefly(py, || models.step_on(&pool, states, &step, results, failed))?
+                let advance = |pool: &_, are_awake| models.step_on(pool, are_awake, states, &step, results, failed);
+                briefly(py, || shortly(advance))?.map_err(refused_plainly::<PalpateError>)?
             }
             true => briefly(py, || models.step(states, &step, results, failed))?,
         };

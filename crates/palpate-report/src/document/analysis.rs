@@ -272,11 +272,11 @@ impl AnalysisDocument {
     }
 
     fn parameters_on(&self, hold: &HoldDocument) -> Vec<ParameterRow> {
-        let record = self.input.called();
         let comparison = hold.comparison.as_ref();
         let chosen = hold.recommended_law();
         let row = |fit: &FitDocument, name: &String, parameter: &ParameterDocument| ParameterRow {
-            record: record.clone(),
+            record: self.input.path.clone(),
+            part: self.input.part.clone(),
             hold: Some(hold.index),
             law: fit.law.clone(),
             name: name.clone(),
@@ -290,7 +290,9 @@ impl AnalysisDocument {
         };
         let mut rows: Vec<ParameterRow> = hold.fits.iter().flat_map(of_fit).collect();
         let known = |law: &str| hold.fits.iter().any(|fit| fit.domain == "time" && fit.law == law);
-        rows.extend(comparison.iter().flat_map(|found| found.parameter_rows(&record, hold.index, |law| !known(law))));
+        rows.extend(
+            comparison.iter().flat_map(|found| found.parameter_rows(&self.input, hold.index, |law| !known(law))),
+        );
         rows
     }
 }

@@ -117,7 +117,8 @@ impl CalibrationDocument {
     pub fn parameter_rows(&self) -> Vec<ParameterRow> {
         let of_law = |(index, law): (usize, &CalibratedLawDocument)| {
             let row = |parameter: &CalibratedParameterDocument| ParameterRow {
-                record: self.input.called(),
+                record: self.input.path.clone(),
+                part: self.input.part.clone(),
                 hold: None,
                 law: law.law.clone(),
                 name: parameter.name.clone(),

@@ -280,10 +280,11 @@ fn finite(value: f64) -> Option<f64> {
 
 impl HoldComparisonDocument {
     /// Every parameter of the laws that this holds for, a row each.
-    pub(super) fn parameter_rows(&self, record: &str, hold: usize, of: impl Fn(&str) -> bool) -> Vec<ParameterRow> {
+    pub(super) fn parameter_rows(&self, input: &Input, hold: usize, of: impl Fn(&str) -> bool) -> Vec<ParameterRow> {
         let chosen = self.verdict.as_ref().map(|verdict| &verdict.law);
         let row = |law: &LawDocument, name: &String, parameter: &ParameterDocument| ParameterRow {
-            record: record.to_owned(),
+            record: input.path.clone(),
+            part: input.part.clone(),
             hold: Some(hold),
             law: law.law.clone(),
             name: name.clone(),
@@ -306,9 +307,7 @@ impl ComparisonDocument {
     pub fn parameter_rows(&self) -> Vec<ParameterRow> {
         let of_hold = |record: &ComparedRecordDocument, hold: &ComparedHoldDocument| {
             let found = hold.comparison.as_ref();
-            found
-                .map(|found| found.parameter_rows(&record.input.called(), hold.index, |_| true))
-                .unwrap_or_default()
+            found.map(|found| found.parameter_rows(&record.input, hold.index, |_| true)).unwrap_or_default()
         };
         let holds = self.records.iter().flat_map(|record| record.holds.iter().map(move |hold| (record, hold)));
         holds.flat_map(|(record, hold)| of_hold(record, hold)).collect()

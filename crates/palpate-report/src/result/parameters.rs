@@ -141,8 +141,10 @@ fn unit_of(unit: ParameterUnit, quantity: Quantity, exponent: Option<f64>) -> St
 /// A parameter of a law on a hold of a record: a row of `parameters.csv`.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ParameterRow {
-    /// The record.
+    /// The file of the record.
     pub record: String,
+    /// Which of several tests in it; none of a file with one.
+    pub part: Option<String>,
     /// Number of the hold, from 1; none for a law of the whole record.
     pub hold: Option<usize>,
     /// The law as `--laws` takes it.
@@ -164,6 +166,8 @@ pub struct ParameterRow {
 pub enum ParameterColumn {
     /// Words.
     Text(fn(&ParameterRow) -> String),
+    /// Words, or none.
+    OptionalText(fn(&ParameterRow) -> Option<String>),
     /// A count.
     Count(fn(&ParameterRow) -> Option<usize>),
     /// A number.
@@ -173,8 +177,9 @@ pub enum ParameterColumn {
 }
 
 /// The columns of the tidy table of parameters by their names, in order, wherever it is written.
-pub const PARAMETER_COLUMNS: [(&str, ParameterColumn); 14] = [
+pub const PARAMETER_COLUMNS: [(&str, ParameterColumn); 15] = [
     ("record", ParameterColumn::Text(|row| row.record.clone())),
+    ("part", ParameterColumn::OptionalText(|row| row.part.clone())),
     ("hold", ParameterColumn::Count(|row| row.hold)),
     ("law", ParameterColumn::Text(|row| row.law.clone())),
     ("parameter", ParameterColumn::Text(|row| row.name.clone())),
@@ -195,6 +200,7 @@ pub const PARAMETER_COLUMNS: [(&str, ParameterColumn); 14] = [
 pub fn parameters_table(rows: &[ParameterRow]) -> Table {
     let cell = |column: ParameterColumn, row: &ParameterRow| match column {
         ParameterColumn::Text(of) => Cell::text(of(row)),
+        ParameterColumn::OptionalText(of) => of(row).map_or(Cell::missing(""), Cell::text),
         ParameterColumn::Count(of) => of(row).map_or(Cell::missing(""), |count| Cell::Integer(count as i64)),
         ParameterColumn::Number(of) => Cell::number_or(of(row), 6, ""),
         ParameterColumn::Flag(of) => Cell::text(of(row).to_string()),

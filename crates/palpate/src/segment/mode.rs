@@ -34,7 +34,6 @@ pub(crate) fn change(record: &Record, from: usize, until: usize) -> Option<Chang
     let around = from.saturating_sub(until - from)..until;
     let scales = [displacement, record.force()].map(|column| range(&column[around.clone()]).max(f64::MIN_POSITIVE));
     let (jaw, force) = (&displacement[from..until], &record.force()[from..until]);
-    let (travel, change) = (moved(jaw), moved(force));
     let late = |column: &[f64]| column[column.len() / 2..].to_vec();
     let mode = match judged([jaw, force], scales) {
         // A controller that falls short at first ends on the force it holds.
@@ -46,8 +45,8 @@ pub(crate) fn change(record: &Record, from: usize, until: usize) -> Option<Chang
         mode => mode,
     };
     Some(Change {
-        travel,
-        force: change,
+        travel: across(jaw),
+        force: across(force),
         mode,
     })
 }
@@ -88,6 +87,12 @@ const DRIFTS: f64 = 0.01;
 /// What is held in samples `from..until`; too short a hold, or one without displacement, counts as one of the displacement.
 pub(crate) fn mode(record: &Record, from: usize, until: usize) -> HoldMode {
     change(record, from, until).map_or(HoldMode::DisplacementHeld, |change| change.mode)
+}
+
+/// From the first sample to the last, of thousands from the first thousandth to the last.
+fn across(values: &[f64]) -> f64 {
+    let some = (values.len() / 1000).max(1);
+    mean(&values[values.len() - some..]) - mean(&values[..some])
 }
 
 /// From the first tenth to the last.

@@ -239,7 +239,10 @@ impl ContactModels {
         self.step_by(Threads::default(), states, step, results, failed)
     }
 
-    /// As [`step`](Self::step) on the calling thread and those of a pool, which are given work where that takes less time.
+    /// As [`step`](Self::step) on the calling thread and those of a pool.
+    ///
+    /// `are_awake` says whether they have worked within the last ten microseconds: then some thousands of contacts are worth one of them, else some
+    /// ten thousands.
     ///
     /// # Errors
     /// As for [`step`](Self::step).
@@ -250,12 +253,22 @@ impl ContactModels {
     pub fn step_on(
         &self,
         pool: &rayon::ThreadPool,
+        are_awake: bool,
         states: &mut [f64],
         step: &ContactsStep<'_>,
         results: &mut [f64],
         failed: &mut [bool],
     ) -> Result<usize, OneStepError> {
-        self.step_by(Threads { pool: Some(pool) }, states, step, results, failed)
+        self.step_by(
+            Threads {
+                pool: Some(pool),
+                are_awake,
+            },
+            states,
+            step,
+            results,
+            failed,
+        )
     }
 
     fn step_by(

@@ -5,7 +5,6 @@ use std::ops::Range;
 use smallvec::SmallVec;
 
 use crate::parallel::Threads;
-use crate::parallel::dense::{ended, is_dense};
 use crate::simulate::StepError;
 use crate::vector::LANES;
 
@@ -144,14 +143,12 @@ pub(super) fn spread(
     }
     let least = match is_alone {
         true => LEAST_ALONE,
-        false if is_dense() => LEAST,
+        false if threads.are_awake => LEAST,
         false => LEAST_ASLEEP,
     };
     let pieces = (count / least).clamp(1, threads.count());
-    let failures = match pieces {
+    match pieces {
         1 => work(part),
         _ => threads.map(part.pieces(pieces), work).into_iter().sum(),
-    };
-    ended();
-    failures
+    }
 }

@@ -526,7 +526,7 @@ fn the_number_of_threads_changes_no_bit() {
             contacts.step_force(&[0.1], &[0.2]).unwrap();
             let (mut states, mut failed) = (contacts.states().to_vec(), vec![false; count]);
             let step = of_displacement(&[0.01], &places, 1, Refusal::All);
-            contacts.models().step_on(&pool, &mut states, &step, &mut forces, &mut failed).unwrap();
+            contacts.models().step_on(&pool, true, &mut states, &step, &mut forces, &mut failed).unwrap();
             (contacts, states, forces)
         })
     };
