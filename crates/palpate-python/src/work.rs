@@ -206,7 +206,7 @@ fn threads() -> Result<Arc<ThreadPool>, ThreadPoolBuildError> {
 /// How long the threads stay awake at least when they have worked, ns.
 const AWAKE: u64 = 8_000;
 
-/// Does short work on all processors, which is told whether the threads are still awake from the last of it.
+/// Does short work on all processors, which learns whether the threads are still awake from the last of it.
 ///
 /// # Errors
 /// Where the system gives no threads.
