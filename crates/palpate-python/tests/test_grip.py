@@ -8,6 +8,7 @@ import math
 import pickle
 import subprocess
 import sys
+from datetime import timedelta
 from pathlib import Path
 from typing import Any
 
@@ -281,6 +282,11 @@ def test_single_numbers_may_be_quantities(material: palpate.Material) -> None:
     band: Any = UNITS.Quantity([2.1, 3.0], "N")
     kept: Any = material.grip(mass_kg=0.3, friction=0.6, band_n=band)
     assert kept == material.grip(mass_kg=0.3, friction=0.6, band_n=(2.1, 3.0))
+    for duration in (timedelta(minutes=2), np.timedelta64(2, "m")):
+        held: Any = duration
+        assert material.grip(mass_kg=0.3, friction=0.6, speed_m_per_s=0.2 / 60, hold_s=held) == ours
+    with pytest.raises(TypeError, match="must be real number"):
+        material.grip(mass_kg=timedelta(minutes=2), friction=0.6)  # type: ignore[arg-type] # pyright: ignore[reportArgumentType]
     force: Any = UNITS.Quantity(500.0, "mN")
     assert palpate.Observer(exponent=5, slip_force_n=force).slip_force_n == 0.5
 

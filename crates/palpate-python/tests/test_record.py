@@ -160,7 +160,8 @@ def test_titles_distinguish_records_of_arrays() -> None:
     t, d, f = steps()
     records = [palpate.Record.from_arrays(time_s=t, displacement_m=d, force_n=f, title=f"specimen {i}") for i in range(2)]
     analyses = [record.analyze(compare=False) for record in records]
-    assert [analysis.parameter_table["record"][0] for analysis in analyses] == ["arrays, specimen 0", "arrays, specimen 1"]
+    tables = [analysis.parameter_table for analysis in analyses]
+    assert [(table["record"][0], table["part"][0]) for table in tables] == [("arrays", "specimen 0"), ("arrays", "specimen 1")]
     # Laws that were not compared are not refused.
     assert all(analysis.sentence == "Laws were not compared." for analysis in analyses)
     holds = analyses[0].holds

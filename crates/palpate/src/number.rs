@@ -56,6 +56,7 @@ pub fn counted(count: usize, what: &str) -> String {
 /// assert_eq!(with_interval(12.3456, (12.28, 12.41)), "12.346 [12.280, 12.410]");
 /// assert_eq!(with_interval(2.93, (0.81, 10.7)), "2.9 [0.8, 10.7]");
 /// assert_eq!(with_interval(2.93, (0.81, f64::INFINITY)), "2.9 [0.8, ∞)");
+/// assert_eq!(with_interval(0.31, (-0.12, 5.9957e8)), "0.31 [−0.12, 6.0×10⁸]");
 /// assert_eq!(with_interval(1.2345e-5, (1.2e-5, 1.27e-5)), "(1.234 [1.200, 1.270])×10⁻⁵");
 /// ```
 #[must_use]
@@ -63,12 +64,14 @@ pub fn with_interval(value: f64, (low, high): (f64, f64)) -> String {
     if low == 0.0 && high.is_infinite() {
         return "(0, ∞)".to_owned();
     }
-    if low > 0.0 && high.is_finite() && high > WIDE * low {
+    let halves = [value - low, high - value].into_iter().filter(|half| half.is_finite() && *half > 0.0);
+    let nearer = halves.fold(f64::INFINITY, f64::min);
+    let farthest = low.abs().max(high.abs());
+    let is_wide = low > 0.0 && high > WIDE * low || farthest > WIDE * value.abs().max(nearer);
+    if is_wide && farthest.is_finite() {
         let two = |value: f64| significant(value, 2);
         return format!("{} {}", two(value), brackets(&two(low), &two(high), (low, high)));
     }
-    let halves = [value - low, high - value].into_iter().filter(|half| half.is_finite() && *half > 0.0);
-    let nearer = halves.fold(f64::INFINITY, f64::min);
     if !value.is_finite() || nearer.is_infinite() {
         let same = low == value && high == value;
         return if same {
@@ -93,7 +96,7 @@ pub fn with_interval(value: f64, (low, high): (f64, f64)) -> String {
     if plain { shown } else { format!("({shown})×10{}", superscript(largest)) }
 }
 
-/// Ratio of the ends of an interval beyond which each has digits of its own.
+/// Ratio of the ends of an interval, or of an end to what is known of the value, beyond which each has digits of its own.
 const WIDE: f64 = 100.0;
 
 /// An interval; an end that is not reached has a round bracket.

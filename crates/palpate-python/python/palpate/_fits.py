@@ -231,7 +231,8 @@ def fit_many(
     -------
     Table
         A row a curve, in order: every number with its standard error and interval, root mean square residual, ending. A curve
-        that no law can be fitted to, or that is no column of numbers, says why in ``error``, and its numbers are missing. The curves
+        that no law can be fitted to, or that is no column of numbers, says why in ``error``, and its numbers are missing. A fit that
+        ended at a bound, as ``termination`` says, has NaN for its parameters, of which `fit_hold` shows where they ended. The curves
         of a long table stand in the order in which they first appear, with the columns of `by`.
 
     Raises

@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+from datetime import timedelta
 from typing import Any
+
+import numpy as np
 
 from palpate._palpate import _SI_ENDINGS, OptionError
 
@@ -45,6 +48,13 @@ def number(quantity: Any, unit: str) -> float:
     if not quantity.is_compatible_with(_of_pint(unit)):
         raise OptionError(f"expected a quantity in {unit}, found one in {f'{quantity.units:~P}' or 'no unit'}")
     return float(quantity.to(_of_pint(unit)).magnitude)
+
+
+def seconds(value: Any) -> float | None:
+    """A duration of `datetime`, pandas or NumPy in s; None of anything else."""
+    if isinstance(value, timedelta):
+        return value.total_seconds()
+    return float(value / np.timedelta64(1, "s")) if isinstance(value, np.timedelta64) else None
 
 
 def stated(quantity: Any, key: str) -> str | float:

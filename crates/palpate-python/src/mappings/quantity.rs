@@ -1,4 +1,4 @@
-//! Single numbers in SI among the arguments of a call: plain ones, and quantities with a unit, of pint.
+//! Single numbers in SI among the arguments of a call: plain ones, quantities with a unit, of pint, and durations.
 
 use pyo3::prelude::*;
 use pyo3::types::{PyFloat, PyInt};
@@ -13,8 +13,15 @@ pub(crate) trait Quantity: Sized {
 
 impl Quantity for f64 {
     fn in_unit(value: &Bound<'_, PyAny>, unit: &str) -> PyResult<Self> {
-        let is_plain = value.is_instance_of::<PyFloat>() || value.is_instance_of::<PyInt>();
-        match !is_plain && is_with_unit(value)? {
+        if value.is_instance_of::<PyFloat>() || value.is_instance_of::<PyInt>() {
+            return value.extract();
+        }
+        if unit == "s"
+            && let Some(seconds) = units(value)?.call_method1("seconds", (value,))?.extract()?
+        {
+            return Ok(seconds);
+        }
+        match is_with_unit(value)? {
             // PyO3 adds the name of the argument to what is refused.
             true => units(value)?.call_method1("number", (value, unit))?.extract(),
             false => value.extract(),

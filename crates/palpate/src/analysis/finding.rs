@@ -321,6 +321,13 @@ pub enum Finding {
         /// By how much their information criteria are lower together.
         delta_bic: f64,
     },
+    /// The fit was to end later than every hold does: all samples are fitted.
+    UntilBeyondHolds {
+        /// When it was to end, s after its start.
+        until: f64,
+        /// How long the longest hold is fitted, s.
+        longest: f64,
+    },
     /// The simulated record differs from the measured one.
     OverlayPoor {
         /// Root mean square of the difference as a share of the largest force.

@@ -172,6 +172,7 @@ fn examined(
         .collect::<Result<Vec<_>, Cancelled>>()?
         .into_iter()
         .unzip();
+    findings.extend(until_beyond(&holds, options));
     let (exponents, extension) = fit_exponents(&mut holds, options, watch)?;
     findings.extend(extension);
     for (hold, ramp) in holds.iter_mut().zip(ramps) {
@@ -274,6 +275,13 @@ fn constant_force(holds: &[HoldAnalysis]) -> Option<f64> {
     let is_constant =
         |hold: &HoldAnalysis| hold.force_start == force && hold.values.iter().all(|value| *value == hold.values[0]);
     (force != 0.0 && holds.iter().all(is_constant)).then_some(force)
+}
+
+/// A finding if fits were to end later than every hold.
+fn until_beyond(holds: &[HoldAnalysis], options: &AnalysisOptions) -> Option<Finding> {
+    let longest = holds.iter().filter_map(|hold| hold.times.last()).copied().reduce(f64::max)?;
+    let until = options.fit_until.filter(|until| *until > longest)?;
+    Some(Finding::UntilBeyondHolds { until, longest })
 }
 
 /// An error unless some hold was fitted, with the reason that most likely can be helped.

@@ -400,6 +400,26 @@ fn columns_that_count_the_other_way_round_are_suspicious() {
     assert_eq!(signs(-1.0, -1.0), ["displacement", "force"]);
 }
 
+/// An end of the fits behind the end of every hold was passed over: nothing was predicted, and no word said so.
+#[test]
+fn an_end_of_the_fits_behind_that_of_all_holds_is_stated() {
+    let record = Bench::paper(0.0, 0.02).record(&LEVELS[0], 10.0, 1);
+    let stated = |until: f64| {
+        let options = AnalysisOptions {
+            fit_until: Some(until),
+            ..ball(Some(28e3))
+        };
+        let findings = analyze(&record, &options).unwrap().findings;
+        findings.iter().find(|finding| finding.code() == "until_beyond_holds").map(Finding::observation)
+    };
+    assert_eq!(stated(5.0), None);
+    let observed = stated(600.0).unwrap();
+    assert!(
+        observed.starts_with("the fits were to end 600 s after their start, and the longest hold ends"),
+        "{observed}"
+    );
+}
+
 #[test]
 fn touch_and_overlay_that_cannot_be_trusted_are_stated() {
     let noisy = Bench {

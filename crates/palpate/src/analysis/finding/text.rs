@@ -481,6 +481,16 @@ impl Finding {
                     "use the fits with a free exponent, or list an exponent in between",
                 )
             }
+            Self::UntilBeyondHolds { until, longest } => caution(
+                "until_beyond_holds",
+                format!(
+                    "the fits were to end {} s after their start, and the longest hold ends {} s after it",
+                    significant(*until, 4),
+                    significant(*longest, 4)
+                ),
+                "all samples of every hold are fitted, and no stretch is left to predict",
+                "set until to less than the duration of the hold (⟨fit_until⟩)",
+            ),
             Self::OverlayPoor { relative } => caution(
                 "overlay_poor",
                 format!(
