@@ -591,7 +591,7 @@ class Analysis(_Summed, _Reported):
     each parameter with its standard error and interval.
     """
     parameter_table: Final[Table]
-    """Every parameter of every law on every hold, a row each: ``record``, ``hold``, ``law``, ``parameter``, ``unit``, ``value``,
+    """Every parameter of every law on every hold, a row each: ``record``, ``part``, ``hold``, ``law``, ``parameter``, ``unit``, ``value``,
     ``standard_error``, ``low``, ``high``, ``termination``, ``white_standard_error``, ``role``, ``domain``, ``recommended``.
     """
     budgets: Final[Table]

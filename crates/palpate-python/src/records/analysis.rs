@@ -192,7 +192,7 @@ shown! {
             ));
             Table::of(columns)
         },
-        /// Every parameter of every law on every hold, a row each: ``record``, ``hold``, ``law``, ``parameter``, ``unit``, ``value``,
+        /// Every parameter of every law on every hold, a row each: ``record``, ``part``, ``hold``, ``law``, ``parameter``, ``unit``, ``value``,
         /// ``standard_error``, ``low``, ``high``, ``termination``, ``white_standard_error``, ``role``, ``domain``, ``recommended``.
         parameter_table: PyResult<Table> = Table::of(parameter_columns(&self.document.parameter_rows())),
         /// Uncertainty budgets (JCGM 100) of the parameters of the law of the record, a row for each input quantity of each: ``hold``, ``law``,

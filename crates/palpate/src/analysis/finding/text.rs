@@ -4,7 +4,7 @@ use super::Finding;
 use super::Severity::{self, Caution, Info, Warning};
 use crate::fit::TrendVerdict;
 use crate::forecast::listed;
-use crate::number::{counted, significant, with_interval};
+use crate::number::{counted, exact, significant, with_interval};
 use crate::record::Column;
 use crate::statistics::coverage_factor;
 
@@ -485,7 +485,7 @@ impl Finding {
                 "until_beyond_holds",
                 format!(
                     "the fits were to end {} s after their start, and the longest hold ends {} s after it",
-                    significant(*until, 4),
+                    exact(*until),
                     significant(*longest, 4)
                 ),
                 "all samples of every hold are fitted, and no stretch is left to predict",
