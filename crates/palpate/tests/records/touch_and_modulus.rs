@@ -400,7 +400,7 @@ fn columns_that_count_the_other_way_round_are_suspicious() {
     assert_eq!(signs(-1.0, -1.0), ["displacement", "force"]);
 }
 
-/// An end of the fits behind the end of every hold was passed over: nothing was predicted, and no word said so.
+/// An end of the fits behind the end of every hold was passed over: nothing was predicted, without a word about it.
 #[test]
 fn an_end_of_the_fits_behind_that_of_all_holds_is_stated() {
     let record = Bench::paper(0.0, 0.02).record(&LEVELS[0], 10.0, 1);
