@@ -10,6 +10,7 @@ use palpate_report::study::{MapPoint, map_figure};
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
+use super::table::columns_of;
 use super::{Entry, parameters, rows};
 use crate::JobError;
 use crate::output::{check_figure, file_name};
@@ -50,12 +51,9 @@ impl CurveMap {
     /// Takes the curves of a file.
     pub(super) fn add(&mut self, entry: &Entry) {
         let fields = rows::fields();
-        let place = |name: &str| fields.iter().position(|field| field.name == name).unwrap_or(usize::MAX);
         let [record, part, hold, x, y, recommended] =
-            ["record", "part", "hold", "x_m", "y_m", "recommended"].map(place);
-        let fields_of = parameters::fields();
-        let of =
-            ["record", "part"].map(|name| fields_of.iter().position(|field| field.name == name).unwrap_or(usize::MAX));
+            columns_of(&fields, ["record", "part", "hold", "x_m", "y_m", "recommended"]);
+        let of = columns_of(&parameters::fields(), ["record", "part"]);
         let mut lines = &entry.parameters[..];
         // Of each test the first row: that of the law recommended for its first hold, if there is one.
         let tests = entry.rows.chunk_by(|a, b| (&a[record], &a[part]) == (&b[record], &b[part]));
@@ -87,9 +85,8 @@ impl CurveMap {
     }
 
     fn add_parameters(&mut self, curve: usize, lines: &[Vec<Value>], hold: &Value) {
-        let fields = parameters::fields();
-        let place = |name: &str| fields.iter().position(|field| field.name == name).unwrap_or(usize::MAX);
-        let [held, name, unit, value, recommended] = ["hold", "parameter", "unit", "value", "recommended"].map(place);
+        let [held, name, unit, value, recommended] =
+            columns_of(&parameters::fields(), ["hold", "parameter", "unit", "value", "recommended"]);
         let text = |line: &[Value], column: usize| line[column].as_str().unwrap_or_default().to_owned();
         let wanted = |line: &&Vec<Value>| line[held] == *hold && line[recommended].as_i64() == Some(1);
         for line in lines.iter().filter(wanted) {

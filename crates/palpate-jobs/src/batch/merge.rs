@@ -9,7 +9,7 @@ use palpate_files::parquet_table::{Field, Rows, TableError, TableReader, Values}
 use palpate_report::table::CsvLocale;
 use serde_json::Value;
 
-use super::table::{self, Format, Out, Taken, of_parameters};
+use super::table::{self, Format, Out, Taken, columns_of, of_parameters};
 use super::{Batched, Entry, failures, map, parameters, rows};
 use crate::output::{keep_apart, unwritten_table};
 use crate::shard::{Manifest, Places, ShardTable};
@@ -55,8 +55,8 @@ pub(crate) fn merge(
 pub(super) fn each(places: Places<'_>, take: Taken<'_>) -> Result<(), JobError> {
     let mut parameters = Lines::open(places.table(ShardTable::Parameters), parameters::fields())?;
     let mut lines = Lines::open(places.table(ShardTable::Rows), rows::fields())?;
-    let [record, part] = ["record", "part"].map(|name| lines.place(name));
-    let of = ["record", "part"].map(|name| parameters.place(name));
+    let [record, part] = columns_of(&lines.fields, ["record", "part"]);
+    let of = columns_of(&parameters.fields, ["record", "part"]);
     let mut entry = Entry::default();
     while let Some(row) = lines.next()? {
         let same = |last: &Vec<Value>| (&last[record], &last[part]) == (&row[record], &row[part]);
@@ -110,10 +110,6 @@ impl Lines {
             rows: None,
             next: None,
         })
-    }
-
-    fn place(&self, name: &str) -> usize {
-        self.fields.iter().position(|field| field.name == name).unwrap_or(usize::MAX)
     }
 
     fn peek(&mut self) -> Result<Option<&Vec<Value>>, JobError> {

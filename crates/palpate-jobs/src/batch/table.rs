@@ -155,6 +155,11 @@ impl<'a> Written<'a> {
     }
 }
 
+/// Where columns stand in a table that has them.
+pub(super) fn columns_of<const N: usize>(fields: &[Field], names: [&str; N]) -> [usize; N] {
+    names.map(|name| fields.iter().position(|field| field.name == name).unwrap_or(usize::MAX))
+}
+
 /// Where the table of parameters of a table lies: `holds_parameters.csv` beside `holds.csv`.
 pub(super) fn of_parameters(out: &Path) -> PathBuf {
     let part = |part: Option<&OsStr>| part.unwrap_or_default().to_string_lossy().into_owned();

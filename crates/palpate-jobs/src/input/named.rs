@@ -163,18 +163,16 @@ fn below(folder: &Path, paths: &mut Vec<PathBuf>) -> Result<(), JobError> {
         }
         if path.is_dir() && !path.is_symlink() {
             below(&path, paths)?;
-        } else if (path.is_file() || leads_nowhere(&path))
-            && path.extension().is_none_or(|extension| extension != "toml")
-        {
+        } else if is_file(&path) && path.extension().is_none_or(|extension| extension != "toml") {
             paths.push(path);
         }
     }
     Ok(())
 }
 
-/// Whether a path is a link to nothing: a file that is missing, which a message says when it is read.
-fn leads_nowhere(path: &Path) -> bool {
-    path.is_symlink() && !path.exists()
+/// Whether a path is a file, or a link to one that is missing, which a message states when it is read.
+fn is_file(path: &Path) -> bool {
+    path.is_file() || path.is_symlink() && !path.exists()
 }
 
 /// Whether a name that is no file can be a pattern, for shells that leave patterns alone and for quoted ones.
@@ -191,7 +189,7 @@ fn matching(pattern: &Path, paths: &mut Vec<PathBuf>) -> Result<(), JobError> {
     for path in found {
         let path = path.map_err(|error| JobError::new(ErrorKind::File(error.error().kind()), &error, None))?;
         let of_journal = path.parent().is_some_and(is_written_by_batch);
-        if (path.is_file() || leads_nowhere(&path)) && !of_journal && !is_written_by_batch(&path) {
+        if is_file(&path) && !of_journal && !is_written_by_batch(&path) {
             paths.push(path);
         }
     }

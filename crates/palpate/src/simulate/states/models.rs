@@ -236,7 +236,7 @@ impl ContactModels {
         results: &mut [f64],
         failed: &mut [bool],
     ) -> Result<usize, OneStepError> {
-        self.step_by(Threads::default(), states, step, results, failed)
+        self.step_by(Threads::default(), step, (states, results, failed))
     }
 
     /// As [`step`](Self::step) on the calling thread and those of a pool.
@@ -259,25 +259,18 @@ impl ContactModels {
         results: &mut [f64],
         failed: &mut [bool],
     ) -> Result<usize, OneStepError> {
-        self.step_by(
-            Threads {
-                pool: Some(pool),
-                are_awake,
-            },
-            states,
-            step,
-            results,
-            failed,
-        )
+        let threads = Threads {
+            pool: Some(pool),
+            are_awake,
+        };
+        self.step_by(threads, step, (states, results, failed))
     }
 
     fn step_by(
         &self,
         threads: Threads<'_>,
-        states: &mut [f64],
         step: &ContactsStep<'_>,
-        results: &mut [f64],
-        failed: &mut [bool],
+        (states, results, failed): (&mut [f64], &mut [f64], &mut [bool]),
     ) -> Result<usize, OneStepError> {
         let keep = |numbers: &[f64]| SmallVec::<[f64; FEW]>::from_slice(numbers);
         let mut kept = None;
@@ -287,10 +280,10 @@ impl ContactModels {
                 // Sooner than a check, or what cannot be known beforehand.
                 kept = Some((keep(states), keep(results)));
             } else {
-                self.check(threads, states, step, results, failed)?;
+                self.check(threads, step, (states, results, failed))?;
             }
         }
-        let stepped = self.step_range_by(threads, 0..results.len(), states, step, results, failed);
+        let stepped = self.step_range_by(threads, 0..results.len(), step, (states, results, failed));
         if let (Err(_), Some((old_states, old_results))) = (&stepped, kept) {
             states.copy_from_slice(&old_states);
             results.copy_from_slice(&old_results);
@@ -313,17 +306,15 @@ impl ContactModels {
         results: &mut [f64],
         failed: &mut [bool],
     ) -> Result<usize, OneStepError> {
-        self.step_range_by(Threads::default(), range, states, step, results, failed)
+        self.step_range_by(Threads::default(), range, step, (states, results, failed))
     }
 
     fn step_range_by(
         &self,
         threads: Threads<'_>,
         range: Range<usize>,
-        states: &mut [f64],
         step: &ContactsStep<'_>,
-        results: &mut [f64],
-        failed: &mut [bool],
+        (states, results, failed): (&mut [f64], &mut [f64], &mut [bool]),
     ) -> Result<usize, OneStepError> {
         self.assert_lengths(states, step, (results.len(), failed.len()));
         assert!(range.start.is_multiple_of(LANES), "a range begins at a multiple of {LANES}");
@@ -338,10 +329,8 @@ impl ContactModels {
     fn check(
         &self,
         threads: Threads<'_>,
-        states: &mut [f64],
         step: &ContactsStep<'_>,
-        results: &mut [f64],
-        failed: &mut [bool],
+        (states, results, failed): (&mut [f64], &mut [f64], &mut [bool]),
     ) -> Result<(), OneStepError> {
         self.assert_lengths(states, step, (results.len(), failed.len()));
         let part = Part::of(0..results.len(), states, results, failed);
