@@ -14,6 +14,9 @@ impl FileError {
     pub fn hint(&self) -> Option<String> {
         let help = match &self.problem {
             FileProblem::Cancelled => return None,
+            FileProblem::NotFound(_) if self.path.is_symlink() => {
+                "it is a link to a file that is missing: renew or remove it"
+            }
             FileProblem::NotFound(_) => "check the spelling of the path",
             FileProblem::Directory => "name one file inside it",
             FileProblem::NoFile("a terminal") => "send the file through a pipe: `palpate watch - < log.csv`",
