@@ -255,13 +255,12 @@ def main():
     contacts(rows)
     small(rows)
     if "--write" in sys.argv:
-        command = subprocess.run(["palpate", "--version"], capture_output=True, text=True, check=True)
         versions = ", ".join(f"{peer} {version(peer)}" for peer in ["numpy", *THERE])
         absent = [peer for peer in PEERS if peer not in THERE]
         left = f" Not installed here: {', '.join(absent)}." if absent else ""
         page = f"""# Speed of the Python package
 
-Written by `validation/python_speed.py`: palpate {command.stdout.split()[1]}, CPython {platform.python_version()}, {versions}, {len(os.sched_getaffinity(0))} cores, load {os.getloadavg()[0]:.1f} at the end.{left}
+Written by `validation/python_speed.py`: palpate {palpate.__version__}, CPython {platform.python_version()}, {versions}, {len(os.sched_getaffinity(0))} cores, load {os.getloadavg()[0]:.1f} at the end.{left}
 The fastest of {RUNS} runs in turn. Ratios are the peer's time over palpate's, of the same run. Peers start near the truth; palpate has no starting values.
 
 | what | palpate | requested | peer | its time | ratio |

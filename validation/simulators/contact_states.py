@@ -5,7 +5,8 @@
 Every library takes steps of the same contacts, closed balls with n = 5 that may not pull: state and displacements as doubles, a new state and forces
 out. Contacts of palpate are also checked and may leave their bodies, which the others leave out; with errors="raise" all of them are checked before
 the first is moved. One core and two are two processes: the
-first is bound to one core. The rounds of all libraries go in turn, and the best of each counts.
+first is bound to one core. The rounds of all libraries go in turn, and the best of each counts; a pause before each lets the threads of the library
+before it fall asleep, which wait for more work in a loop.
 """
 
 from __future__ import annotations
@@ -20,7 +21,7 @@ import sys
 import time
 
 COUNTS = [10**power for power in range(7)]
-ROUNDS, ROUND_S = 15, 0.04
+ROUNDS, ROUND_S, PAUSE_S = 15, 0.04, 0.04
 ENVIRONMENTS, STEPS = 4096, 400
 MODEL = {
     "specimen": {"shape": "ball", "radius": "35 mm", "modulus": "28 kPa"},
@@ -136,6 +137,9 @@ def step_times():
             repeats[name] = max(2, min(20_000, int(ROUND_S / (time.perf_counter() - start)))) // 2 * 2
         for _ in range(ROUNDS):
             for name, (step, tos) in there.items():
+                time.sleep(PAUSE_S)
+                for k in range(4):
+                    step(tos[k & 1])
                 start = time.perf_counter()
                 for k in range(repeats[name]):
                     step(tos[k & 1])
@@ -207,7 +211,7 @@ def page(cores=(1, 2)):
     parts = [
         "## Many contacts, and environments for learning",
         f"Written by `validation/simulators/contact_states.py`: {versions}, CPython {platform.python_version()}, "
-        f"{len(os.sched_getaffinity(0))} cores, load {os.getloadavg()[0]:.1f} at the end. Time of a step in place with `out=`, best of {ROUNDS} rounds in turn; "
+        f"{len(os.sched_getaffinity(0))} cores, load {os.getloadavg()[0]:.1f} at the end. Time of a step in place with `out=`, best of {ROUNDS} rounds in turn, with a pause before each; "
         "JAX compiled, its state donated; numba with its plain loop below 1,000 contacts, with `prange` from there on.",
         *(table(results["steps"], count) for count, results in found.items()),
         f"Steps of {ENVIRONMENTS:,} environments of `palpate.gym`, each with {4} substeps of its contact, a second of processor time on one core:",
