@@ -28,52 +28,87 @@ pub(crate) struct Minimum<V> {
     curvature: Option<Square>,
 }
 
-/// Newton's method with differences; a compass search where it has no bottom to go to.
-pub(crate) fn minimise<V: Level>(evaluate: &impl Fn(&[f64]) -> Option<V>, start: &[f64]) -> Option<Minimum<V>> {
+/// Newton's method with differences; a compass search where it has no bottom to go to. `None` where the function is not below `promise` at the
+/// start.
+///
+/// `evaluate` takes points together: what computes several at once takes hardly longer than for one.
+pub(crate) fn minimise<V: Level>(
+    evaluate: &impl Fn(&[Few]) -> Vec<Option<V>>,
+    start: &[f64],
+    promise: f64,
+) -> Option<Minimum<V>> {
+    let size = start.len();
     let mut here = Minimum {
         at: Few::from_slice(start),
-        value: evaluate(start)?,
+        value: evaluate(&[Few::from_slice(start)])[0]?,
         curvature: None,
     };
+    if here.value.level() > promise {
+        return None;
+    }
+    let mut around = evaluate(&ring(&here.at));
     for _ in 0..STEPS {
-        let Some((step, curvature)) = newton(evaluate, &here) else {
+        let Some((step, curvature)) = newton(size, here.value, &around) else {
             return Some(compass(evaluate, here));
         };
         let longest = step.iter().fold(0.0, |most: f64, by| most.max(by.abs()));
+        let is_last = longest <= ENOUGH;
         let at: Few = here.at.iter().zip(&step).map(|(x, by)| x + by).collect();
         here.curvature = Some(curvature);
-        match evaluate(&at) {
-            Some(found) if found.level() < here.value.level() => (here.at, here.value) = (at, found),
+        let mut points = vec![at];
+        if !is_last {
+            points.extend(ring(&points[0]));
+        }
+        let mut found = evaluate(&points);
+        around = found.split_off(1);
+        match found[0] {
+            Some(found) if found.level() < here.value.level() => (here.at, here.value) = (points.swap_remove(0), found),
             // So near the bottom rounding and the next term of the series decide.
-            _ if longest <= ENOUGH => {}
+            _ if is_last => {}
             _ => return Some(compass(evaluate, here)),
         }
-        if longest <= ENOUGH {
+        if is_last {
             return Some(here);
         }
     }
     Some(compass(evaluate, here))
 }
 
-/// A step, no longer than some along any axis, and the curvature it rests on. `None` at an edge, and where there is no bottom.
-fn newton<V: Level>(evaluate: &impl Fn(&[f64]) -> Option<V>, here: &Minimum<V>) -> Option<(Few, Square)> {
-    let size = here.at.len();
-    let middle = here.value.level();
-    let at = |moves: &[(usize, f64)]| {
-        let mut x = here.at.clone();
-        moves.iter().for_each(|(axis, by)| x[*axis] += by);
-        evaluate(&x).map(|found| found.level())
+/// Points around one that differences are taken between: two along each axis, and two along the diagonal of every two.
+fn ring(middle: &Few) -> Vec<Few> {
+    let beside = |axes: &[usize], by: f64| {
+        let mut at = middle.clone();
+        axes.iter().for_each(|axis| at[*axis] += by);
+        at
     };
-    let (mut gradient, mut curvature) = (Few::new(), Square::from_elem(0.0, size * size));
-    let mut sums = Few::new();
-    for i in 0..size {
-        let (above, below) = (at(&[(i, STEP)])?, at(&[(i, -STEP)])?);
-        gradient.push((above - below) / (2.0 * STEP));
-        sums.push(above + below);
-        curvature[i * (size + 1)] = (above - 2.0 * middle + below) / (STEP * STEP);
+    let mut points = Vec::new();
+    for i in 0..middle.len() {
+        points.extend([STEP, -STEP].map(|by| beside(&[i], by)));
+    }
+    for i in 0..middle.len() {
         for j in 0..i {
-            let both = at(&[(i, STEP), (j, STEP)])? + at(&[(i, -STEP), (j, -STEP)])?;
-            let entry = (both - sums[i] - sums[j] + 2.0 * middle) / (2.0 * STEP * STEP);
+            points.extend([STEP, -STEP].map(|by| beside(&[i, j], by)));
+        }
+    }
+    points
+}
+
+/// A step, no longer than some along any axis, and the curvature it rests on, from values on a [`ring`]. `None` at an edge, and where there is
+/// no bottom.
+fn newton<V: Level>(size: usize, middle: V, around: &[Option<V>]) -> Option<(Few, Square)> {
+    let middle = middle.level();
+    let levels: Option<Vec<f64>> = around.iter().map(|found| found.as_ref().map(Level::level)).collect();
+    let levels = levels?;
+    let (pairs, _) = levels.as_chunks::<2>();
+    let (mut gradient, mut curvature) = (Few::new(), Square::from_elem(0.0, size * size));
+    let mut diagonals = pairs[size..].iter();
+    for i in 0..size {
+        let [above, below] = pairs[i];
+        gradient.push((above - below) / (2.0 * STEP));
+        curvature[i * (size + 1)] = (above - 2.0 * middle + below) / (STEP * STEP);
+        for (j, axis) in pairs[..i].iter().enumerate() {
+            let both = diagonals.next()?.iter().sum::<f64>();
+            let entry = (both - above - below - axis.iter().sum::<f64>() + 2.0 * middle) / (2.0 * STEP * STEP);
             curvature[i * size + j] = entry;
             curvature[j * size + i] = entry;
         }
@@ -85,47 +120,62 @@ fn newton<V: Level>(evaluate: &impl Fn(&[f64]) -> Option<V>, here: &Minimum<V>) 
     Some((step, curvature))
 }
 
-/// Along each axis to where the function stops falling, then on in the direction of both, with ever shorter steps (Hooke and Jeeves 1961).
-fn compass<V: Level>(evaluate: &impl Fn(&[f64]) -> Option<V>, from: Minimum<V>) -> Minimum<V> {
+/// To the lowest of the neighbours along all axes and diagonals of two, on in that direction for as long as the function falls, with ever shorter
+/// steps (after Hooke and Jeeves 1961).
+fn compass<V: Level>(evaluate: &impl Fn(&[Few]) -> Vec<Option<V>>, from: Minimum<V>) -> Minimum<V> {
+    /// Steps on in a direction that are looked at together.
+    const ON: i32 = 4;
+    /// Axes of which diagonals are as few.
+    const FEW: usize = 2;
     let Minimum {
         mut at,
         value: mut best,
         ..
     } = from;
+    let size = at.len();
+    // The lowest of some points, if it is below this level.
+    let lowest = |points: Vec<Few>, level: f64| {
+        let found = evaluate(&points);
+        let found = points.into_iter().zip(found).filter_map(|(at, found)| Some((at, found?)));
+        found.filter(|(_, found)| found.level() < level).min_by(|a, b| a.1.level().total_cmp(&b.1.level()))
+    };
     let mut step = 0.5;
     while step > ENOUGH {
-        let from = at.clone();
-        for axis in 0..at.len() {
-            for side in [step, -step] {
-                let mut trial = at.clone();
-                trial[axis] += side;
-                if let Some(found) = evaluate(&trial)
-                    && found.level() < best.level()
-                {
-                    (at, best) = (trial, found);
-                    break;
-                }
-            }
-        }
-        if at == from {
+        let beside = |moves: &[(usize, f64)]| {
+            let mut at = at.clone();
+            moves.iter().for_each(|(axis, side)| at[*axis] += side * step);
+            at
+        };
+        let sides = [1.0, -1.0];
+        let along = (0..size).flat_map(|axis| sides.map(|side| beside(&[(axis, side)])));
+        let pairs = (0..size).flat_map(|i| (0..i).map(move |j| (i, j))).filter(|_| size <= FEW);
+        let across = pairs.flat_map(|(i, j)| {
+            sides
+                .into_iter()
+                .flat_map(move |one| sides.map(|other| [(i, one), (j, other)]))
+                .map(|moves| beside(&moves))
+        });
+        let Some((next, found)) = lowest(along.chain(across).collect(), best.level()) else {
             step *= 0.5;
-        }
-        // As far again for as long as that helps.
-        while at != from {
-            let on: Few = at.iter().zip(&from).map(|(x, from)| 2.0 * x - from).collect();
-            match evaluate(&on) {
-                Some(found) if found.level() < best.level() => (at, best) = (on, found),
-                _ => break,
-            }
+            continue;
+        };
+        let direction: Few = next.iter().zip(&at).map(|(next, at)| next - at).collect();
+        (at, best) = (next, found);
+        loop {
+            let on =
+                |times: i32| -> Few { at.iter().zip(&direction).map(|(x, by)| x + f64::from(times) * by).collect() };
+            let Some((next, found)) = lowest((1..=ON).map(on).collect(), best.level()) else {
+                break;
+            };
+            (at, best) = (next, found);
         }
     }
-    let mut found = Minimum {
+    let around = evaluate(&ring(&at));
+    Minimum {
+        curvature: newton(size, best, &around).map(|(_, curvature)| curvature),
         at,
         value: best,
-        curvature: None,
-    };
-    found.curvature = newton(evaluate, &found).map(|(_, curvature)| curvature);
-    found
+    }
 }
 
 impl<V: Level> Minimum<V> {
@@ -150,14 +200,19 @@ mod tests {
         }
     }
 
-    fn valley(x: &[f64]) -> Option<f64> {
+    /// Some points together.
+    fn each(of: impl Fn(&Few) -> Option<f64>) -> impl Fn(&[Few]) -> Vec<Option<f64>> {
+        move |points| points.iter().map(&of).collect()
+    }
+
+    fn valley(x: &Few) -> Option<f64> {
         let (a, b) = (x[0] - 1.3, x[1] + 0.4);
         (x[0] < 4.0).then_some(3.0 * a * a + a * b + b * b + 0.02 * a.powi(4))
     }
 
     #[test]
     fn a_valley_is_found_from_afar_with_its_curvature() {
-        let found = minimise(&valley, &[3.5, 3.0]).unwrap();
+        let found = minimise(&each(valley), &[3.5, 3.0], f64::INFINITY).unwrap();
         assert!((found.at[0] - 1.3).abs() < 2e-3 && (found.at[1] + 0.4).abs() < 2e-3, "{:?}", found.at);
         let expected = [6.0, 1.0, 1.0, 2.0];
         assert!(found.curvature.unwrap().iter().zip(expected).all(|(a, b)| (a - b).abs() < 0.01));
@@ -165,13 +220,14 @@ mod tests {
 
     #[test]
     fn at_an_edge_the_compass_goes_on() {
-        let slope = |x: &[f64]| (x[0] >= 0.0).then_some(x[0] + (x[1] - 1.0).powi(2));
-        let found = minimise(&slope, &[2.0, 3.0]).unwrap();
+        let slope = each(|x| (x[0] >= 0.0).then_some(x[0] + (x[1] - 1.0).powi(2)));
+        let found = minimise(&slope, &[2.0, 3.0], f64::INFINITY).unwrap();
         assert!(
             found.at[0] < 0.04 && (found.at[1] - 1.0).abs() < 0.04 && found.curvature.is_none(),
             "{:?}",
             found.at
         );
-        assert!(minimise(&slope, &[-1.0, 0.0]).is_none());
+        assert!(minimise(&slope, &[-1.0, 0.0], f64::INFINITY).is_none());
+        assert!(minimise(&slope, &[2.0, 3.0], 5.9).is_none());
     }
 }

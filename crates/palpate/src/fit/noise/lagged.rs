@@ -139,11 +139,12 @@ impl Lagged {
     pub(crate) fn noise(&self, start: &[f64]) -> Option<Kind> {
         let most = slowest(self.length);
         let partial = |x: &[f64]| -> Few { x.iter().map(|kappa| (0.5 * kappa).tanh()).collect() };
-        let evaluate = |x: &[f64]| {
+        let at = |x: &Few| {
             if x.iter().any(|kappa| kappa.abs() > most) { None } else { self.likelihood(&partial(x)) }
         };
+        let evaluate = |points: &[Few]| points.iter().map(at).collect();
         let begin: Few = start.iter().map(|by| (2.0 * by.atanh()).clamp(0.1 - most, most - 0.1)).collect();
-        let found = minimise(&evaluate, &begin)?;
+        let found = minimise(&evaluate, &begin, f64::INFINITY)?;
         Kind::about(&found, &evaluate, |x| Some(model(&partial(x))))
     }
 }

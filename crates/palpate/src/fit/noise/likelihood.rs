@@ -1,7 +1,7 @@
 //! The restricted likelihood of a noise, and where it is greatest for noise with slow parts.
 
-use super::filter::Filter;
-use super::model::{Likely, NoiseModel};
+use super::filter::{LANES, Noises};
+use super::model::{Likely, MOST_PARTS, NoiseModel, Parts};
 use super::rows::Rows;
 use crate::optimise::{Cholesky, Few, Level, Minimum, Square, minimise};
 use crate::statistics::dot;
@@ -53,7 +53,7 @@ impl Kind {
     /// the normal one.
     pub(crate) fn about(
         minimum: &Minimum<Likelihood>,
-        evaluate: &impl Fn(&[f64]) -> Option<Likelihood>,
+        evaluate: &impl Fn(&[Few]) -> Vec<Option<Likelihood>>,
         model: impl Fn(&[f64]) -> Option<NoiseModel>,
     ) -> Option<Self> {
         /// Farther from normal the points say little.
@@ -66,44 +66,52 @@ impl Kind {
             variance: minimum.value.variance,
             probability: 1.0,
         }];
-        let mut take = |at: Few, weight: &dyn Fn(f64) -> f64| {
-            let found = evaluate(&at).zip(model(&at)).map(|(found, model)| Likely {
-                model,
+        let taken = |at: &Few, found: Likelihood, weight: f64| {
+            Some(Likely {
+                model: model(at)?,
                 variance: found.variance,
-                probability: weight(found.deviance - deviance),
-            });
-            likely.extend(found);
-            found.is_some()
+                probability: weight,
+            })
         };
         match minimum.directions() {
             // Many parameters together say what one of them leaves open, at a price of many points.
             _ if minimum.at.len() > 2 => {}
             Some(directions) => {
                 let (size, square) = (directions.len() as f64, 3.0_f64);
-                for direction in &directions {
-                    for side in [1.0, -1.0] {
-                        // Beyond an edge is nothing: half as far may be inside.
-                        for far in [square, 0.25 * square] {
-                            let at = minimum.at.iter().zip(direction).map(|(x, d)| x + side * far.sqrt() * d).collect();
-                            let weight =
-                                |rise: f64| (0.5 * (far - rise)).exp().clamp(1.0 / MOST, MOST) / (2.0 * square);
-                            if take(at, &weight) {
-                                break;
-                            }
-                        }
-                    }
+                // Beyond an edge is nothing: half as far may be inside.
+                let fars = [square, 0.25 * square];
+                let beside = |direction: &Vec<f64>, side: f64, far: f64| -> Few {
+                    minimum.at.iter().zip(direction).map(|(x, d)| x + side * far.sqrt() * d).collect()
+                };
+                let sides = directions.iter().flat_map(|direction| [1.0, -1.0].map(|side| (direction, side)));
+                let points: Vec<Few> =
+                    sides.flat_map(|(direction, side)| fars.map(|far| beside(direction, side, far))).collect();
+                let found = evaluate(&points);
+                for (points, found) in points.chunks(fars.len()).zip(found.chunks(fars.len())) {
+                    let inside = points.iter().zip(found).zip(fars).find_map(|((at, found), far)| {
+                        let found = (*found)?;
+                        let over = (0.5 * (far - found.deviance + deviance)).exp().clamp(1.0 / MOST, MOST);
+                        taken(at, found, over / (2.0 * square))
+                    });
+                    likely.extend(inside);
                 }
                 likely[0].probability = 1.0 - size / square;
             }
             // At an edge no normal distribution helps: a walk along each axis, each point by its own likelihood.
             None => {
-                for axis in 0..minimum.at.len() {
-                    for by in [1.0, 2.0, 3.0, 4.0, -1.0, -2.0, -3.0, -4.0] {
-                        let mut at = minimum.at.clone();
-                        at[axis] += PACE * by;
-                        take(at, &|rise| (-0.5 * rise).exp());
-                    }
-                }
+                let beside = |axis: usize, by: f64| {
+                    let mut at = minimum.at.clone();
+                    at[axis] += PACE * by;
+                    at
+                };
+                let steps = [1.0, 2.0, 3.0, 4.0, -1.0, -2.0, -3.0, -4.0];
+                let points: Vec<Few> =
+                    (0..minimum.at.len()).flat_map(|axis| steps.map(|by| beside(axis, by))).collect();
+                let walked = points.iter().zip(evaluate(&points)).filter_map(|(at, found)| {
+                    let found = found?;
+                    taken(at, found, (-0.5 * (found.deviance - deviance)).exp())
+                });
+                likely.extend(walked);
             }
         }
         let all: f64 = likely.iter().map(|likely| likely.probability).sum();
@@ -172,15 +180,13 @@ impl<'a> Slow<'a> {
         }
     }
 
-    pub(crate) fn likelihood(&self, model: NoiseModel) -> Option<Likelihood> {
-        let filter = Filter::new(&model.parts(), self.length);
-        let log_determinant = self.series() * filter.log_determinant;
-        Likelihood::of(&self.rows.whitened(&filter, self.length), log_determinant, self.rows.samples)
-    }
-
-    /// How many series.
-    fn series(&self) -> f64 {
-        (self.rows.samples / self.length) as f64
+    /// The restricted likelihood of each of some models.
+    pub(crate) fn likelihoods(&self, models: &[Option<NoiseModel>]) -> Vec<Option<Likelihood>> {
+        let of =
+            |(product, log_determinant): (Vec<f64>, f64)| Likelihood::of(&product, log_determinant, self.rows.samples);
+        let parts = models.iter().copied().flatten().map(NoiseModel::parts);
+        let mut found = whitened(&self.rows, self.length, parts).into_iter().map(of);
+        models.iter().map(|model| model.and_then(|_| found.next()?)).collect()
     }
 
     /// The best white noise with AR(1), if a first look finds a deviance that promises to fall below this one.
@@ -218,20 +224,34 @@ impl<'a> Slow<'a> {
         let series = self.residuals.chunks_exact(self.length);
         let means: Vec<f64> = series.flat_map(|series| series.chunks_exact(together).map(mean)).collect();
         let count = means.len() as f64;
-        let alone = |place: &[f64; K]| {
-            let filter = Filter::new(&model(place)?.of_means(together), length);
-            let square: f64 = means.chunks_exact(length).map(|series| filter.square(series)).sum();
-            let found = count * (square / count).ln() + self.series() * filter.log_determinant;
-            found.is_finite().then_some((found, *place))
+        let models: Vec<(NoiseModel, [f64; K])> =
+            places.iter().filter_map(|place| Some((model(place)?, *place))).collect();
+        let parts = models.iter().map(|(model, _)| model.of_means(together));
+        let deviances = whitened(&Rows::new(&[&means]), length, parts)
+            .into_iter()
+            .map(|(square, log_determinant)| count * (square[0] / count).ln() + log_determinant);
+        let alone = models.iter().zip(deviances).filter(|(_, deviance)| deviance.is_finite());
+        let ((_, start), _) = alone.min_by(|a, b| a.1.total_cmp(&b.1))?;
+        let evaluate = |points: &[Few]| {
+            let models: Vec<Option<NoiseModel>> = points.iter().map(|x| model(x)).collect();
+            self.likelihoods(&models)
         };
-        let (_, start) = places.iter().filter_map(alone).min_by(|a, b| a.0.total_cmp(&b.0))?;
-        let evaluate = |x: &[f64]| self.likelihood(model(x)?);
-        if evaluate(&start)?.deviance > deviance - PROMISE {
-            return None;
-        }
-        let found = minimise(&evaluate, &start)?;
+        let found = minimise(&evaluate, start, deviance - PROMISE)?;
         Kind::about(&found, &evaluate, &model)
     }
+}
+
+/// WᵀW and ln |R| of each of some noises with these parts, by which rows are whitened in series of `length` samples.
+fn whitened(rows: &Rows, length: usize, noises: impl Iterator<Item = Parts>) -> Vec<(Vec<f64>, f64)> {
+    let noises: Vec<Parts> = noises.collect();
+    let of_some = |some: &[Parts]| {
+        let all = match some.iter().all(|parts| parts.len() <= 1) {
+            true => rows.whitened(&Noises::<1>::new(some), length),
+            false => rows.whitened(&Noises::<MOST_PARTS>::new(some), length),
+        };
+        all.into_iter().take(some.len()).collect::<Vec<_>>()
+    };
+    noises.chunks(LANES).flat_map(of_some).collect()
 }
 
 /// Most means of neighbours of a series that a first look takes.

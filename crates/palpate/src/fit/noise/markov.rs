@@ -4,7 +4,7 @@ use super::filter::MarkovStep;
 use super::likelihood::{Kind, Likelihood};
 use super::model::NoiseModel;
 use super::rows::Rows;
-use crate::optimise::minimise;
+use crate::optimise::{Few, minimise};
 use crate::vector::{LANES, block_sums, cross_products, normal_equations, shifted};
 
 /// The covariance of a noise over σ²: y_i = x_i + v_i, where v is white, and x_i is what is left of x_{i−1} and something new.
@@ -177,7 +177,7 @@ impl<'a> Beside<'a> {
             let inside = (low..=high).contains(&x[0]) && x.get(1).is_none_or(|x| x.abs() <= 8.0);
             inside.then(|| in_time(x[0].exp(), share, times))
         };
-        let evaluate = |x: &[f64]| match model(x)? {
+        let at = |x: &[f64]| match model(x)? {
             NoiseModel::InTime {
                 correlation_time_s,
                 share,
@@ -185,17 +185,18 @@ impl<'a> Beside<'a> {
             } => self.of_time(correlation_time_s, share),
             _ => None,
         };
+        let evaluate = |points: &[Few]| points.iter().map(|x| at(x)).collect();
         let count = ((high - low) / 1.2).ceil();
         let taus = (0..=count as i32).map(|i| low + (high - low) * f64::from(i) / count);
         let shares: &[f64] = if alone { &[f64::INFINITY] } else { &[-1.0, 1.5] };
         let places = taus.flat_map(|tau| shares.iter().map(move |share| [tau, *share]));
         let size = if alone { 1 } else { 2 };
-        let looked = places.filter_map(|place| Some((evaluate(&place[..size])?.deviance, place)));
+        let looked = places.filter_map(|place| Some((at(&place[..size])?.deviance, place)));
         let (best, start) = looked.min_by(|a, b| a.0.total_cmp(&b.0))?;
         if best > deviance {
             return None;
         }
-        let found = minimise(&evaluate, &start[..size])?;
+        let found = minimise(&evaluate, &start[..size], f64::INFINITY)?;
         Kind::about(&found, &evaluate, model)
     }
 

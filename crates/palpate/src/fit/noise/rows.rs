@@ -3,12 +3,8 @@
 
 use fearless_simd::{Simd, SimdBase, dispatch, f64x8};
 
-use super::filter::{Filter, MarkovStep, Step};
-use super::model::MOST_PARTS;
+use super::filter::{LANES, MarkovStep, Noises};
 use crate::vector::level;
-
-/// Columns in one vector.
-const LANES: usize = 8;
 
 /// The columns of a fit, as many at a time as a vector holds; those beyond the last are zero.
 pub(crate) struct Rows {
@@ -46,42 +42,6 @@ impl Rows {
                     let now = before;
                     before = rho * (now + right);
                     [left, now]
-                })
-            })
-        })
-    }
-
-    /// WᵀW with W the columns whitened by a filter, which begins anew every `length` samples.
-    pub(crate) fn whitened(&self, filter: &Filter, length: usize) -> Vec<f64> {
-        match filter.kept.len() {
-            1 => self.whitened_by::<1>(filter, length),
-            _ => self.whitened_by::<MOST_PARTS>(filter, length),
-        }
-    }
-
-    /// The same by a filter of up to `P` parts.
-    fn whitened_by<const P: usize>(&self, filter: &Filter, length: usize) -> Vec<f64> {
-        let last = filter.steps.len() - 1;
-        self.tiled(|left, right| {
-            dispatch!(level(), simd => {
-                let nothing = f64x8::splat(simd, 0.0);
-                let (mut states, mut expected, mut at) = ([[nothing; 2]; P], [nothing; 2], 0);
-                let count = filter.kept.len().min(P);
-                products(simd, left, right, #[inline(always)] |left, right| {
-                    if at == length {
-                        (states, expected, at) = ([[nothing; 2]; P], [nothing; 2], 0);
-                    }
-                    let Step { root, gains } = &filter.steps[at.min(last)];
-                    at += 1;
-                    let new = [left - expected[0], right - expected[1]];
-                    expected = [nothing; 2];
-                    for ((state, kept), gain) in states[..count].iter_mut().zip(&filter.kept).zip(gains) {
-                        for side in 0..2 {
-                            state[side] = (state[side] + new[side] * *gain) * *kept;
-                            expected[side] += state[side];
-                        }
-                    }
-                    new.map(|new| new * *root)
                 })
             })
         })
@@ -177,14 +137,48 @@ impl Rows {
             let added = since.get(index + 1).map_or(0.0, |next| (next - now).max(0.0));
             ahead = ahead * (one - gain) + squares * added;
         }
-        let products: Vec<[f64; LANES]> = products.iter().map(|sum| (*sum).into()).collect();
-        std::array::from_fn(|lane| {
-            let entry = |at: usize| {
-                let (row, column) = (at / size, at % size);
-                products[row.max(column) * size + row.min(column)][lane]
-            };
-            ((0..size * size).map(entry).collect(), log_determinants[lane])
-        })
+        unpacked(products, size, &log_determinants)
+    }
+
+    /// WᵀW, row-major, with W the columns whitened by Kalman's filters of noises side by side, which begin anew every `length` samples, and ln |R|.
+    pub(super) fn whitened<const P: usize>(&self, noises: &Noises<P>, length: usize) -> [(Vec<f64>, f64); LANES] {
+        dispatch!(level(), simd => self.whitened_with(simd, noises, length))
+    }
+
+    #[inline(always)]
+    fn whitened_with<S: Simd, const P: usize>(
+        &self,
+        simd: S,
+        noises: &Noises<P>,
+        length: usize,
+    ) -> [(Vec<f64>, f64); LANES] {
+        let nothing = f64x8::splat(simd, 0.0);
+        let (size, series) = (self.columns, self.samples / length);
+        let mut filter = noises.begun(simd);
+        let (mut products, mut weighed) = (vec![nothing; size * size], vec![nothing; size]);
+        // What is expected of each column in each series, and its parts.
+        let mut columns = vec![(nothing, [nothing; P]); size * series];
+        for index in 0..length {
+            let (weight, gains) = filter.gains();
+            for (place, columns) in columns.chunks_exact_mut(size).enumerate() {
+                let at = place * length + index;
+                for (row, (expected, parts)) in columns.iter_mut().enumerate() {
+                    let new = f64x8::splat(simd, self.blocks[row / LANES][at][row % LANES]) - *expected;
+                    weighed[row] = new * weight;
+                    *expected = nothing;
+                    for ((part, gain), kept) in parts.iter_mut().zip(gains).zip(filter.kept) {
+                        *part = (*part + new * gain) * kept;
+                        *expected += *part;
+                    }
+                    for (product, weighed) in products[row * size..].iter_mut().zip(&weighed[..=row]) {
+                        *product += new * *weighed;
+                    }
+                }
+            }
+            filter.go_on();
+        }
+        let log_determinants = filter.log_determinants().map(|of_one| series as f64 * of_one);
+        unpacked(&products, size, &log_determinants)
     }
 
     /// All products, row-major, from those of every two blocks.
@@ -203,6 +197,19 @@ impl Rows {
         }
         all
     }
+}
+
+/// Symmetric matrices side by side of which the lower half is there, each with a number.
+#[inline(always)]
+fn unpacked<S: Simd>(products: &[f64x8<S>], size: usize, numbers: &[f64; LANES]) -> [(Vec<f64>, f64); LANES] {
+    let products: Vec<[f64; LANES]> = products.iter().map(|sum| (*sum).into()).collect();
+    std::array::from_fn(|lane| {
+        let entry = |at: usize| {
+            let (row, column) = (at / size, at % size);
+            products[row.max(column) * size + row.min(column)][lane]
+        };
+        ((0..size * size).map(entry).collect(), numbers[lane])
+    })
 }
 
 /// Σ over the samples of the outer product of two vectors that `step` makes of those of two blocks.
@@ -227,6 +234,7 @@ fn products<S: Simd>(
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::optimise::Cholesky;
     use crate::statistics::dot;
 
     const COUNT: usize = 50;
@@ -236,32 +244,47 @@ mod tests {
         (0..count).map(|column| (0..COUNT).map(|i| entry(column, i)).collect()).collect()
     }
 
-    fn whitened(column: &[f64], filter: &Filter) -> Vec<f64> {
-        let mut states = vec![0.0; filter.kept.len()];
-        let white = |(i, entry): (usize, &f64)| {
-            let Step { root, gains } = &filter.steps[i.min(filter.steps.len() - 1)];
-            let new = entry - states.iter().sum::<f64>();
-            for ((state, kept), gain) in states.iter_mut().zip(&filter.kept).zip(gains) {
-                *state = kept * (*state + gain * new);
-            }
-            new * root
+    /// ZᵀR⁻¹Z and ln |R| by whole matrices, for series of `length` samples.
+    fn whole(all: &[Vec<f64>], parts: &[(f64, f64)], length: usize) -> (Vec<f64>, f64) {
+        let white = 1.0 - parts.iter().map(|(share, _)| share).sum::<f64>();
+        let entry = |i: usize, j: usize| match i.abs_diff(j) {
+            _ if i / length != j / length => 0.0,
+            0 => 1.0,
+            lag => parts.iter().map(|(share, rho)| share * rho.powi(lag as i32)).sum(),
         };
-        column.iter().enumerate().map(white).collect()
+        assert!(white >= 0.0);
+        let matrix: Vec<f64> = (0..COUNT * COUNT).map(|at| entry(at / COUNT, at % COUNT)).collect();
+        let factor = Cholesky::new(&matrix, COUNT).unwrap();
+        let solved: Vec<Vec<f64>> = all
+            .iter()
+            .map(|column| {
+                let mut solved = column.clone();
+                factor.solve(&mut solved);
+                solved
+            })
+            .collect();
+        let product = all.iter().flat_map(|one| solved.iter().map(|other| dot(one, other)));
+        (product.collect(), factor.log_determinant())
     }
 
     #[test]
     fn side_by_side_is_one_after_the_other() {
-        for parts in [&[(0.6, 0.8)][..], &[(0.6, 0.8), (0.2, 0.99)]] {
-            agree(&Filter::new(parts, COUNT));
-        }
-    }
-
-    fn agree(filter: &Filter) {
+        const NOISES: [&[(f64, f64)]; 3] = [&[(0.6, 0.8)], &[(0.6, 0.8), (0.2, 0.99)], &[(1.0, 0.9)]];
         for count in [1, 3, 8, 9, 17, 30] {
             let all = columns(count);
             let slices: Vec<&[f64]> = all.iter().map(Vec::as_slice).collect();
             let rows = Rows::new(&slices);
-            let white: Vec<Vec<f64>> = all.iter().map(|column| whitened(column, filter)).collect();
+            for length in [COUNT, COUNT / 2] {
+                let several = rows.whitened(&Noises::<3>::new(&NOISES), length);
+                let [alone, ..] = rows.whitened(&Noises::<1>::new(&NOISES[..1]), length);
+                let found = several.iter().zip(NOISES).chain([(&alone, NOISES[0])]);
+                for ((products, log_determinant), parts) in found {
+                    let (expected, of_whole) = whole(&all, parts, length);
+                    let close = |(a, b): (&f64, &f64)| (a - b).abs() < 1e-11 * (1.0 + b.abs());
+                    assert!(products.iter().zip(&expected).all(close), "{count} {length} {parts:?}");
+                    assert!((log_determinant - of_whole).abs() < 1e-11, "{log_determinant} {of_whole}");
+                }
+            }
             let before = |column: &Vec<f64>| {
                 let mut sum = 0.0;
                 let mut step = |entry: &f64| {
@@ -272,15 +295,13 @@ mod tests {
                 column.iter().map(&mut step).collect::<Vec<f64>>()
             };
             let sums: Vec<Vec<f64>> = all.iter().map(before).collect();
-            let (products, across) = (rows.whitened(filter, COUNT), rows.with_sums_before(0.8));
+            let across = rows.with_sums_before(0.8);
             for i in 0..count {
                 for j in 0..count {
-                    assert!((products[i * count + j] - dot(&white[i], &white[j])).abs() < 1e-12);
                     assert!((across[i * count + j] - dot(&all[i], &sums[j])).abs() < 1e-12);
                 }
-                assert!((filter.square(&all[i]) / dot(&white[i], &white[i]) - 1.0).abs() < 1e-13);
             }
         }
-        assert!(Rows::new(&[]).whitened(filter, COUNT).is_empty());
+        assert!(Rows::new(&[]).with_sums_before(0.8).is_empty());
     }
 }
