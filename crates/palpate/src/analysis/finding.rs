@@ -31,6 +31,13 @@ pub enum Finding {
         /// Share of the fitted relaxation that lies beyond the end of the hold.
         beyond: f64,
     },
+    /// The fitted equilibrium and its interval lie beyond zero, where the body would pull.
+    EquilibriumBeyondZero {
+        /// Equilibrium over the value at the end of the hold.
+        share: f64,
+        /// Its interval.
+        interval: (f64, f64),
+    },
     /// The data do not determine the exponent.
     ExponentUndetermined {
         /// Interval of the free exponent, if the fit converged.
@@ -177,6 +184,15 @@ pub enum Finding {
     },
     /// The record is one of stress, and no section was given.
     StressAsForce,
+    /// Rows of a clock that is coarser than the sampling were spread between its stamps.
+    StampsSpread {
+        /// Rows.
+        rows: usize,
+        /// Stamps among them.
+        stamps: usize,
+        /// From one to the next, s.
+        step: f64,
+    },
     /// Rows with the same time stamp were merged.
     StampsMerged {
         /// Rows before.

@@ -101,6 +101,17 @@ pub enum Correction {
         /// Those among them that repeated a row in all their values.
         identical: usize,
     },
+    /// Rows of a clock that is coarser than the sampling were spread evenly from each stamp to the next.
+    StampsSpread {
+        /// Whose stamps.
+        clock: Clock,
+        /// Rows.
+        rows: usize,
+        /// Stamps among them.
+        stamps: usize,
+        /// From one to the next, s.
+        step: f64,
+    },
     /// Rows of the file in which a cell holds no number were left out.
     RowsLeftOut {
         /// Rows of the file.
@@ -224,6 +235,15 @@ impl fmt::Display for Correction {
                 f,
                 "{clock}: {merged} of {rows} rows merged with the row of the same stamp ({identical} identical)"
             ),
+            Self::StampsSpread {
+                clock,
+                rows,
+                stamps,
+                step,
+            } => {
+                let step = significant(*step, 4);
+                write!(f, "{clock}: {rows} rows with {stamps} stamps {step} s apart spread evenly between them")
+            }
             Self::RowsLeftOut { rows, left_out, lines } => {
                 let named: Vec<String> = lines.iter().map(ToString::to_string).collect();
                 let line = if *left_out == 1 { "line" } else { "lines" };

@@ -136,6 +136,34 @@ mod tests {
         };
     }
 
+    #[test]
+    fn rows_of_a_clock_of_whole_seconds_are_spread_over_them() {
+        // Rates of a log with 20 rows a second and stamps in whole seconds were 25 % too low: each second was its mean at its beginning.
+        let time: Vec<f64> = (0..90).map(|i| f64::from((i + 13) / 20)).collect();
+        let force: Vec<f64> = (0..90).map(|i| f64::from(i * i)).collect();
+        let record = raw(&time, &force).into_record().unwrap();
+        assert_eq!(record.force(), force);
+        let off = |(i, t): (usize, &f64)| (t - 0.05 * (i as f64 + 13.0)).abs();
+        assert!(record.time().iter().enumerate().map(off).fold(0.0, f64::max) < 1e-12);
+        let [
+            Correction::StampsSpread {
+                rows: 90, stamps: 6, ..
+            },
+        ] = record.corrections()
+        else {
+            panic!("{:?}", record.corrections())
+        };
+        // Rows that repeat are one sample each, and a clock that skips a second says nothing of those between.
+        let rounded: Vec<f64> = force.iter().map(|force| (force / 2000.0).floor()).collect();
+        assert_eq!(raw(&time, &rounded).into_record().unwrap().time(), record.time());
+        let repeated: Vec<f64> = time.iter().map(|t| t * t).collect();
+        let skips: Vec<f64> = time.iter().map(|t| if *t > 2.0 { t + 1.0 } else { *t }).collect();
+        for (time, force) in [(&time, &repeated), (&skips, &force)] {
+            let record = raw(time, force).into_record().unwrap();
+            assert!(matches!(record.corrections(), [Correction::StampsMerged { merged: 84, .. }]));
+        }
+    }
+
     /// A buffer of four rows that was written after the next four.
     #[test]
     fn a_swapped_buffer_is_put_into_order() {

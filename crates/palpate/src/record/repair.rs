@@ -15,7 +15,8 @@ pub(super) struct Repaired {
     pub(super) done: Vec<Correction>,
 }
 
-/// Sorts the few rows that a buffer wrote too late, then merges rows of equal stamps into their mean.
+/// Sorts the few rows that a buffer wrote too late, then spreads the rows of a clock that is coarser than the sampling, or merges rows of equal
+/// stamps into their mean.
 ///
 /// A clock that starts again, or goes back far, is an error: nothing says which of the runs is meant.
 pub(super) fn repaired(clock: Clock, time: Vec<f64>, columns: Vec<Vec<f64>>) -> Result<Repaired, RecordError> {
@@ -86,7 +87,19 @@ impl Repaired {
         let ends = starts.iter().skip(1).copied().chain([rows]);
         let groups: Vec<(usize, usize)> = starts.iter().copied().zip(ends).collect();
         let same = |row: &usize| self.columns.iter().all(|values| values[*row] == values[row - 1]);
-        let identical = groups.iter().map(|(start, end)| (start + 1..*end).filter(same).count()).sum();
+        let repeated: Vec<usize> = groups.iter().map(|(start, end)| (start + 1..*end).filter(same).count()).collect();
+        let repeats = |((start, end), repeated): (&(usize, usize), &usize)| start + 1 + repeated == *end;
+        let repeating = groups.iter().zip(&repeated).filter(|pair| repeats(*pair)).count();
+        if let Some(step) = coarse_step(&self.time, &groups, repeating) {
+            self.spread(&groups, step);
+            self.done.push(Correction::StampsSpread {
+                clock,
+                rows,
+                stamps: groups.len(),
+                step,
+            });
+            return;
+        }
         let mean = |values: &[f64]| values.iter().sum::<f64>() / values.len() as f64;
         let merged = |values: &Vec<f64>| -> Vec<f64> {
             // The mean of one value must be that value to the last bit.
@@ -102,7 +115,44 @@ impl Repaired {
             clock,
             rows,
             merged: rows - starts.len(),
-            identical,
+            identical: repeated.iter().sum(),
         });
     }
+
+    /// Rows from one stamp to the next at equal distances; the first stamp may have begun before the record.
+    fn spread(&mut self, groups: &[(usize, usize)], step: f64) {
+        let whole = groups.iter().map(|(start, end)| end - start).max().unwrap_or(1);
+        let last = groups.len() - 1;
+        for (index, (start, end)) in groups.iter().enumerate() {
+            let count = if index == 0 || index == last { whole } else { end - start };
+            let before = if index == 0 { whole - (end - start) } else { 0 };
+            for row in *start..*end {
+                self.time[row] += step * (before + row - start) as f64 / count as f64;
+            }
+        }
+    }
+}
+
+/// The time between stamps of a clock that is coarser than the sampling, s: equal, with as many rows each to a tenth or one. `None` where rows
+/// rather repeat, or stamps are uneven.
+fn coarse_step(time: &[f64], groups: &[(usize, usize)], repeating: usize) -> Option<f64> {
+    /// Fewest stamps that say so, and rows of each.
+    const STAMPS: usize = 5;
+    const ROWS: usize = 2;
+    const ALIKE: f64 = 1e-6;
+    /// Of so many stamps one at least has rows of several values.
+    const VARY: usize = 20;
+    let inner = groups.get(1..groups.len() - 1).filter(|inner| inner.len() + 2 >= STAMPS)?;
+    let counts = || inner.iter().map(|(start, end)| end - start);
+    let (least, most) = (counts().min()?, counts().max()?);
+    let stamps: Vec<f64> = groups.iter().map(|(start, _)| time[*start]).collect();
+    let steps = || stamps.windows(2).map(|pair| pair[1] - pair[0]);
+    let step = (stamps[stamps.len() - 1] - stamps[0]) / (stamps.len() - 1) as f64;
+    let is_even = steps().all(|one| (one - step).abs() <= ALIKE * step);
+    let edges = [groups[0], groups[groups.len() - 1]];
+    let is_full =
+        least >= ROWS && most - least <= (most / 10).max(1) && edges.iter().all(|(start, end)| end - start <= most);
+    // In a hold values repeat that were rounded; rows that were written twice repeat all along.
+    let is_sampled = (groups.len() - repeating) * VARY >= groups.len();
+    (is_even && is_full && is_sampled).then_some(step)
 }

@@ -9,11 +9,16 @@ use palpate::test_problems::Rng;
 
 /// Two holds of 20 s with these exponents, noise of 1e-4 of the drop, fitted with a list.
 fn analysis(exponents: [f64; 2], listed: &[f64]) -> Analysis {
+    analysis_above(1.0, exponents, listed)
+}
+
+/// The same with another equilibrium.
+fn analysis_above(equilibrium: f64, exponents: [f64; 2], listed: &[f64]) -> Analysis {
     let mut random = Rng::new(7);
     let time: Vec<f64> = (0..2000).map(|i| 0.02 * f64::from(i)).collect();
     let value = |t: &f64| {
         let (start, exponent) = if *t < 20.0 { (0.0, exponents[0]) } else { (20.0, exponents[1]) };
-        1.0 + decay(5.0 * (t - start), exponent) + 1e-4 * random.normal()
+        equilibrium + decay(5.0 * (t - start), exponent) + 1e-4 * random.normal()
     };
     let force = time.iter().map(value).collect();
     let hold = |from, to| GivenHold { from, to, mode: None };
@@ -89,4 +94,25 @@ fn an_exponent_that_the_data_contradict_is_reported() {
     assert!(free.iter().all(|(_, exponent)| (exponent - 4.0).abs() < 0.1), "{free:?}");
     assert_eq!(reported([5.0, 5.0], &[1.0, 2.0, 3.0, 5.0, 7.0]), None);
     assert_eq!(reported([5.0, 3.0], &[3.0, 5.0]).map(|finding| finding.code()), Some("exponent_not_listed"));
+}
+
+#[test]
+fn an_equilibrium_at_which_a_pressed_body_would_pull_is_reported() {
+    // An indentation of 10 s had an equilibrium of −2.6 [−3.3, −1.8] N without a word.
+    let codes = |equilibrium| {
+        let analysis = analysis_above(equilibrium, [3.0, 3.0], &[2.0, 3.0, 5.0]);
+        let of_hold = |hold: &palpate::analysis::HoldAnalysis| {
+            hold.findings.iter().find(|finding| finding.code() == "equilibrium_beyond_zero").cloned()
+        };
+        analysis.holds.iter().map(of_hold).collect::<Vec<_>>()
+    };
+    for finding in codes(-0.03) {
+        let Some(Finding::EquilibriumBeyondZero { share, interval }) = finding else {
+            panic!("no finding")
+        };
+        // The force at the end is −0.03 + (1 + 2 · 5 · 20)^−½ = 0.0405.
+        assert!((share + 0.74).abs() < 0.05 && interval.0 < share && share < interval.1, "{share} {interval:?}");
+        assert!(interval.1 < 0.0, "{interval:?}");
+    }
+    assert_eq!(codes(0.0), [None, None]);
 }

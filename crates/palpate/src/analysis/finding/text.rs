@@ -30,12 +30,21 @@ impl Finding {
             Self::EquilibriumExtrapolated { beyond } => caution(
                 "equilibrium_extrapolated",
                 format!(
-                    "the hold covers {:.0} % of the fitted relaxation; {:.0} % lies beyond its end",
+                    "by the latency law, the hold covers {:.0} % of the relaxation; {:.0} % lies beyond its end",
                     100.0 * (1.0 - beyond),
                     100.0 * beyond
                 ),
                 "the estimated equilibrium depends on the exponent; a different exponent gives a different equilibrium",
                 "hold longer, or compare holds at one fixed exponent",
+            ),
+            Self::EquilibriumBeyondZero { share, interval } => caution(
+                "equilibrium_beyond_zero",
+                format!(
+                    "by the latency law, the equilibrium is {} of the force at the end of the hold, below zero",
+                    with_interval(*share, *interval)
+                ),
+                "a body that is only pressed does not pull at rest: the law falls too far beyond the end of the hold, or the zero of the force has shifted",
+                "do not use this equilibrium; hold longer, and check the tare of the load cell",
             ),
             Self::ExponentUndetermined { interval } => caution(
                 "exponent_undetermined",
@@ -171,7 +180,7 @@ impl Finding {
             Self::ResidualsCorrelated { correlation, independent } => caution(
                 "residuals_correlated",
                 format!(
-                    "neighbouring residuals have a correlation of {}; the samples are equivalent to {independent:.0} independent ones",
+                    "neighbouring residuals of the latency law have a correlation of {}; the samples are equivalent to {independent:.0} independent ones",
                     significant(*correlation, 2)
                 ),
                 "the law misses part of the shape, or the noise is slow (drift, quantisation); the intervals account for the correlation",
@@ -180,7 +189,7 @@ impl Finding {
             Self::NoiseUnexplained { noise, p_value } => caution(
                 "noise_unexplained",
                 format!(
-                    "no noise model describes the residuals: the closest is {noise}, {}",
+                    "no noise model describes the residuals of the latency law: the closest is {noise}, {}",
                     probability(*p_value)
                 ),
                 "the law misses part of the shape, or a vibration, steps or a controller act on the force; the intervals may be too narrow",
@@ -260,6 +269,12 @@ impl Finding {
                     .to_owned(),
                 "the forces are those on 1 m²; rates and exponents are unaffected",
                 "describe the body with its section (strip, cylinder or block), or read N as Pa",
+            ),
+            Self::StampsSpread { rows, stamps, step } => caution(
+                "stamps_spread",
+                format!("{rows} rows have {stamps} time stamps, {} s apart", significant(*step, 4)),
+                "the clock is coarser than the sampling; the rows of each stamp were spread evenly up to the next, as if sampled at a constant rate",
+                "write the time with more digits",
             ),
             Self::StampsMerged { rows, merged } => (
                 "stamps_merged",
@@ -440,7 +455,7 @@ impl Finding {
                     "sign_suspicious",
                     format!("the sign of the {column} may be reversed: it falls first, to {} {unit} below its start", significant(fall, 3)),
                     "compression, or stretch of a strip, must be positive; with the other sign loading reads as unloading",
-                    "if the file has the opposite sign, set sign = -1 for that column in the test description",
+                    "if the file has the opposite sign, give the unit of that column a minus sign, as in \"force=Load:-N\" of the columns, or set sign = -1 in the test description",
                 )
             }
             Self::RateCoefficientTrend { verdict, holds, slope, interval: (low, high) } => {

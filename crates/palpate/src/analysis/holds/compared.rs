@@ -66,6 +66,8 @@ fn means(values: &[f64]) -> Vec<f64> {
 fn drift(record: &Record, segment: &Segment) -> Option<Finding> {
     /// Of what it fell, and of the force's range in the record.
     const LEAST_SHARES: [f64; 2] = [0.03, 2e-3];
+    /// Samples at an end, or a hundredth of them.
+    const ENDS: usize = 3;
     let force = &record.force()[segment.fit_start..segment.end];
     if segment.after != Some(After::Loading) || force.len() < 3 * PARTS {
         return None;
@@ -75,5 +77,12 @@ fn drift(record: &Record, segment: &Segment) -> Option<Finding> {
     let (rise, fall) = (parts[PARTS - 1] - lowest, parts[0] - lowest);
     let observed = rise > OBSERVED * std::f64::consts::SQRT_2 * error_of_mean(force);
     let matters = rise > LEAST_SHARES[0] * fall && rise > LEAST_SHARES[1] * range(record.force());
-    (observed && matters).then_some(Finding::DriftInsteadOfRelaxation { rise, fall })
+    // Means of tenths tell a drift from noise; how far it goes is between its ends.
+    let first = mean(&force[..ENDS]);
+    let last = mean(&force[force.len() - (force.len() / 100).max(ENDS)..]);
+    let least = lowest.min(first);
+    (observed && matters).then_some(Finding::DriftInsteadOfRelaxation {
+        rise: last - least,
+        fall: if fall > 0.0 { first - least } else { 0.0 },
+    })
 }

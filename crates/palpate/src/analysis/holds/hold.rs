@@ -322,6 +322,16 @@ fn judge(hold: &mut HoldAnalysis) {
     if left > 0.2 {
         hold.findings.push(Finding::EquilibriumExtrapolated { beyond: left });
     }
+    if let Some((low, high)) = best.equilibrium().interval {
+        let end = best.predict(last);
+        let shares = if end < 0.0 { (high / end, low / end) } else { (low / end, high / end) };
+        if shares.1 < 0.0 && shares.0.is_finite() {
+            hold.findings.push(Finding::EquilibriumBeyondZero {
+                share: best.equilibrium().value / end,
+                interval: shares,
+            });
+        }
+    }
     let share = (best.predict(0.0) - best.predict(first_step)) / (best.predict(0.0) - best.predict(last));
     if share > 0.3 {
         hold.findings.push(Finding::SampledTooSlowly { share });

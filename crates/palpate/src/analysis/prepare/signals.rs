@@ -170,6 +170,7 @@ fn correction_findings(record: &Record) -> Vec<Finding> {
     let finding = |done: &Correction| match *done {
         Correction::StampsSorted { rows, largest, .. } => Some(Finding::StampsSorted { rows, largest }),
         Correction::StampsMerged { rows, merged, .. } => Some(Finding::StampsMerged { rows, merged }),
+        Correction::StampsSpread { rows, stamps, step, .. } => Some(Finding::StampsSpread { rows, stamps, step }),
         Correction::RowsAveraged { rows, averaged } => Some(Finding::RowsAveraged { rows, averaged }),
         Correction::StressAsForce => Some(Finding::StressAsForce),
         Correction::DropoutsReplaced { column, count } => Some(Finding::DropoutsRepaired { column, count }),
