@@ -2,6 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
+use super::margin::Margin;
 use super::{ALWAYS, Grip, GripError, Plan, PositionHold, bisected, check_duration};
 use crate::number::significant;
 use crate::simulate::step_ends;
@@ -114,11 +115,8 @@ impl Grip<'_> {
             let at = vec![start, start + duration.min(ALWAYS)];
             let predicted = self.predict(&plan.held(duration.min(ALWAYS)), at)?;
             let needed = self.needed_force(displacement);
-            let Some(errors) = &predicted.force_standard_error else {
-                return Ok(false);
-            };
-            let course = predicted.trajectory.force.iter().zip(errors);
-            Ok(course.into_iter().all(|(force, error)| force - factor * error >= needed))
+            let is_enough = |i: usize| Margin::of(&predicted, i).is_some_and(|margin| margin.least(factor) >= needed);
+            Ok((0..predicted.trajectory.force.len()).all(is_enough))
         };
         let (mut short, mut enough) = (least, least);
         // The limits end it: there is no turning point beyond them.

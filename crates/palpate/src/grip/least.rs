@@ -151,19 +151,17 @@ impl Grip<'_> {
         Ok(plan(found.1))
     }
 
-    /// Force at the end of a hold (or its bound of the level) less the one that is needed there, N.
+    /// Force at the end of a hold less the one that is needed there, N; with a level the least of its bounds over the hold.
     fn surplus(&self, plan: &Plan, duration: f64) -> Result<f64, GripError> {
-        let program = plan.held(duration.min(ALWAYS));
-        let ends = self.ends(&program)?;
+        if let Some(level) = self.level {
+            let factor = one_sided_factor(level, self.freedom());
+            let (margins, needed) = self.margins(plan, duration)?;
+            let least = margins.iter().map(|margin| margin.least(factor)).reduce(f64::min);
+            return Ok(least.unwrap_or(f64::NEG_INFINITY) - needed);
+        }
+        let ends = self.ends(&plan.held(duration.min(ALWAYS)))?;
         let end = ends.last().copied().unwrap_or_default();
-        let reserve = match self.level {
-            Some(level) => {
-                let error = self.force_error(&program, end.time)?.unwrap_or(f64::INFINITY);
-                one_sided_factor(level, self.freedom()) * error
-            }
-            None => 0.0,
-        };
-        Ok(end.force - reserve - self.needed_force(end.displacement))
+        Ok(end.force - self.needed_force(end.displacement))
     }
 
     /// The least squeeze (m) from `least` on, at the speed of the gripper, that holds for `duration` (s) with the probability which the verdict has to

@@ -6,6 +6,7 @@
 //! | `limits.rs` | what the gripper can do |
 //! | `plan.rs` | ways to close it |
 //! | `time_to_slip.rs` | how long a hold lasts |
+//! | `margin.rs` | how far a predicted force is from the one that is needed |
 //! | `position_hold.rs` | how long a squeeze holds, with an interval |
 //! | `least.rs` | the least squeeze, peak force or work that holds long enough |
 //! | `back_off.rs` | squeeze over, go back, and the force stays where it is |
@@ -24,6 +25,7 @@ mod force_hold;
 mod grasp;
 mod least;
 mod limits;
+mod margin;
 mod plan;
 mod position_hold;
 mod regrip;

@@ -2,6 +2,7 @@
 
 use std::cell::RefCell;
 
+use super::margin::Margin;
 use super::{ALWAYS, Grasp, GripError, Limits, Plan, PlanKind, TimeToSlip, check_confidence};
 use crate::calibrate::{Material, Prediction};
 use crate::simulate::{Contact, ProgramStep, Sampling, Separation, SimulateError, StepEnd, step_ends, work_by_step};
@@ -282,23 +283,28 @@ impl<'a> Grip<'a> {
     /// Where the band of the force falls below the needed one: both its edges, and the bound of the level on one side.
     fn slips(&self, plan: &Plan, end: &StepEnd, needed: f64) -> Result<BandSlips, GripError> {
         let program = plan.held(ALWAYS);
-        let edge = |off: &dyn Fn(&Prediction, usize) -> Option<f64>| {
+        let edge = |bound: &dyn Fn(&Prediction, usize) -> Option<f64>| {
             let mut surplus = |times: &[f64]| -> Result<Vec<f64>, GripError> {
                 let at = times.iter().map(|time| end.time + time).collect();
                 let predicted = self.predict(&program, at)?;
                 let forces = predicted.trajectory.force.iter().enumerate();
-                Ok(forces.map(|(i, force)| force + off(&predicted, i).unwrap_or(0.0) - needed).collect())
+                Ok(forces.map(|(i, force)| bound(&predicted, i).unwrap_or(*force) - needed).collect())
             };
             crossing(&mut surplus)
         };
-        let below = |predicted: &Prediction, i: usize| Some(-predicted.force_half_widths.as_ref()?[i].0);
-        let above = |predicted: &Prediction, i: usize| Some(predicted.force_half_widths.as_ref()?[i].1);
+        let [below, above] = [
+            edge(&|predicted, i| Some(predicted.force_interval(i)?.0))?,
+            edge(&|predicted, i| Some(predicted.force_interval(i)?.1))?,
+        ];
         let of_level = |level: f64| {
             let factor = one_sided_factor(level, self.freedom());
-            edge(&|predicted, i| Some(-factor * predicted.force_standard_error.as_ref()?[i]))
+            edge(&|predicted, i| Some(Margin::of(predicted, i)?.least(factor)))
         };
         let assured = self.level.map(of_level).transpose()?;
-        Ok((Some((edge(&below)?, edge(&above)?)), assured))
+        // Where standard errors reach farther than the band, what is assured with less certainty than the band has may end sooner.
+        let is_less_certain = self.level.is_some_and(|level| 1.0 - level >= 0.5 * (1.0 - self.confidence));
+        let soonest = assured.filter(|assured| is_less_certain && *assured < below);
+        Ok((Some((soonest.unwrap_or(below), above)), assured))
     }
 
     /// Degrees of freedom of the calibration.
@@ -306,8 +312,8 @@ impl<'a> Grip<'a> {
         self.material.uncertainty().map_or(f64::INFINITY, |uncertainty| uncertainty.freedom)
     }
 
-    /// The probability that a plan still holds after `duration` (s): that the force then is the needed one or more, for parameters as uncertain as the
-    /// calibration left them. `None` where it says nothing.
+    /// The probability that a plan still holds after `duration` (s): the least over the hold of that of the needed force or more, for parameters as
+    /// uncertain as the calibration left them. `None` where it says nothing.
     ///
     /// # Errors
     /// [`GripError::Simulate`] for a plan that cannot be simulated.
@@ -315,16 +321,20 @@ impl<'a> Grip<'a> {
         if self.material.uncertainty().is_none() {
             return Ok(None);
         }
-        let program = plan.held(duration.min(ALWAYS));
-        let ends = self.ends(&program)?;
-        let end = ends.last().copied().unwrap_or_default();
-        let surplus = end.force - self.needed_force(end.displacement);
-        Ok(self.force_error(&program, end.time)?.map(|error| self.probability_of(surplus, error)))
+        let (margins, needed) = self.margins(plan, duration)?;
+        let least = margins.iter().map(|margin| margin.deviations_above(needed)).fold(f64::INFINITY, f64::min);
+        Ok(Some(student_probability(least, self.freedom())))
     }
 
-    /// Standard error of the force at a time (s) of a program, N; `None` where it is not known.
-    pub(super) fn force_error(&self, program: &[ProgramStep], time: f64) -> Result<Option<f64>, GripError> {
-        Ok(self.predict(program, vec![time])?.force_standard_error.map(|errors| errors[0]))
+    /// The force of a plan while it is held for `duration` (s), and the one that is needed then, N; none where the calibration says nothing.
+    pub(super) fn margins(&self, plan: &Plan, duration: f64) -> Result<(Vec<Margin>, f64), GripError> {
+        let ends = self.ends(&plan.steps)?;
+        let end = ends.last().ok_or(SimulateError::EmptyProgram)?;
+        let duration = duration.min(ALWAYS);
+        let times = times_of_hold().take_while(|time| *time < duration).chain([duration]);
+        let predicted = self.predict(&plan.held(ALWAYS), times.map(|time| end.time + time).collect())?;
+        let margins = (0..predicted.trajectory.force.len()).filter_map(|i| Margin::of(&predicted, i)).collect();
+        Ok((margins, self.needed_force(end.displacement)))
     }
 
     /// The probability that something is above 0 which is estimated with this standard error.
@@ -368,16 +378,19 @@ pub(super) fn peak(ends: &[StepEnd]) -> f64 {
     ends.iter().map(|end| end.force).fold(0.0, f64::max)
 }
 
-/// The first time since the start of a hold at which a surplus of force falls below 0.
-fn crossing(surplus: &mut impl FnMut(&[f64]) -> Result<Vec<f64>, GripError>) -> Result<TimeToSlip, GripError> {
-    /// Times per decade, and the first power of ten.
+/// Times since the start of a hold between which a force may fall below another: 0, the same number of times in each decade, and the longest.
+fn times_of_hold() -> impl Iterator<Item = f64> {
     const PER_DECADE: i32 = 8;
     const FIRST: i32 = -4;
     let decades = ALWAYS.log10() - f64::from(FIRST);
     let count = (decades * f64::from(PER_DECADE)).ceil() as i32;
-    let mut times = vec![0.0];
-    times.extend((0..count).map(|i| 10f64.powf(f64::from(FIRST) + f64::from(i) / f64::from(PER_DECADE))));
-    times.push(ALWAYS);
+    let rising = (0..count).map(|i| 10f64.powf(f64::from(FIRST) + f64::from(i) / f64::from(PER_DECADE)));
+    std::iter::once(0.0).chain(rising).chain([ALWAYS])
+}
+
+/// The first time since the start of a hold at which a surplus of force falls below 0.
+fn crossing(surplus: &mut impl FnMut(&[f64]) -> Result<Vec<f64>, GripError>) -> Result<TimeToSlip, GripError> {
+    let times: Vec<f64> = times_of_hold().collect();
     let values = surplus(&times)?;
     let Some(short) = values.iter().position(|value| *value < 0.0) else {
         return Ok(TimeToSlip::Never);

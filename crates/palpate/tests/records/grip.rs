@@ -206,6 +206,41 @@ fn the_least_squeeze_holds_as_long_as_was_requested_and_less_does_not() {
     assert_eq!(self::grip(&ball(None), 0.25).probability(&best.plan, 60.0), Ok(None));
 }
 
+/// A record of one hold: the exponent is 2.2, or 0.005 to 990, and every other parameter goes with it.
+fn hardly_determined() -> Material {
+    let mut parts = ball(Some([0.1; 4])).into_parts();
+    for (parameter, value) in parts.parameters.iter_mut().zip([36_688.0, 2.2425, 8.076, 0.014_395]) {
+        parameter.estimate.value = value;
+    }
+    let uncertainty = parts.uncertainty.as_mut().unwrap();
+    uncertainty.freedom = 916.0;
+    uncertainty.covariance = vec![
+        vec![1.625_021, -3.813_909, -17.600_371, 1.560_975],
+        vec![-3.813_909, 9.637_354, 45.921_755, -3.712_727],
+        vec![-17.600_371, 45.921_755, 222.356_438, -17.225_632],
+        vec![1.560_975, -3.712_727, -17.225_632, 1.562_223],
+    ];
+    Material::new(parts).unwrap()
+}
+
+#[test]
+fn a_verdict_agrees_with_its_probability_where_hardly_anything_is_determined() {
+    // "No: … holds for 60.0 s with a probability of 95 %; 95 % are required": the bound of the force fell below the needed one before 60 s.
+    let material = hardly_determined();
+    let question = Question {
+        duration: Some(60.0),
+        ..Question::default()
+    };
+    for mass in [0.03, 0.05] {
+        let answer = grip(&material, mass).answer(&question).unwrap();
+        let found = &answer.squeeze.as_ref().unwrap().found;
+        let probability = answer.probability.unwrap();
+        assert!(answer.holds().unwrap() && probability > 0.95 - 1e-9, "{mass}: {probability}");
+        assert!(found.assured.unwrap().covers(60.0 * (1.0 - 1e-6)), "{mass}: {:?}", found.assured);
+        assert!(found.interval.unwrap().0 <= found.assured.unwrap(), "{mass}: {found:?}");
+    }
+}
+
 #[test]
 fn after_a_retreat_the_force_stays_where_it_is() {
     let material = ball(Some([0.02, 0.01, 0.05, 0.01]));
