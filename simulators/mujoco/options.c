@@ -40,6 +40,32 @@ static int object_of(const mjModel* m, int instance, const char* key, int type, 
   return id;
 }
 
+/* Refuses keys that a contact of the other kind has. */
+static void refuse_keys(const mjModel* m, int instance, const char* const* keys, const char* other) {
+  for (; *keys; keys++) {
+    if (text_of(m, instance, *keys)) {
+      mju_error("%s \"%s\": %s: expected none with %s", CONTACT_PLUGIN, name_of(m, instance), *keys, other);
+    }
+  }
+}
+
+/* Refuses a body that the engine may put to sleep: nothing wakes it when a contact presses it that the engine does not know of. */
+static void refuse_sleep(const mjModel* m, int instance, int body) {
+#ifdef mjMINAWAKE
+  const int tree = m->body_treeid[body];
+  const int policy = tree < 0 ? mjSLEEP_NEVER : m->tree_sleep_policy[tree];
+  const char* name = mj_id2name(m, mjOBJ_BODY, m->body_rootid[body]);
+  if ((m->opt.enableflags & mjENBL_SLEEP) && policy != mjSLEEP_NEVER && policy != mjSLEEP_AUTO_NEVER) {
+    mju_error("%s \"%s\": the body \"%s\" may fall asleep, and this contact does not wake it: set sleep=\"never\" on it", CONTACT_PLUGIN,
+              name_of(m, instance), name ? name : "without a name");
+  }
+#else
+  (void)m;
+  (void)instance;
+  (void)body;
+#endif
+}
+
 static void read_model(const mjModel* m, int instance, contact* c) {
   const char* path = text_of(m, instance, "material");
   const char* text = text_of(m, instance, "description");
@@ -63,6 +89,9 @@ static void read_model(const mjModel* m, int instance, contact* c) {
 }
 
 static void read_joint(const mjModel* m, int instance, contact* c) {
+  static const char* const others[] = {"friction", "torsional_friction", "tangential_stiffness", "tangential_damping", NULL};
+  refuse_keys(m, instance, others, "a joint");
+  refuse_sleep(m, instance, m->jnt_bodyid[c->joint]);
   if (m->jnt_type[c->joint] != mjJNT_SLIDE) {
     mju_error("%s \"%s\": joint: expected a slide joint, found another", CONTACT_PLUGIN, name_of(m, instance));
   }
@@ -110,7 +139,11 @@ static double own_tangential_damping(const mjModel* m, const contact* c) {
 }
 
 static void read_geoms(const mjModel* m, int instance, contact* c) {
+  static const char* const others[] = {"closing", "touch", NULL};
   const mjtNum *friction1, *friction2;
+  refuse_keys(m, instance, others, "geoms");
+  refuse_sleep(m, instance, m->geom_bodyid[c->geom1]);
+  refuse_sleep(m, instance, m->geom_bodyid[c->geom2]);
   if (m->geom_bodyid[c->geom1] == m->geom_bodyid[c->geom2]) {
     mju_error("%s \"%s\": expected geoms of two bodies, found two of one", CONTACT_PLUGIN, name_of(m, instance));
   }

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field, fields
+from os import PathLike
 from typing import Any, Literal
 
 import numpy as np
@@ -39,7 +40,7 @@ class SoftGripTask:
     1.961
     """
 
-    #: The body: a description as for `palpate.ContactStates`, or a `palpate.Material`.
+    #: The body: a description as for `palpate.ContactStates`, a `palpate.Material`, or the path of a file of either.
     model: Any = field(default_factory=lambda: BALL)
     #: What an action is: a displacement that the jaw goes to, a force, or where a spring pulls the finger.
     control: Control = "position"
@@ -85,6 +86,8 @@ class SoftGripTask:
         if isinstance(self.substeps, bool) or not isinstance(self.substeps, int) or self.substeps < 1:
             raise OptionError(f"substeps: expected a whole number, 1 or more, found {self.substeps!r}")
         if self.posterior:
+            if isinstance(self.model, (str, PathLike)):
+                object.__setattr__(self, "model", Material.read(self.model))
             _posterior(self.model)
         for name, ends in self.ranges.items():
             if name not in (*OF_BODY, *OF_LOAD):
@@ -120,7 +123,7 @@ def _ends(name: str, ends: Any) -> tuple[float, float]:
 def _posterior(model: Any) -> tuple[tuple[str, ...], NDArray[np.float64], NDArray[np.float64]]:
     """Names of the parameters of a material, the means of their logarithms, and a root of the covariance of these."""
     if not isinstance(model, Material):
-        raise OptionError(f"posterior: expected a palpate.Material as the model, found {type(model).__name__}\nhint: Record.calibrate(...).material is one")
+        raise OptionError(f"posterior: expected a palpate.Material as the model, found {type(model).__name__}\nhint: palpate.Material.read(path) and Record.calibrate(...).material are some")
     covariance = model.log_covariance
     if covariance is None:
         raise OptionError("posterior: expected a material with a covariance, found one whose record leaves a parameter open")

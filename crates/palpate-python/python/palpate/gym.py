@@ -132,6 +132,8 @@ class SoftGripVectorEnv(VectorEnv[_Floats, _Floats, NDArray[Any]]):
         self.observation_space = batch_space(self.single_observation_space, self.num_envs)
         self.action_space = batch_space(self.single_action_space, self.num_envs)
         self.copy, self._episode = copy, max_episode_steps
+        #: Steps that the last observation counts as 1.
+        self._span = max_episode_steps or EPISODE
         self.bodies = Bodies(self.task, self.num_envs)
         self.contacts = ContactStates(self.task.model, self.num_envs)
         zeros = [np.zeros(self.num_envs) for _ in range(7)]
@@ -261,7 +263,7 @@ class SoftGripVectorEnv(VectorEnv[_Floats, _Floats, NDArray[Any]]):
         np.multiply(self._jaw, 1.0 / task.travel_m, out=observed[:, 0], casting="same_kind")
         np.multiply(self._force, 1.0 / task.force_n, out=observed[:, 1], casting="same_kind")
         np.multiply(self._load, 0.5 / (task.friction * task.force_n), out=observed[:, 2], casting="same_kind")
-        np.multiply(self._steps, 1.0 / (self._episode or EPISODE), out=observed[:, 3], casting="same_kind")
+        np.multiply(self._steps, 1.0 / self._span, out=observed[:, 3], casting="same_kind")
         np.clip(observed, 0.0, self.single_observation_space.high, out=observed)  # type: ignore[attr-defined]
 
     def _shown(self) -> _Floats:
@@ -295,6 +297,9 @@ class SoftGripEnv(gymnasium.Env[_Floats, _Floats]):
         """Begins a new episode."""
         super().reset(seed=seed)
         self._envs.np_random = self.np_random
+        # `gymnasium.make` keeps the length of an episode to itself, in the specification.
+        if self.spec is not None and self.spec.max_episode_steps:
+            self._envs._span = self.spec.max_episode_steps
         observations, _ = self._envs.reset()
         return observations[0], {}
 

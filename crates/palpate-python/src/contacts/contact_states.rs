@@ -9,7 +9,7 @@ use pyo3::types::{PyDict, PyType};
 
 use super::columns::{Values, marks, results};
 use super::states_made::{MOST, models_given, models_kept, numbers, rows_of};
-use super::states_memory::Memory;
+use super::states_memory::{Lined, Memory};
 use crate::arrays::AT_ONCE;
 use crate::errors::{ModelError, OptionError, PalpateError, one_of, refused_plainly};
 use crate::pickles::{Made, PICKLE, Piece, Pieces, check_pickle, in_pieces};
@@ -93,9 +93,9 @@ struct Request<'a, 'py> {
 }
 
 impl ContactStates {
-    fn new_of(models: ContactModels, count: usize, texts: Vec<String>, states: Vec<f64>) -> Self {
+    fn new_of(models: ContactModels, count: usize, texts: Vec<String>, states: &[f64]) -> Self {
         Self {
-            states: Memory::Own(states),
+            states: Memory::Own(Lined::new(states)),
             failed: vec![false; count],
             models,
             count,
@@ -195,7 +195,7 @@ impl ContactStates {
         Ok(Self {
             models: self.models.clone(),
             count: self.count,
-            states: Memory::Own(self.states.read(py, self.shape())?.slice()?.to_vec()),
+            states: Memory::Own(Lined::new(self.states.read(py, self.shape())?.slice()?)),
             failed: self.failed.clone(),
             texts: self.texts.clone(),
         })
@@ -263,7 +263,7 @@ shown! {
         ];
         let (models, count, texts) = models_given(model, count, &given)?;
         let states = vec![0.0; models.rows() * count];
-        Ok(Self::new_of(models, count, texts, states))
+        Ok(Self::new_of(models, count, texts, &states))
     }
 
     /// The states, a row each, in place: what is written there is the state. Columns are one contact's share of the displacement of the
@@ -498,7 +498,7 @@ shown! {
             return Err(refused_plainly::<ModelError>(message));
         }
         briefly(py, || models.check_states(&states, count))?.map_err(refused_plainly::<ModelError>)?;
-        Ok(Self::new_of(models, count, texts, states))
+        Ok(Self::new_of(models, count, texts, &states))
     }
 
     #[expect(clippy::type_complexity, reason = "what pickle asks for")]

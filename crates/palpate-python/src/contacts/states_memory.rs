@@ -12,9 +12,36 @@ use crate::errors::{OptionError, refused_plainly};
 /// That nobody else uses an array takes as long to find out as a step of some contacts, so that there is none before it is wanted.
 pub(super) enum Memory {
     /// Numbers that nobody else sees.
-    Own(Vec<f64>),
+    Own(Lined),
     /// An array of Python's; Python may have changed what it is, so that it is looked at again.
     Array(Py<PyAny>),
+}
+
+/// Numbers that begin at a cache line: vectors of eight that cross one take longer to load and to store.
+pub(super) struct Lined {
+    numbers: Vec<f64>,
+    from: usize,
+}
+
+impl Lined {
+    pub(super) fn new(numbers: &[f64]) -> Self {
+        /// Bytes of a cache line, and the numbers less one that lie in it.
+        const LINE: usize = 64;
+        const BEFORE: usize = LINE / size_of::<f64>() - 1;
+        let mut lined: Vec<f64> = Vec::with_capacity(numbers.len() + BEFORE);
+        let from = lined.as_ptr().align_offset(LINE).min(BEFORE);
+        lined.resize(from, 0.0);
+        lined.extend_from_slice(numbers);
+        Self { numbers: lined, from }
+    }
+
+    fn slice(&self) -> &[f64] {
+        &self.numbers[self.from..]
+    }
+
+    fn slice_mut(&mut self) -> &mut [f64] {
+        &mut self.numbers[self.from..]
+    }
 }
 
 /// States that are read.
@@ -34,7 +61,7 @@ impl Memory {
     pub(super) fn array<'py>(&mut self, py: Python<'py>, shape: [usize; 2]) -> PyResult<&Bound<'py, PyAny>> {
         if let Self::Own(numbers) = self {
             let array = PyArray2::<f64>::zeros(py, shape, false);
-            array.try_readwrite().map_err(in_use)?.as_slice_mut()?.copy_from_slice(numbers);
+            array.try_readwrite().map_err(in_use)?.as_slice_mut()?.copy_from_slice(numbers.slice());
             *self = Self::Array(array.into_any().unbind());
         }
         match self {
@@ -45,14 +72,14 @@ impl Memory {
 
     pub(super) fn read<'py>(&self, py: Python<'py>, shape: [usize; 2]) -> PyResult<Reading<'_, 'py>> {
         match self {
-            Self::Own(numbers) => Ok(Reading::Own(numbers)),
+            Self::Own(numbers) => Ok(Reading::Own(numbers.slice())),
             Self::Array(array) => checked(array.bind(py), shape)?.try_readonly().map_err(in_use).map(Reading::Array),
         }
     }
 
     pub(super) fn write<'py>(&mut self, py: Python<'py>, shape: [usize; 2]) -> PyResult<Writing<'_, 'py>> {
         match self {
-            Self::Own(numbers) => Ok(Writing::Own(numbers)),
+            Self::Own(numbers) => Ok(Writing::Own(numbers.slice_mut())),
             Self::Array(array) => checked(array.bind(py), shape)?.try_readwrite().map_err(in_use).map(Writing::Array),
         }
     }

@@ -263,6 +263,29 @@ def test_bodies_are_drawn_from_the_covariance_of_a_calibration() -> None:
     envs.step(pushed(envs, 0.3))
 
 
+@pytest.mark.filterwarnings("ignore::palpate.PalpateWarning")
+def test_a_file_of_a_material_has_its_covariance(tmp_path: Path) -> None:
+    path = tmp_path / "material.toml"
+    calibrated().write(path)
+    envs = SoftGripVectorEnv(3, model=path, posterior=True)
+    envs.reset(seed=1)
+    assert len(np.unique(envs.bodies.of_body["modulus_pa"])) == 3
+
+
+@pytest.mark.parametrize("steps", [100, 1000])
+def test_the_time_that_is_observed_is_that_of_the_episode_however_it_is_made(steps: int) -> None:
+    # `gymnasium.make` did not pass the length on: the time went to 0.2 within 100 steps, and was 1 from step 500 of 1000 on.
+    env = gymnasium.make("palpate/SoftGrip-v0", max_episode_steps=steps, control="force", mass_kg=0.01)
+    envs = gymnasium.make_vec("palpate/SoftGrip-v0", 1, max_episode_steps=steps, control="force", mass_kg=0.01)
+    env.reset(seed=0), envs.reset(seed=0)
+    action = np.array([-0.2], np.float32)
+    for step in range(1, steps + 1):
+        observed, _, _, truncated, _ = env.step(action)
+        of_vector = envs.step(action[None])[0]
+        assert observed[3] == of_vector[0, 3] == pytest.approx(step / steps, rel=1e-6)
+    assert truncated
+
+
 def test_draws_that_are_no_body_are_repeated() -> None:
     # Layers cannot be thicker than the ball of 35 mm: half of the draws are none.
     envs = SoftGripVectorEnv(300, ranges={"layer_thickness_m": (0.03, 0.04)})

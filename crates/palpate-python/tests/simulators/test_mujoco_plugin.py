@@ -390,14 +390,34 @@ def test_a_reset_in_the_middle_begins_with_an_untouched_body() -> None:
     ({"joint": "jaw", "material": "ball.toml"}, "expected one of the keys material (a file) and description (its text), found both"),
     ({"joint": "jaw", "description": "[specimen]"}, "specimen"),
     ({"joint": "jaw", "description": None, "material": "/no/such.toml"}, "/no/such.toml"),
+    ({"joint": "jaw", "friction": "0.5"}, "friction: expected none with a joint"),
+    ({"geom1": "jaw", "geom2": "wall", "touch": "0.1"}, "touch: expected none with geoms"),
 ])
 def test_wrong_configurations_are_refused_with_a_reason(keys: dict[str, Any], expected: str) -> None:
     configured = {"description": DESCRIPTION.replace("\n", "&#10;"), **keys}
     lines = "".join(f'<config key="{key}" value="{value}"/>' for key, value in configured.items() if value is not None)
     xml = f"""<mujoco><extension><plugin plugin="palpate.contact"><instance name="grip">{lines}</instance></plugin></extension>
-      <worldbody><body><joint name="jaw" type="slide"/><geom name="jaw" size="0.01" mass="1"/></body></worldbody></mujoco>"""
+      <worldbody><geom name="wall" size="1 1 1" type="plane"/>
+      <body><joint name="jaw" type="slide"/><geom name="jaw" size="0.01" mass="1"/></body></worldbody></mujoco>"""
     with pytest.raises((ValueError, mujoco.FatalError), match=re.escape(expected)):
         mujoco.MjData(mujoco.MjModel.from_xml_string(xml))
+
+
+@pytest.mark.skipif(not hasattr(mujoco, "mjtSleepPolicy"), reason="this version does not put bodies to sleep")
+def test_a_body_that_may_fall_asleep_is_refused() -> None:
+    # A ball that slept on the table stayed there while the fingers closed on it and rose.
+    description = DESCRIPTION.replace("\n", "&#10;")
+    lines = "".join(f'<config key="{key}" value="{value}"/>' for key, value in {"description": description, "geom1": "table", "geom2": "ball"}.items())
+
+    def data(sleep: str) -> Any:
+        return mujoco.MjData(mujoco.MjModel.from_xml_string(f"""<mujoco><option><flag sleep="enable"/></option>
+          <extension><plugin plugin="palpate.contact"><instance name="grip">{lines}</instance></plugin></extension>
+          <worldbody><geom name="table" size="1 1 1" type="plane"/>
+            <body name="ball" {sleep}><freejoint/><geom name="ball" size="0.035" mass="0.1"/></body></worldbody></mujoco>"""))
+
+    with pytest.raises(mujoco.FatalError, match='the body "ball" may fall asleep, and this contact does not wake it: set sleep="never" on it'):
+        data("")
+    assert data('sleep="never"').time == 0.0
 
 
 def test_a_sensor_needs_an_instance_of_a_contact() -> None:
