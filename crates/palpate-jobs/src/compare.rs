@@ -72,6 +72,12 @@ pub struct Compare {
     pub fit_until_s: Option<f64>,
 }
 
+/// The first of some cut points that is no share of a hold.
+#[must_use]
+pub fn no_share(cuts: &[f64]) -> Option<f64> {
+    cuts.iter().copied().find(|cut| !(*cut > 0.0 && *cut < 1.0))
+}
+
 /// Records with the laws compared on their holds.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Compared {
@@ -113,6 +119,10 @@ impl Compare {
             ));
         }
         if let Some(cuts) = &self.cuts {
+            if let Some(cut) = no_share(cuts) {
+                let message = format!("⟨cuts⟩ are shares of the hold between 0 and 1, found {cut}");
+                return Err(JobError::option(message, "0.25,0.5 fits a quarter and a half of the hold"));
+            }
             compared.cuts.clone_from(cuts);
             compared.cuts.sort_by(f64::total_cmp);
             compared.cuts.dedup();

@@ -54,7 +54,7 @@ pub use analyze::{Analyze, Analyzed};
 pub use batch::{Batch, BatchAnswer, Batched, BatchedTest, CurveMap, Refused, Spread};
 pub use calibrate::{Calibrate, Calibrated, Equilibrium};
 pub use calibrate_several::{CalibrateSeveral, CalibratedSeveral};
-pub use compare::{Compare, Compared};
+pub use compare::{Compare, Compared, no_share};
 pub use convert::{Convert, Converted};
 pub use depends::BUILD;
 pub use error::{ErrorKind, JobError};

@@ -87,8 +87,7 @@ pub(crate) fn unwritten(error: JobError) -> PyErr {
     PyErr::new::<PalpateError, _>(reported(message, error.hint))
 }
 
-/// An option of a job as a keyword, with its unit; thresholds of phases stand in the description of a test, and only a hold that is fitted by
-/// itself has a loss.
+/// An option of a job as a keyword, with its unit; thresholds of phases stand in the description of a test, which every job takes.
 pub(crate) fn keyword(name: &str, value: Option<&str>) -> String {
     let (job, name) = name.split_once('/').map_or((None, name), |(job, name)| (Some(job), name));
     let unit = match name {
@@ -104,7 +103,6 @@ pub(crate) fn keyword(name: &str, value: Option<&str>) -> String {
         None => format!("{name}{unit}"),
     };
     match job {
-        Some(_) if name == "loss" => format!("palpate.fit({written})"),
         Some(job) => format!("{job}({written})"),
         None => written,
     }

@@ -5,7 +5,8 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use palpate::laws::Law;
-use palpate_files::description::{NamedColumns, parse_test, read_material};
+use palpate::segment::HoldStart;
+use palpate_files::description::{NamedColumns, parse_hold_start, parse_test, read_material};
 use palpate_jobs::input::{Described, Fetch, NamedFile, NamedRecords, OpenedFile};
 use palpate_jobs::output::write_bundle;
 use palpate_jobs::{
@@ -232,6 +233,8 @@ pub(crate) fn convert(
 ///     Method of the intervals of fits: "automatic" (if left out), "curvature", "profile" or "bootstrap".
 /// fit_until_s
 ///     Fit only this long from the start of each hold, s.
+/// hold_start
+///     Where the fit of a hold starts: "peak", "settled" or "peak + 0.5 s"; that of the description, or "peak", if left out.
 /// map
 ///     Quantities to draw as maps over the positions of the curves, by the names that `BatchResult.map` takes; each goes into a file
 ///     beside the table, or into FILE (.svg, .png or .pdf) of "NAME=FILE".
@@ -255,7 +258,7 @@ pub(crate) fn convert(
 /// OptionError, OSError
 ///     A description or a law that is wrong, a table that cannot be written.
 #[pyfunction]
-#[pyo3(signature = (paths, out, *, test=None, columns=None, laws=None, intervals=None, fit_until_s=None, map=None, csv_locale=None, restart=false, shard=None, threads=None))]
+#[pyo3(signature = (paths, out, *, test=None, columns=None, laws=None, intervals=None, fit_until_s=None, hold_start=None, map=None, csv_locale=None, restart=false, shard=None, threads=None))]
 #[expect(clippy::too_many_arguments, reason = "keywords of Python")]
 pub(crate) fn batch(
     py: Python<'_>,
@@ -266,6 +269,7 @@ pub(crate) fn batch(
     laws: Option<Listed<String>>,
     intervals: Option<&str>,
     #[pyo3(from_py_with = quantity::seconds)] fit_until_s: Option<f64>,
+    hold_start: Option<&str>,
     map: Option<Vec<String>>,
     csv_locale: Option<&str>,
     restart: bool,
@@ -277,15 +281,20 @@ pub(crate) fn batch(
         laws: laws.map(|laws| all_laws(&laws)).transpose()?,
         intervals: intervals.map(fit::intervals).transpose()?,
         fit_until_s,
+        hold_start: hold_start.map(start_of_holds).transpose()?,
         map: map.unwrap_or_default(),
         csv_locale: readers(csv_locale)?,
         restart,
         shard: shard.map(self::shard).transpose()?,
         threads: threads.map(|threads| threads.0),
-        ..Batch::default()
     };
     let done = writing_job(py, move |watch| question.run(NamedRecords::find(files, described)?, &out, watch))?;
     Ok(done.result.into())
+}
+
+/// Where the fit of a hold starts, as a keyword says it.
+pub(crate) fn start_of_holds(text: &str) -> PyResult<HoldStart> {
+    parse_hold_start(text).map_err(|error| refused_plainly::<OptionError>(format!("hold_start: {error}")))
 }
 
 impl From<Batched> for BatchResult {

@@ -40,6 +40,39 @@ def test_an_analysis_is_that_of_the_command_line_to_the_last_bit(root: Path) -> 
 
 
 @pytest.mark.filterwarnings("ignore::palpate.PalpateWarning")
+def test_options_of_the_command_line_are_keywords(root: Path) -> None:
+    # How a hold is found and where it starts could only be stated in a description.
+    record = root / "examples/records/ball.csv"
+    read = palpate.read(record)
+
+    def printed(*arguments: str) -> dict[str, Any]:
+        reported = command(*arguments, str(record), "--format", "json")
+        assert reported.returncode == 0, reported.stderr
+        found: dict[str, Any] = json.loads(reported.stdout)
+        return found
+
+    flags = ("--hold-start", "peak + 0.5 s", "--touch", "1 mm", "--tolerance", "0.2 mm", "--minimum-hold", "4 s")
+    expected = printed("analyze", *flags)
+    found = read.analyze(hold_start="peak + 0.5 s", touch=1e-3, tolerance_m=2e-4, minimum_hold_s=4.0).to_dict()
+    assert found == expected
+    assert found["holds"] != read.analyze().to_dict()["holds"]
+    assert read.analyze(touch="1 mm", compare=False).to_dict() == read.analyze(touch=1e-3, compare=False).to_dict()
+    robust = printed("compare", "--loss", "huber", "--samples", "log:200", "--ramps", "measured", "--laws", "latency:5,prony:2")
+    compared = read.compare(loss="huber", samples="log:200", ramps="measured", laws=["latency:5", "prony:2"]).to_dict()
+    assert compared == robust
+    wrong: dict[str, Callable[[], Any]] = {
+        "hold_start: .*expected .*peak.*found": lambda: read.analyze(hold_start="later"),
+        "touch: .*expected": lambda: read.analyze(touch="somewhere"),
+        r"samples: expected at least 10 samples, such as log:400, found \"log:3\"": lambda: read.compare(samples="log:3"),
+        "ramps is one of": lambda: read.compare(ramps="ramp"),  # type: ignore[arg-type] # pyright: ignore
+        "loss is one of": lambda: read.compare(loss="l1"),  # type: ignore[arg-type] # pyright: ignore
+    }
+    for message, call in wrong.items():
+        with pytest.raises(palpate.OptionError, match=message):
+            call()
+
+
+@pytest.mark.filterwarnings("ignore::palpate.PalpateWarning")
 def test_a_table_says_how_it_is_indexed(root: Path) -> None:
     table = palpate.read(root / "examples/records/ball.csv", test=root / "examples/records/ball.toml").analyze(compare=False).holds
     with pytest.raises(TypeError, match=r"by the name of a column or the number of a row; found 0.5, columns are index, "):

@@ -132,6 +132,7 @@ const FORCE: &[(&str, f64)] = &[
     ("N", 1.0),
     ("kN", 1e3),
     ("daN", 10.0),
+    ("cN", 1e-2),
     ("mN", 1e-3),
     ("µN", 1e-6),
     ("uN", 1e-6),
@@ -140,6 +141,7 @@ const FORCE: &[(&str, f64)] = &[
     ("gf", KILOGRAM_FORCE * 1e-3),
     ("kgf", KILOGRAM_FORCE),
     ("lbf", POUND_FORCE),
+    ("ozf", POUND_FORCE / 16.0),
 ];
 const PRESSURE: &[(&str, f64)] = &[
     ("Pa", 1.0),

@@ -2,6 +2,8 @@
 //!
 //! Units are recognised here, never interpreted: what comes out is the text as written less its brackets.
 
+use palpate::units::{self, Dimension};
+
 /// Words that units are made of, in lower case.
 const WORDS: &[&str] = &[
     // time and frequency
@@ -11,8 +13,9 @@ const WORDS: &[&str] = &[
     "小时", // length and angle
     "m", "dm", "cm", "mm", "um", "µm", "μm", "nm", "pm", "km", "in", "inch", "inches", "\"", "ft", "mil", "deg", "°",
     "rad", "mrad", "米", "厘米", "毫米", "微米", "度", // force and mass
-    "n", "dan", "cn", "kn", "mn", "un", "µn", "μn", "nn", "pn", "newton", "newtons", "lbf", "kip", "lb", "lbs", "kgf",
-    "gf", "g", "kg", "mg", "ug", "µg", "μg", "牛", "牛顿", "千牛", "毫牛", "克", "千克", // stress and pressure
+    "n", "dan", "cn", "kn", "mn", "un", "µn", "μn", "nn", "pn", "newton", "newtons", "lbf", "ozf", "kip", "lb", "lbs",
+    "kgf", "gf", "g", "kg", "mg", "ug", "µg", "μg", "牛", "牛顿", "千牛", "毫牛", "克",
+    "千克", // stress and pressure
     "pa", "hpa", "kpa", "mpa", "gpa", "psi", "ksi", "bar", "mbar", "atm", "帕", "千帕", "兆帕",
     // ratios and arbitrary units
     "%", "pct", "percent", "ppm", "strain", "1", "au", "a", "u", "count", "counts", "cycle", "cycles", "segment",
@@ -122,9 +125,19 @@ fn behind_slash(cell: &str) -> Option<(&str, &str)> {
     let (name, unit) = match cell.split_once(" / ") {
         Some(parts) => parts,
         // "mm/s" is a unit, no name with a unit.
-        None => cell.split_once('/').filter(|(name, _)| !is_known(name))?,
+        None => cell.split_once('/').filter(|(name, unit)| !is_known(name) || is_symbol_of(name, unit))?,
     };
     (!name.trim().is_empty() && is_known(unit)).then_some((name, unit))
+}
+
+/// Whether a letter that is a unit as well is the symbol of a quantity in this unit: "F/mN", "s/mm".
+fn is_symbol_of(name: &str, unit: &str) -> bool {
+    let dimension = match name {
+        "F" => Dimension::Force,
+        "s" => Dimension::Length,
+        _ => return false,
+    };
+    units::factor(&narrow(unit), dimension).is_some()
 }
 
 fn behind_word(cell: &str) -> Option<(&str, &str)> {
@@ -155,6 +168,8 @@ mod tests {
             ("Time_min", "Time", "min"),
             ("Displacement / mm", "Displacement", "mm"),
             ("Weg/mm", "Weg", "mm"),
+            ("F/mN", "F", "mN"),
+            ("s/um", "s", "um"),
             ("Stress (N/mm²)", "Stress", "N/mm²"),
             ("k (N/(m s))", "k", "N/(m s)"),
             ("时间（秒）", "时间", "秒"),
@@ -180,6 +195,7 @@ mod tests {
             "Force_min",
             "sensor_A",
             "mm/s",
+            "s/s",
             "PIP count",
             "Force (filtered)",
             "試験力（平均）",

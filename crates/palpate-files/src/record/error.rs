@@ -213,7 +213,7 @@ impl UnitProblem {
                     format!(": {}, or", snippet::option([entry]))
                 });
                 let doubt = match meant == quantity.usual_unit() {
-                    true => "another unit is meant".to_owned(),
+                    true => format!("the values are in {meant}"),
                     false => format!("\"{unit}\" stands for {meant}"),
                 };
                 let preset = if meant == "gf" { " (of a TA.XT: machine.preset = \"ta-xtplus-grams\")" } else { "" };

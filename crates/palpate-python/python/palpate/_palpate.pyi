@@ -13,7 +13,7 @@ import xarray
 from matplotlib.axes import Axes
 from numpy.typing import ArrayLike, NDArray
 
-from palpate._options import Control, Intervals, LawName, Quantity
+from palpate._options import Control, Intervals, LawName, Loss, Quantity
 
 __all__ = [
     "__version__",
@@ -344,6 +344,10 @@ class Record(_Series):
         confidence: float | None = None,
         intervals: Intervals | None = None,
         fit_until_s: float | None = None,
+        hold_start: str | None = None,
+        touch: str | float | None = None,
+        tolerance_m: float | None = None,
+        minimum_hold_s: float | None = None,
         compare: bool = True,
     ) -> Analysis:
         """Phases, strains, laws for every hold, findings: the study of ``palpate analyze``.
@@ -363,6 +367,14 @@ class Record(_Series):
             Method of the intervals of fits: "automatic" (if left out), "curvature", "profile", or "bootstrap", which takes long.
         fit_until_s : float, optional
             Longest stretch of a hold to fit, s.
+        hold_start : str, optional
+            Where the fit of a hold starts: "peak", "settled" or "peak + 0.5 s"; that of the description, or "peak", if left out.
+        touch : str or float, optional
+            First touch: "auto", "as recorded", a rule, or a displacement (m); that of the description, or "auto", if left out.
+        tolerance_m : float, optional
+            Largest deviation of the displacement within a hold, m.
+        minimum_hold_s : float, optional
+            Shortest hold, s.
         compare : bool
             Whether laws are compared, which takes most of the time.
 
@@ -392,6 +404,9 @@ class Record(_Series):
         creep: bool = False,
         intervals: Intervals | None = None,
         fit_until_s: float | None = None,
+        loss: Loss = "squares",
+        samples: str = "all",
+        ramps: Literal["step", "measured"] = "step",
     ) -> RecordComparison:
         """Which law predicts the holds of the record, how sure that is, and what another would cost: what ``palpate compare`` finds.
 
@@ -409,6 +424,12 @@ class Record(_Series):
             Method of the intervals of fits: "automatic" (if left out), "curvature", "profile", or "bootstrap", which takes long.
         fit_until_s : float, optional
             Compare only over this long from the start of each hold, s.
+        loss : str
+            Loss function of the residuals: "squares", or "huber" or "tukey" where single samples stray.
+        samples : str
+            Samples to fit: "all", or "log:400" for about 400, evenly spaced in ln t.
+        ramps : str
+            Loading before a hold, as linear laws take it: "step", or "measured".
 
         Returns
         -------
@@ -2342,6 +2363,7 @@ def batch(
     laws: Sequence[LawName] | None = None,
     intervals: Intervals | None = None,
     fit_until_s: float | None = None,
+    hold_start: str | None = None,
     map: Sequence[str] | None = None,
     csv_locale: str | None = None,
     restart: bool = False,
@@ -2369,6 +2391,8 @@ def batch(
         Method of the intervals of fits: "automatic" (if left out), "curvature", "profile" or "bootstrap".
     fit_until_s
         Fit only this long from the start of each hold, s.
+    hold_start
+        Where the fit of a hold starts: "peak", "settled" or "peak + 0.5 s"; that of the description, or "peak", if left out.
     map
         Quantities to draw as maps over the positions of the curves, by the names that `BatchResult.map` takes; each goes into a file
         beside the table, or into FILE (.svg, .png or .pdf) of "NAME=FILE".

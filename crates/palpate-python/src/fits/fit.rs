@@ -4,8 +4,8 @@ use std::borrow::Cow;
 
 use numpy::{PyArray1, PyArray2};
 use palpate::fit::{
-    BootstrapOptions, Estimate, Fit, IntervalMethod, LawOptions, NoiseChoice, Parameter, ParameterRole, ParameterUnit,
-    SampleChoice, Samples, fit_law_watched,
+    BootstrapOptions, Estimate, Fit, IntervalMethod, LawOptions, Loss, NoiseChoice, Parameter, ParameterRole,
+    ParameterUnit, SampleChoice, Samples, fit_law_watched,
 };
 use palpate::forecast::{Criteria, criteria};
 use palpate::laws::Law;
@@ -430,6 +430,11 @@ pub(crate) fn intervals(name: &str) -> PyResult<IntervalMethod> {
     one_of("intervals", &ways.map(|way| (way.name(), way)), name)
 }
 
+/// The loss of residuals, as a keyword says it.
+pub(crate) fn loss(name: &str) -> PyResult<Loss> {
+    choice("loss", &["squares", "huber", "tukey"], name)
+}
+
 /// Options of a fit as keywords say them.
 #[derive(Clone)]
 pub(crate) struct Requested {
@@ -465,7 +470,7 @@ impl Keywords {
         let noises = [("residuals", NoiseChoice::FromResiduals), ("white", NoiseChoice::White)];
         let options = LawOptions {
             response: choice("response", &["relaxation", "creep"], &self.response)?,
-            loss: choice("loss", &["squares", "huber", "tukey"], &self.loss)?,
+            loss: loss(&self.loss)?,
             noise: one_of("noise", &noises, &self.noise)?,
             intervals: intervals(&self.intervals)?,
             fixed: self.fixed.unwrap_or_default(),

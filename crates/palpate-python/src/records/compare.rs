@@ -5,7 +5,7 @@ use palpate::fit::LawOptions;
 use palpate::forecast::{CompareOptions, compare_laws_watched};
 use palpate::laws::Response;
 use palpate_jobs::input::Measurement;
-use palpate_jobs::{Compare, Results};
+use palpate_jobs::{Compare, Results, no_share};
 use palpate_report::document::{ComparisonDocument, HoldComparisonDocument, VerdictDocument};
 use palpate_report::result::Quantity;
 use pyo3::prelude::*;
@@ -68,6 +68,10 @@ pub(crate) fn compare(
     let (times, values) = (doubles(time_s, "time_s")?, doubles(signal, "signal")?);
     let standard_deviations = standard_deviations_of(weights, false)?;
     let (quantity, response) = quantity_of(quantity)?;
+    if let Some(cut) = cuts.as_ref().and_then(|listed| no_share(&listed.0)) {
+        let message = format!("cuts are shares of the hold between 0 and 1, found {cut}");
+        return Err(refused_plainly::<OptionError>(message));
+    }
     let usual = CompareOptions::default();
     let options = CompareOptions {
         laws: all_laws(laws.as_deref().unwrap_or_default())?,

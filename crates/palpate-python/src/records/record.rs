@@ -9,19 +9,22 @@ use numpy::PyArray1;
 use palpate::analysis::corrected_watched;
 use palpate::calibrate::CalibrateError;
 use palpate::record::{Record as Measured, RecordError as Unlike};
+use palpate::segment::ContactChoice;
 use palpate::simulate::SimulateError;
 use palpate::watch::{Unwatched, Watch};
+use palpate_files::description::parse_touch;
 use palpate_jobs::input::{Described, Measurement, record_sha256};
-use palpate_jobs::{Analyze, Calibrate, Compare, ErrorKind, JobError};
+use palpate_jobs::{Analyze, Calibrate, Compare, ErrorKind, JobError, typed};
 use palpate_report::result::{Input, word};
 use pyo3::prelude::*;
+use pyo3::pybacked::PyBackedStr;
 use pyo3::types::PyType;
 use pyo3_arrow::PyTable;
 use serde::{Deserialize, Serialize};
 
 use crate::arrays::{array, doubles};
 use crate::errors::{OptionError, PalpateError, RecordError, choice, refused, refused_plainly};
-use crate::files::{self, Given, all_laws, described, read_or_parsed};
+use crate::files::{self, Given, all_laws, described, read_or_parsed, start_of_holds};
 use crate::fits::fit;
 use crate::listed::Listed;
 use crate::mappings::quantity;
@@ -333,6 +336,14 @@ shown! {
     ///     Method of the intervals of fits: "automatic" (if left out), "curvature", "profile", or "bootstrap", which takes long.
     /// fit_until_s : float, optional
     ///     Longest stretch of a hold to fit, s.
+    /// hold_start : str, optional
+    ///     Where the fit of a hold starts: "peak", "settled" or "peak + 0.5 s"; that of the description, or "peak", if left out.
+    /// touch : str or float, optional
+    ///     First touch: "auto", "as recorded", a rule, or a displacement (m); that of the description, or "auto", if left out.
+    /// tolerance_m : float, optional
+    ///     Largest deviation of the displacement within a hold, m.
+    /// minimum_hold_s : float, optional
+    ///     Shortest hold, s.
     /// compare : bool
     ///     Whether laws are compared, which takes most of the time.
     ///
@@ -351,7 +362,7 @@ shown! {
     /// -----
     /// PalpateWarning
     ///     Findings that forbid the use of a number.
-    #[pyo3(signature = (*, test=None, exponents=None, free_exponent=None, confidence=None, intervals=None, fit_until_s=None, compare=true))]
+    #[pyo3(signature = (*, test=None, exponents=None, free_exponent=None, confidence=None, intervals=None, fit_until_s=None, hold_start=None, touch=None, tolerance_m=None, minimum_hold_s=None, compare=true))]
     #[expect(clippy::too_many_arguments, reason = "keywords of Python")]
     fn analyze(
         &self,
@@ -362,6 +373,10 @@ shown! {
         confidence: Option<f64>,
         intervals: Option<&str>,
         #[pyo3(from_py_with = quantity::seconds)] fit_until_s: Option<f64>,
+        hold_start: Option<&str>,
+        touch: Option<&Bound<'_, PyAny>>,
+        #[pyo3(from_py_with = quantity::metres)] tolerance_m: Option<f64>,
+        #[pyo3(from_py_with = quantity::seconds)] minimum_hold_s: Option<f64>,
         compare: bool,
     ) -> PyResult<Analysis> {
         let job = Analyze {
@@ -370,8 +385,11 @@ shown! {
             confidence,
             intervals: intervals.map(fit::intervals).transpose()?,
             fit_until_s,
+            hold_start: hold_start.map(start_of_holds).transpose()?,
+            touch: touch.map(first_touch).transpose()?,
+            tolerance_m,
+            minimum_hold_s,
             compare,
-            ..Analyze::default()
         };
         Analysis::of(py, self.measured(test)?, job)
     }
@@ -532,6 +550,12 @@ shown! {
     ///     Method of the intervals of fits: "automatic" (if left out), "curvature", "profile", or "bootstrap", which takes long.
     /// fit_until_s : float, optional
     ///     Compare only over this long from the start of each hold, s.
+    /// loss : str
+    ///     Loss function of the residuals: "squares", or "huber" or "tukey" where single samples stray.
+    /// samples : str
+    ///     Samples to fit: "all", or "log:400" for about 400, evenly spaced in ln t.
+    /// ramps : str
+    ///     Loading before a hold, as linear laws take it: "step", or "measured".
     ///
     /// Returns
     /// -------
@@ -543,7 +567,7 @@ shown! {
     ///     No hold to compare on.
     /// OptionError
     ///     A law that is none, or has no such form.
-    #[pyo3(signature = (*, test=None, laws=None, cuts=None, creep=false, intervals=None, fit_until_s=None))]
+    #[pyo3(signature = (*, test=None, laws=None, cuts=None, creep=false, intervals=None, fit_until_s=None, loss="squares", samples="all", ramps="step"))]
     #[expect(clippy::too_many_arguments, reason = "keywords of Python")]
     fn compare(
         &self,
@@ -554,6 +578,9 @@ shown! {
         creep: bool,
         intervals: Option<&str>,
         #[pyo3(from_py_with = quantity::seconds)] fit_until_s: Option<f64>,
+        loss: &str,
+        samples: &str,
+        ramps: &str,
     ) -> PyResult<RecordComparison> {
         let question = Compare {
             laws: laws.map(|laws| all_laws(&laws)).transpose()?,
@@ -561,7 +588,9 @@ shown! {
             creep,
             intervals: intervals.map(fit::intervals).transpose()?,
             fit_until_s,
-            ..Compare::default()
+            loss: fit::loss(loss)?,
+            samples: typed::samples(samples).map_err(|message| not_so("samples", &message, samples))?,
+            ramps: choice("ramps", &["step", "measured"], ramps)?,
         };
         RecordComparison::of(py, self.measured(test)?, question)
     }
@@ -595,4 +624,16 @@ shown! {
             self.record.len()
         )
     }
+}
+
+/// First touch as a keyword says it: a displacement (m), or a text.
+fn first_touch(touch: &Bound<'_, PyAny>) -> PyResult<ContactChoice> {
+    match touch.extract::<PyBackedStr>() {
+        Ok(text) => parse_touch(&text).map_err(|error| refused_plainly::<OptionError>(format!("touch: {error}"))),
+        Err(_) => quantity::metres(touch).map(ContactChoice::Displacement),
+    }
+}
+
+fn not_so(option: &str, message: &str, found: &str) -> PyErr {
+    refused_plainly::<OptionError>(format!("{option}: {message}, found {found:?}"))
 }

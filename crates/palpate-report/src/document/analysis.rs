@@ -59,11 +59,11 @@ documents! {
         doubtful: bool = hold.segment.doubtful,
         /// `type_1` (the force falls), `type_2` (it rises) or `none`.
         relaxation: String = word(hold.relaxation.kind),
-        /// Change of the force over the hold, N.
+        /// Change of the force from the mean of the first twentieth of the hold to that of the last fifth, N: what `relaxation` is judged by.
         force_change_n: f64 = hold.relaxation.change,
         /// Its standard error, N.
         force_change_standard_error_n: f64 = hold.relaxation.standard_error,
-        /// Probability of such a change by noise alone.
+        /// Probability of such a change by noise that correlates as the last fifth of the hold shows; a drift or a random walk exceeds it more often.
         p_value: f64 = hold.relaxation.p_value,
         /// Force where the fit starts, N.
         force_start_n: f64 = hold.force_start,

@@ -4,7 +4,7 @@ use std::cmp::Ordering;
 
 use palpate::analysis::{Finding, Severity};
 use palpate::fit::Fit;
-use palpate::forecast::{Comparison, PooledVerdict, Ranking, name_in_words, pooled};
+use palpate::forecast::{Certainty, Comparison, PooledVerdict, Ranking, name_in_words, pooled};
 use palpate::laws::Law;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -199,7 +199,10 @@ fn sentence(record: &ComparedRecord, law: Option<Law>, agreeing: usize, judged: 
         .iter()
         .filter(|found| found.verdict.as_ref().is_some_and(|verdict| verdict.reservation.is_some()));
     let what = match reserved.count() {
-        0 => "Law for this record",
+        0 => &*open_on_all(judged).map_or_else(
+            || "Law for this record".to_owned(),
+            |open| format!("{open} The first choice for this record"),
+        ),
         all if all == compared => {
             "No law that was compared describes this record down to its noise. The best approximation"
         }
@@ -214,6 +217,20 @@ fn sentence(record: &ComparedRecord, law: Option<Law>, agreeing: usize, judged: 
         "{}{what}: {law}, {name}. {which} it is the best law or not distinguishable from the best.",
         by_fit_alone(judged)
     )
+}
+
+/// That the law is open, if it is on every hold; it stands before the choice.
+fn open_on_all(judged: &[&Comparison]) -> Option<String> {
+    let verdicts = || judged.iter().filter_map(|found| found.verdict.as_ref());
+    if !verdicts().all(|verdict| verdict.certainty == Certainty::Open) {
+        return None;
+    }
+    let most = verdicts().map(|verdict| verdict.probability).fold(0.0, f64::max);
+    let (each, most) = match judged {
+        [_] => (String::new(), format!("{:.0} %", 100.0 * most)),
+        judged => (format!(" on each of {} holds", judged.len()), format!("{:.0} % at the most", 100.0 * most)),
+    };
+    Some(format!("Which law to use is open{each} ({most})."))
 }
 
 /// What the choice rests on where no hold could be held out in part; it stands before the choice.
@@ -245,7 +262,14 @@ fn sentence_of_all(others: &[Law]) -> String {
 /// The most severe findings in words, cautions and warnings alone.
 fn most_severe(findings: &[Finding]) -> Vec<String> {
     let mut severe: Vec<&Finding> = findings.iter().filter(|finding| finding.severity() > Severity::Info).collect();
-    severe.sort_by_key(|finding| std::cmp::Reverse(finding.severity()));
+    let is_no_hold = |finding: &Finding| {
+        matches!(
+            finding,
+            Finding::DriftInsteadOfRelaxation { .. } | Finding::NothingHeld { .. } | Finding::FeedbackControlled { .. }
+        )
+    };
+    // Of equal severity those first by which no law applies.
+    severe.sort_by_key(|finding| (std::cmp::Reverse(finding.severity()), !is_no_hold(finding)));
     severe
         .iter()
         .take(MOST_FINDINGS)

@@ -80,6 +80,9 @@ pub struct ProfileCurves {
     pub confidence: f64,
     /// The curves, as that of the fit.
     pub curves: Vec<LawCurve>,
+    /// Those whose profile is open: beyond them the data allow others still.
+    #[serde(default)]
+    pub open: Vec<bool>,
 }
 
 /// A fitted law: its parameters, their uncertainty, and why the search ended.

@@ -1,5 +1,7 @@
 //! Tables of an analysed record.
 
+use std::ops::RangeInclusive;
+
 use palpate::analysis::{Analysis, HoldAnalysis, HoldoutError, JointAnalysis, JointHolds, Signal};
 use palpate::fit::{Domain, ExponentChoice, LatencyFit, ParameterKind, SharedTrend};
 use palpate::record::Correction;
@@ -34,12 +36,16 @@ fn untold(done: &Correction) -> Option<String> {
         Correction::Tared(_)
             | Correction::StampsSorted { .. }
             | Correction::StampsMerged { .. }
+            | Correction::StampsSpread { .. }
             | Correction::RowsAveraged { .. }
             | Correction::StressAsForce
             | Correction::DropoutsReplaced { .. }
     );
     (!reported).then(|| done.to_string())
 }
+
+/// No record says more of its noise than that a change is as improbable as this.
+const LEAST_P: f64 = 1e-6;
 
 /// One row a hold: where it lies, what the force does.
 pub(super) fn holds(analysis: &Analysis) -> Table {
@@ -66,11 +72,11 @@ pub(super) fn holds(analysis: &Analysis) -> Table {
                 RelaxationType::None => "none",
             })
         })
-        .column("p", "p_value", "", |hold| Cell::Number(hold.relaxation.p_value.max(f64::MIN_POSITIVE), 2))
+        .column("p", "p_value", "", |hold| Cell::Number(hold.relaxation.p_value.max(LEAST_P), 2))
         .table()
         .note("Held: the displacement (the force relaxes), the force (the displacement creeps) or neither.")
         .note("Type I: the force falls; Type II: it rises. The laws are fitted from the time “Fit from” on, which may lie after the start of the hold.")
-        .note("p: probability of a force change of this size by noise alone; 2.2×10⁻³⁰⁸, the smallest number, stands for anything below.")
+        .note("p: probability of such a change of the force, from the first twentieth of the hold to its last fifth, by noise that correlates as that fifth shows; 10⁻⁶ stands for anything below. A drift or a random walk exceeds it more often.")
 }
 
 /// The displacement that was held.
@@ -124,15 +130,21 @@ pub(super) fn fits(analysis: &Analysis) -> Table {
 
 /// How far noise takes the rate domain from the truth in one hold.
 fn rate_bias_note(hold: &HoldAnalysis) -> Option<String> {
+    /// Shares of the true value beyond which an estimate is none.
+    const FAR: RangeInclusive<f64> = 1e-3..=1e3;
     let bias = hold.rate_bias.filter(|_| hold.rate_fits.iter().any(Option::is_some))?;
+    let (low, high) = bias.coefficient_range;
+    let of_v = match FAR.contains(&low) && FAR.contains(&high) {
+        true => format!(
+            "estimates v at {:.2} of the true value ({low:.2} to {high:.2} in {} of them)",
+            bias.coefficient, bias.repetitions
+        ),
+        false => "does not determine v, not even to a factor of a thousand,".to_owned(),
+    };
     Some(format!(
-        "Rate domain, hold {}: on simulated holds with the parameters of the fit in the time domain (n = {:.3}) and this noise it estimates v at {:.2} of the true value ({:.2} to {:.2} in {} of them) and the equilibrium with an error of {} % of the relaxation.",
+        "Rate domain, hold {}: on simulated holds with the parameters of the fit in the time domain (n = {:.3}) and this noise it {of_v} and estimates the equilibrium with an error of {} % of the relaxation.",
         hold.number,
         bias.exponent,
-        bias.coefficient,
-        bias.coefficient_range.0,
-        bias.coefficient_range.1,
-        bias.repetitions,
         // No negative zero.
         format!("{:.1}", (1e3 * bias.equilibrium).round() / 10.0 + 0.0).replace('-', "−")
     ))

@@ -1,7 +1,7 @@
 //! What a fit says about a time, with an interval.
 
 use crate::fit::{Estimate, Fit, ProfileCurves, Scale, Uncertainty, searched_name};
-use crate::laws::{Column, Kernel};
+use crate::laws::{Column, Kernel, LawCurve};
 use crate::statistics::coverage_factor;
 use crate::vector::add_multiple;
 
@@ -11,7 +11,8 @@ impl Fit {
     /// The interval is that of the curve, not of a sample: g ± t √(gᵀ C g) with g the derivatives of the curve by the searched
     /// parameters and C their covariance for noise that correlates as the residuals do. It knows of no other law: far beyond the
     /// hold it is as good as the law is. Where the intervals of the parameters are those of profiles, the band also contains the curves at their
-    /// ends ([`profile`](Self::profile)), scaled to its coverage: what the data leave open, the prediction leaves open too.
+    /// ends ([`profile`](Self::profile)), scaled to its coverage. Of an end that the data leave open the band is open from when more than half of the
+    /// way from the last sample to the limit of such a curve lies behind.
     ///
     /// ```
     /// use palpate::fit::{LawOptions, Samples, fit_law};
@@ -86,16 +87,30 @@ impl Fit {
     ) {
         let factor = coverage_factor(uncertainty.confidence, uncertainty.freedom);
         let scale = factor / coverage_factor(profile.confidence, uncertainty.freedom);
-        for curve in &profile.curves {
+        for (place, curve) in profile.curves.iter().enumerate() {
+            let open = profile.open.get(place).filter(|is_open| **is_open).and_then(|_| self.half_way(curve));
             for (index, (estimate, there)) in found.iter_mut().zip(self.values_of(curve, elapsed)).enumerate() {
                 let away = scale * (there - estimate.value);
-                let half = away.hypot(factor * deviation(index));
+                let is_open = elapsed[index] > self.duration
+                    && open.is_some_and(|(half_way, falls)| if falls { there < half_way } else { there > half_way });
+                let half = if is_open { f64::INFINITY } else { away.hypot(factor * deviation(index)) };
                 if let Some((low, high)) = &mut estimate.interval {
                     let end = estimate.value + half.copysign(away);
                     (*low, *high) = (low.min(end), high.max(end));
                 }
             }
         }
+    }
+
+    /// The value of a curve half way from the last sample to its limit, and whether it falls from there; `None` of a curve without a limit, and of
+    /// one that is there.
+    fn half_way(&self, curve: &LawCurve) -> Option<(f64, bool)> {
+        /// Durations after which all has relaxed.
+        const AT_LAST: f64 = 1e30;
+        let [last, limit] = self.values_of(curve, &[self.duration, AT_LAST * self.duration])[..] else {
+            return None;
+        };
+        (limit.is_finite() && limit != last).then_some((0.5 * (last + limit), limit < last))
     }
 
     /// Derivatives of the curve by the searched parameters, in the order of `searched`: a column each.

@@ -19,8 +19,8 @@ mod path;
 use super::quantity::Quantity;
 use crate::fit::noise::uncertainty::variance_of;
 use crate::fit::{
-    Condensed, Fit, FitError, Fitted, Interval, IntervalMethod, LawOptions, Parameter, ParameterRole, ParameterUnit,
-    ProfileCurves, RedundantTerm, Samples, Scale, Uncertainty, condense,
+    Condensed, Fit, FitError, Fitted, Interval, IntervalMethod, LawOptions, Parameter, ParameterKind, ParameterRole,
+    ParameterUnit, ProfileCurves, RedundantTerm, Samples, Scale, Uncertainty, condense,
 };
 use crate::laws::{Law, ShapeParameterKind};
 use crate::optimise::{Effort, Few};
@@ -131,14 +131,16 @@ impl Fitted {
             let quantities = self.quantities(fit.law, end.as_ref().and_then(End::bound)?.at());
             Some(quantities.iter().map(|quantity| quantity.value).collect())
         };
-        let last = all.iter().flat_map(|ends| [&ends.low, &ends.high]).flatten();
+        let last = || all.iter().flat_map(|ends| [&ends.low, &ends.high]).flatten();
         fit.profile = Some(ProfileCurves {
             confidence: options.confidence,
-            curves: last.map(|end| self.curve_at(end.last.at())).collect(),
+            curves: last().map(|end| self.curve_at(end.last.at())).collect(),
+            open: last().map(|end| end.bound().is_none()).collect(),
         });
         let reached: Vec<[Option<Vec<f64>>; 2]> =
             all.iter().map(|ends| [&ends.low, &ends.high].map(values_at)).collect();
         let best = self.quantities(fit.law, self.solution.at());
+        let mut starts = Vec::new();
         for (i, (quantity, parameter)) in best.iter().zip(&mut fit.parameters).enumerate() {
             let Some((place, correlation)) = followed(&quantity.gradient, &uncertainty.covariance) else {
                 continue;
@@ -154,6 +156,13 @@ impl Fitted {
             let low = if low <= quantity.value { low } else { lowest };
             let high = if high >= quantity.value { high } else { f64::INFINITY };
             parameter.estimate.interval = Some((low, high));
+            // The curve at the first sample is between those that the data allow, whatever it correlates with.
+            if quantity.name.kind == ParameterKind::Start && !(low.is_finite() && high.is_finite()) {
+                starts.push(i);
+            }
+        }
+        for i in starts {
+            fit.parameters[i].estimate.interval = fit.predict_interval(0.0).interval;
         }
         Ok(())
     }
@@ -364,8 +373,10 @@ mod tests {
             let far = fit.predict_interval(1e6).interval.unwrap();
             let own = fit.estimate("equilibrium").unwrap().interval.unwrap();
             for (end, own) in [(-far.0, -own.0), (far.1, own.1)] {
-                assert!(own.is_infinite() || end >= own - 1e-9 * own.abs(), "{far:?} {own:?}");
+                assert!(end == own || end >= own - 1e-9 * own.abs(), "{far:?} {own:?}");
             }
+            let start = fit.estimate("start").unwrap().interval.unwrap();
+            assert!(start.0 > 2.8 && start.1 < 3.2, "{start:?}");
             count += 1;
             for (inside, time) in inside.iter_mut().zip([9.0f64, 30.0]) {
                 let truth = 1.0 + 0.8 * (-time / 0.9).exp() + 1.2 * (-time / 6.0).exp();
