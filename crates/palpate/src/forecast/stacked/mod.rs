@@ -8,7 +8,8 @@
 //! ```
 //!
 //! least ("stacking", Wolpert 1992, Breiman 1996), where later cuts count more (π). The forecast is Σ w f with the members f fitted to
-//! the whole hold. What the weights of the other cuts would have been off by at each cut is its error; it grows with ln(t/T).
+//! the whole hold. What the weights of the other cuts would have been off by at each cut is its error; it grows with ln(t/T), and the variance
+//! Σ w (f − Σ w f)² between the members is added to its square.
 
 mod member;
 mod weights;
@@ -36,13 +37,6 @@ const LEAST_CUTS: usize = 3;
 
 /// Errors grow with ln(t/T) + this.
 const AT_ONCE: f64 = 0.1;
-
-/// Half the weighted deviation of the members from their mean counts as an error too.
-const DISAGREEMENT: f64 = 0.5;
-
-/// A band over this many normal quantiles of the error covered 95 % of what followed in 19 of 20 of the measured holds that it was chosen on
-/// (`validation/forecasts.py`); there is no measurement on others.
-const CALIBRATION: f64 = 1.0;
 
 /// The forecast of a hold.
 ///
@@ -172,14 +166,15 @@ impl HoldForecast {
     #[must_use]
     pub fn at_times(&self, elapsed: &[f64], confidence: f64) -> Vec<Forecasted> {
         let courses: Vec<Vec<f64>> = self.courses.iter().map(|course| course.at(elapsed, &self.options)).collect();
-        let factor = CALIBRATION * normal_factor(confidence);
+        let factor = normal_factor(confidence);
         let forecasted = |(index, elapsed): (usize, &f64)| {
             let members = || self.members.iter().zip(&courses).map(|((_, weight), course)| (weight, course[index]));
             let value: f64 = members().map(|(weight, found)| weight * found).sum();
             let spread: f64 = members().map(|(weight, found)| weight * (found - value).powi(2)).sum();
             let beyond = elapsed / self.duration;
             let grown = if beyond > 1.0 { (beyond.ln() + AT_ONCE) * self.error * self.change } else { 0.0 };
-            let variance = grown * grown + DISAGREEMENT * DISAGREEMENT * spread + self.noise * self.noise;
+            // Variances between the members and of what they have missed so far (law of total variance).
+            let variance = grown * grown + spread + self.noise * self.noise;
             let half = factor * variance.sqrt();
             Forecasted {
                 value,
