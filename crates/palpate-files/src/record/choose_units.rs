@@ -34,11 +34,11 @@ impl Chooser<'_> {
             return Ok(Some(found.used(format!("{SAMPLES}{rate} Hz"), 1.0 / rate)));
         }
         if found.column.kind == ColumnKind::DateTime {
-            // A time of day is not counted from 1970.
+            // A time of day is not counted from 1970; from one o'clock on it is no time since the start of a test either.
             let is_dated = epoch::is_date(&found.column.sample);
             let date = found.used(if is_dated { "date and time" } else { "time of day" }.to_owned(), 1.0);
             return Ok(Some(ColumnUse {
-                epoch: is_dated,
+                epoch: is_dated || epoch::is_late(&found.column.sample),
                 ..date
             }));
         }

@@ -42,7 +42,7 @@ pub struct RecordFile {
     pub packing: Packing,
     /// The part of the file that is this test.
     pub part: Part,
-    /// When the time of the record is zero, in s since 1970, where the file counts from there.
+    /// When the time of the record is zero, in s since 1970, or since midnight of a time of day, where the file counts from there.
     pub start: Option<f64>,
     /// The file has no time: so many rows a second, Hz.
     pub rate: Option<f64>,

@@ -54,6 +54,11 @@ pub(crate) fn is_date(cell: &str) -> bool {
     before.len() > 2
 }
 
+/// Whether a cell that is read as a time of day is one of one o'clock or later.
+pub(crate) fn is_late(cell: &str) -> bool {
+    cell.split_once(':').and_then(|(hour, _)| hour.trim().parse::<u32>().ok()).is_some_and(|hour| hour >= 1)
+}
+
 fn first(column: &ColumnInfo) -> Option<f64> {
     column.sample.replace(',', ".").parse().ok()
 }
@@ -71,6 +76,12 @@ mod tests {
             kind: ColumnKind::Number,
             sample: sample.to_owned(),
         }
+    }
+
+    #[test]
+    fn a_time_since_the_start_of_a_test_is_not_late() {
+        let late = ["09:00:00", "9:00:00,5", "12:30:00 PM", "00:59:59.9", "0:00:01", "12", ""].map(is_late);
+        assert_eq!(late, [true, true, true, false, false, false, false]);
     }
 
     #[test]

@@ -99,7 +99,9 @@ pub(super) fn signal_facts(file: &RecordFile, aligned: Option<&SignalReport>) ->
     let duration = significant(time[time.len() - 1] - time[0], 5);
     let mut out = format!("{} rows over {duration} s, every {usual} s{varying}\n", file.rows);
     if let Some(start) = file.start {
-        let _ = writeln!(out, "time 0 is {start} s since 1970");
+        // A day has 86,400 s: less is a time of day.
+        let since = if start < 86_400.0 { "midnight" } else { "1970" };
+        let _ = writeln!(out, "time 0 is {start} s since {since}");
     }
     if let Some(displacement) = record.displacement() {
         let _ = writeln!(out, "displacement {} mm", range(displacement, 1e3));
