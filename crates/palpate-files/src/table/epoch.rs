@@ -56,7 +56,9 @@ pub(crate) fn is_date(cell: &str) -> bool {
 
 /// Whether a cell that is read as a time of day is one of one o'clock or later.
 pub(crate) fn is_late(cell: &str) -> bool {
-    cell.split_once(':').and_then(|(hour, _)| hour.trim().parse::<u32>().ok()).is_some_and(|hour| hour >= 1)
+    cell.split_once(':')
+        .and_then(|(hour, _)| hour.trim().parse::<u32>().ok())
+        .is_some_and(|hour| hour >= 1)
 }
 
 fn first(column: &ColumnInfo) -> Option<f64> {
