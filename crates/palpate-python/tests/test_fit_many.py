@@ -103,6 +103,15 @@ def test_pandas_takes_a_table_as_it_is() -> None:
     assert pandas.DataFrame(record)["force_n"].tolist() == record.force_n.tolist()
 
 
+def test_curves_in_columns_are_refused() -> None:
+    # 400 rows said that "a fit needs as many values as abscissas", without an exception.
+    t = np.linspace(0.0, 10.0, 400)
+    curves = np.stack([1 + np.exp(-t / time) for time in (2.0, 3.0)])
+    assert len(palpate.fit_many(t, curves, law="standard-linear-solid")) == 2
+    with pytest.raises(palpate.OptionError, match=r"a curve of 400 samples in each row, found 400 rows of 2\nhint: transpose it"):
+        palpate.fit_many(t, curves.T)
+
+
 def test_wrong_columns_are_refused() -> None:
     with pytest.raises(palpate.OptionError, match="a column of lists of numbers"):
         palpate.fit_many(pyarrow.array(["a"]), pyarrow.array(["b"]))

@@ -262,14 +262,7 @@ fn sentence_of_all(others: &[Law]) -> String {
 /// The most severe findings in words, cautions and warnings alone.
 fn most_severe(findings: &[Finding]) -> Vec<String> {
     let mut severe: Vec<&Finding> = findings.iter().filter(|finding| finding.severity() > Severity::Info).collect();
-    let is_no_hold = |finding: &Finding| {
-        matches!(
-            finding,
-            Finding::DriftInsteadOfRelaxation { .. } | Finding::NothingHeld { .. } | Finding::FeedbackControlled { .. }
-        )
-    };
-    // Of equal severity those first by which no law applies.
-    severe.sort_by_key(|finding| (std::cmp::Reverse(finding.severity()), !is_no_hold(finding)));
+    severe.sort_by_key(|finding| finding.rank());
     severe
         .iter()
         .take(MOST_FINDINGS)

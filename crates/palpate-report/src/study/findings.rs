@@ -82,6 +82,7 @@ pub(super) fn gathered(analysis: &Analysis, most: usize) -> Vec<Gathered> {
 
 /// One entry for each code, the most severe first.
 fn merged(mut observed: Vec<Observed<'_>>, most: usize) -> Vec<Gathered> {
+    observed.sort_by_key(|one| one.finding.rank());
     let mut list = Vec::new();
     while let Some(first) = observed.first() {
         let (severity, finding) = (first.severity, first.finding);
