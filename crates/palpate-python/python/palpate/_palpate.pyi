@@ -1599,7 +1599,8 @@ class Fit(_Series):
 
         A multivariate normal distribution in the scales of `searched`, with `covariance`: rates and times, whose logarithms were
         searched, are log-normal. It is what the curvature at the optimum says; where `interval_method` is another one, the true
-        distribution is not normal and its tails are those of the intervals.
+        distribution is not normal and its tails are those of the intervals. `covariance` is the mean over the models of the noise that are likely:
+        where one of little probability has a long memory, the draws spread wider than the intervals.
 
         Parameters
         ----------
