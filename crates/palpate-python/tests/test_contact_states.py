@@ -235,6 +235,13 @@ def test_pickles_and_copies_keep_states_and_values() -> None:
             assert other != contacts
 
 
+def test_pickles_keep_which_contacts_failed() -> None:
+    contacts = palpate.ContactStates(MODEL, 5)
+    contacts.step(0.1, [1e-3, 1e-3, np.nan, 1e-3, 1e-3], errors="mask")
+    for other in (pickle.loads(pickle.dumps(contacts)), copy.deepcopy(contacts)):
+        assert other.failed.tolist() == [False, False, True, False, False] == contacts.failed.tolist()
+
+
 def test_pickles_of_format_4_are_read() -> None:
     contacts = palpate.ContactStates(MODEL, 3)
     contacts.step(0.1, [1e-3, 2e-3, 3e-3])

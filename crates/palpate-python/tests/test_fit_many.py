@@ -104,7 +104,7 @@ def test_pandas_takes_a_table_as_it_is() -> None:
 
 
 def test_curves_in_columns_are_refused() -> None:
-    # 400 rows said that "a fit needs as many values as abscissas", without an exception.
+    # 400 rows stated that "a fit needs as many values as abscissas", without an exception.
     t = np.linspace(0.0, 10.0, 400)
     curves = np.stack([1 + np.exp(-t / time) for time in (2.0, 3.0)])
     assert len(palpate.fit_many(t, curves, law="standard-linear-solid")) == 2

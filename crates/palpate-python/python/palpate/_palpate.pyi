@@ -1878,8 +1878,8 @@ class ContactState(_Moved):
 class ContactStates(_Moved):
     """Contacts that are moved side by side, such as those of many grippers, or of one with many values of its parameters.
 
-    Thousands of contacts are stepped on all cores, to the same bits on any number of them. Two threads cannot step one object at once:
-    the second gets a ``RuntimeError``.
+    Thousands of contacts are stepped on all cores, to the same bits on any number of them. Two threads cannot use one object at once,
+    neither where both step nor where one reads a property meanwhile: the second gets a ``RuntimeError``. One that shows forces takes them from ``out``.
 
     Parameters
     ----------

@@ -18,8 +18,8 @@ use crate::work::{briefly, in_parallel, shortly};
 
 /// Contacts that are moved side by side, such as those of many grippers, or of one with many values of its parameters.
 ///
-/// Thousands of contacts are stepped on all cores, to the same bits on any number of them. Two threads cannot step one object at once:
-/// the second gets a ``RuntimeError``.
+/// Thousands of contacts are stepped on all cores, to the same bits on any number of them. Two threads cannot use one object at once,
+/// neither where both step nor where one reads a property meanwhile: the second gets a ``RuntimeError``. One that shows forces takes them from ``out``.
 ///
 /// Parameters
 /// ----------
@@ -469,13 +469,14 @@ shown! {
     }
 
     #[classmethod]
-    #[pyo3(signature = (texts, states, format=0, values=Vec::new()))]
+    #[pyo3(signature = (texts, states, format=0, values=Vec::new(), failed=Vec::new()))]
     fn _from_parts(
         class: &Bound<'_, PyType>,
         texts: Vec<String>,
         states: Pieces,
         format: u32,
         values: Vec<(String, Pieces)>,
+        failed: Vec<usize>,
     ) -> PyResult<Self> {
         if format != STATES_PICKLE {
             check_pickle(format)?;
@@ -498,14 +499,20 @@ shown! {
             return Err(refused_plainly::<ModelError>(message));
         }
         briefly(py, || models.check_states(&states, count))?.map_err(refused_plainly::<ModelError>)?;
-        Ok(Self::new_of(models, count, texts, &states))
+        let mut made = Self::new_of(models, count, texts, &states);
+        for index in failed {
+            *made.failed.get_mut(index).ok_or_else(|| {
+                refused_plainly::<ModelError>(format!("expected marks of {count} contacts, found one of contact {index}"))
+            })? = true;
+        }
+        Ok(made)
     }
 
     #[expect(clippy::type_complexity, reason = "what pickle asks for")]
     fn __reduce__<'py>(
         &self,
         py: Python<'py>,
-    ) -> PyResult<Made<'py, (Vec<String>, Vec<Piece>, u32, Vec<(String, Vec<Piece>)>)>> {
+    ) -> PyResult<Made<'py, (Vec<String>, Vec<Piece>, u32, Vec<(String, Vec<Piece>)>, Vec<usize>)>> {
         let written = |numbers: &[f64]| {
             in_pieces(py, |out| numbers.iter().try_for_each(|number| out.write_all(&number.to_le_bytes())))
         };
@@ -513,7 +520,8 @@ shown! {
         let values = self.models.parameters().map(|(parameter, values)| Ok((parameter.name().to_owned(), written(values)?)));
         let values = values.collect::<PyResult<Vec<_>>>()?;
         let make = py.get_type::<Self>().getattr("_from_parts")?;
-        Ok((make, (self.texts.clone(), states, STATES_PICKLE, values)))
+        let failed = (0..self.count).filter(|index| self.failed[*index]).collect();
+        Ok((make, (self.texts.clone(), states, STATES_PICKLE, values, failed)))
     }
 
     fn __repr__(&self) -> String {

@@ -120,13 +120,12 @@ fn newton<V: Level>(size: usize, middle: V, around: &[Option<V>]) -> Option<(Few
     Some((step, curvature))
 }
 
-/// To the lowest of the neighbours along all axes and diagonals of two, on in that direction for as long as the function falls, with ever shorter
-/// steps (after Hooke and Jeeves 1961).
+/// To the lowest of the neighbours, on in that direction for as long as the function falls, with ever shorter steps (after Hooke and Jeeves 1961).
 fn compass<V: Level>(evaluate: &impl Fn(&[Few]) -> Vec<Option<V>>, from: Minimum<V>) -> Minimum<V> {
     /// Steps on in a direction that are looked at together.
     const ON: i32 = 4;
-    /// Axes of which diagonals are as few.
-    const FEW: usize = 2;
+    /// Most axes of which the diagonals of every two are neighbours too: of more there are many.
+    const DIAGONALS: usize = 2;
     let Minimum {
         mut at,
         value: mut best,
@@ -148,7 +147,7 @@ fn compass<V: Level>(evaluate: &impl Fn(&[Few]) -> Vec<Option<V>>, from: Minimum
         };
         let sides = [1.0, -1.0];
         let along = (0..size).flat_map(|axis| sides.map(|side| beside(&[(axis, side)])));
-        let pairs = (0..size).flat_map(|i| (0..i).map(move |j| (i, j))).filter(|_| size <= FEW);
+        let pairs = (0..size).flat_map(|i| (0..i).map(move |j| (i, j))).filter(|_| size <= DIAGONALS);
         let across = pairs.flat_map(|(i, j)| {
             sides
                 .into_iter()

@@ -129,7 +129,7 @@ impl Finding {
             Self::LawsIndistinguishable { laws } => info(
                 "laws_indistinguishable",
                 format!("{} are not distinguishable", listed(laws)),
-                "these data do not determine which of the laws applies; their predictions beyond the hold differ",
+                "these data do not determine which of the laws applies; their predictions beyond the hold differ. Laws of which the first is a special case are left out",
                 "use the first of them, which has the lowest BIC, or hold longer",
             ),
             Self::DriftInsteadOfRelaxation { rise, fall } => caution(
