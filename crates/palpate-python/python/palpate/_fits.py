@@ -274,11 +274,11 @@ def fit_many(
     if hasattr(signal, "dims") and len(getattr(time_s, "dims", ())) == 1 and time_s.dims[0] in signal.dims:
         # Dimensions of xarray have names: a curve goes along that of the times.
         signal = signal.transpose(..., time_s.dims[0])
-    shape = getattr(signal, "shape", ())
-    is_array = len(shape) == 2 and not hasattr(signal, "columns")
-    if is_array and shape[0] != shape[1] and len(getattr(time_s, "shape", ())) == 1 and len(time_s) == shape[0]:
-        message = f"signal: expected a curve of {len(time_s)} samples in each row, found {shape[0]} rows of {shape[1]}"
-        raise OptionError(f"{message}\nhint: transpose it, signal.T")
+    if getattr(signal, "ndim", 0) == 2 and getattr(time_s, "ndim", 0) == 1 and not hasattr(signal, "columns"):
+        rows, samples = signal.shape
+        if len(time_s) == rows != samples:
+            message = f"signal: expected a curve of {rows} samples in each row, found {rows} rows of {samples}"
+            raise OptionError(f"{message}\nhint: transpose it, signal.T")
     curves = len(signal) if hasattr(signal, "__len__") else 0
     with bar(progress, curves, "fit") as tell:
         table = _palpate.fit_many(time_s, signal, weights, keywords, tell)

@@ -122,10 +122,9 @@ class SoftGripVectorEnv(VectorEnv[_Floats, _Floats, NDArray[Any]]):
         **settings: Any,
     ) -> None:
         self.task = SoftGripTask(**settings)
-        for name, number in (("num_envs", num_envs), ("max_episode_steps", max_episode_steps)):
-            if number is not None and (isinstance(number, bool) or not isinstance(number, (int, np.integer)) or number < 1):
-                raise OptionError(f"{name}: expected a whole number, 1 or more, found {number!r}")
-        self.num_envs = int(num_envs)
+        if max_episode_steps is not None:
+            max_episode_steps = _steps("max_episode_steps", max_episode_steps)
+        self.num_envs = _steps("num_envs", num_envs)
         self.autoreset_mode = _mode(autoreset_mode)
         self.metadata = {"render_modes": [], "autoreset_mode": self.autoreset_mode}
         self.single_observation_space, self.single_action_space = spaces()
@@ -270,8 +269,17 @@ class SoftGripVectorEnv(VectorEnv[_Floats, _Floats, NDArray[Any]]):
         return self._observed.copy() if self.copy else self._observed
 
 
+def _steps(name: str, number: Any) -> int:
+    """A whole number above 0."""
+    if isinstance(number, bool) or not isinstance(number, (int, np.integer)) or number < 1:
+        raise OptionError(f"{name}: expected a whole number, 1 or more, found {number!r}")
+    return int(number)
+
+
 class SoftGripEnv(gymnasium.Env[_Floats, _Floats]):
     """One of the environments of `SoftGripVectorEnv`, with the same actions, observations, rewards and settings.
+
+    `gymnasium.make` keeps a ``max_episode_steps`` to itself: the observed time then is a share of ``span_steps``, 500 if left out.
 
     Examples
     --------
@@ -286,20 +294,26 @@ class SoftGripEnv(gymnasium.Env[_Floats, _Floats]):
 
     metadata = {"render_modes": []}
 
-    def __init__(self, *, max_episode_steps: int | None = None, render_mode: None = None, **settings: Any) -> None:
+    def __init__(
+        self,
+        *,
+        max_episode_steps: int | None = None,
+        span_steps: int | None = None,
+        render_mode: None = None,
+        **settings: Any,
+    ) -> None:
         self.render_mode = render_mode
         self._envs = SoftGripVectorEnv(
             1, max_episode_steps=max_episode_steps, autoreset_mode=AutoresetMode.DISABLED, **settings
         )
+        if span_steps is not None:
+            self._envs._span = _steps("span_steps", span_steps)
         self.observation_space, self.action_space = self._envs.single_observation_space, self._envs.single_action_space
 
     def reset(self, *, seed: int | None = None, options: dict[str, Any] | None = None) -> tuple[_Floats, dict[str, Any]]:
         """Begins a new episode."""
         super().reset(seed=seed)
         self._envs.np_random = self.np_random
-        # `gymnasium.make` keeps the length of an episode to itself, in the specification.
-        if self.spec is not None and self.spec.max_episode_steps:
-            self._envs._span = self.spec.max_episode_steps
         observations, _ = self._envs.reset()
         return observations[0], {}
 

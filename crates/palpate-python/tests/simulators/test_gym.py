@@ -274,10 +274,12 @@ def test_a_file_of_a_material_has_its_covariance(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("steps", [100, 1000])
 def test_the_time_that_is_observed_is_that_of_the_episode_however_it_is_made(steps: int) -> None:
-    # `gymnasium.make` did not pass the length on: the time went to 0.2 within 100 steps, and was 1 from step 500 of 1000 on.
-    env = gymnasium.make("palpate/SoftGrip-v0", max_episode_steps=steps, control="force", mass_kg=0.01)
+    # `gymnasium.make` does not pass the length on: the time went to 0.2 within 100 steps, and was 1 from step 500 of 1000 on.
+    env = gymnasium.make("palpate/SoftGrip-v0", max_episode_steps=steps, span_steps=steps, control="force", mass_kg=0.01)
     envs = gymnasium.make_vec("palpate/SoftGrip-v0", 1, max_episode_steps=steps, control="force", mass_kg=0.01)
-    env.reset(seed=0), envs.reset(seed=0)
+    env.reset(seed=0)
+    envs.reset(seed=0)
+    truncated = False
     action = np.array([-0.2], np.float32)
     for step in range(1, steps + 1):
         observed, _, _, truncated, _ = env.step(action)
