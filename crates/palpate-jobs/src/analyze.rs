@@ -103,6 +103,12 @@ impl Analyze {
     /// Puts these options over those of the description.
     fn over(&self, measured: &mut Measurement) -> Result<(), JobError> {
         let options = &mut measured.options;
+        // A command line refuses them as they are typed; JSON and Python give them by these names.
+        for (name, number) in [("tolerance_m", self.tolerance_m), ("minimum_hold_s", self.minimum_hold_s)] {
+            if let Some(found) = number.filter(|number| !(number.is_finite() && *number > 0.0)) {
+                return Err(JobError::option(format!("{name}: expected a number above 0, found {found}"), ""));
+            }
+        }
         options.fit_until = self.fit_until_s.or(options.fit_until);
         if let Some(exponents) = &self.exponents {
             if exponents.is_empty() || exponents.iter().any(|n| !(n.is_finite() && *n > 0.0)) {

@@ -63,6 +63,9 @@ def test_options_of_the_command_line_are_keywords(root: Path) -> None:
     wrong: dict[str, Callable[[], Any]] = {
         "hold_start: .*expected .*peak.*found": lambda: read.analyze(hold_start="later"),
         "touch: .*expected": lambda: read.analyze(touch="somewhere"),
+        "touch: expected a text or a displacement in m, found <class 'list'>": lambda: read.analyze(touch=[1]),  # type: ignore[arg-type] # pyright: ignore
+        "tolerance_m: expected a number above 0, found -1": lambda: read.analyze(tolerance_m=-1.0),
+        "minimum_hold_s: expected a number above 0, found 0": lambda: read.analyze(minimum_hold_s=0.0),
         r"samples: expected at least 10 samples, such as log:400, found \"log:3\"": lambda: read.compare(samples="log:3"),
         "ramps is one of": lambda: read.compare(ramps="ramp"),  # type: ignore[arg-type] # pyright: ignore
         "loss is one of": lambda: read.compare(loss="l1"),  # type: ignore[arg-type] # pyright: ignore

@@ -16,6 +16,7 @@ use palpate_files::description::parse_touch;
 use palpate_jobs::input::{Described, Measurement, record_sha256};
 use palpate_jobs::{Analyze, Calibrate, Compare, ErrorKind, JobError, typed};
 use palpate_report::result::{Input, word};
+use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
 use pyo3::pybacked::PyBackedStr;
 use pyo3::types::PyType;
@@ -630,7 +631,14 @@ shown! {
 fn first_touch(touch: &Bound<'_, PyAny>) -> PyResult<ContactChoice> {
     match touch.extract::<PyBackedStr>() {
         Ok(text) => parse_touch(&text).map_err(|error| refused_plainly::<OptionError>(format!("touch: {error}"))),
-        Err(_) => quantity::metres(touch).map(ContactChoice::Displacement),
+        Err(_) => quantity::metres(touch).map(ContactChoice::Displacement).map_err(|error| {
+            let message = format!("touch: expected a text or a displacement in m, found {}", touch.get_type());
+            if error.is_instance_of::<PyTypeError>(touch.py()) {
+                refused_plainly::<OptionError>(message)
+            } else {
+                error
+            }
+        }),
     }
 }
 
