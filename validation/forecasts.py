@@ -5,7 +5,8 @@
 FOLDER holds records of any format that palpate reads; a file NAME.toml beside NAME.csv describes it. The package has to be installed for
 the Python that runs this. Every hold of at least --fewest samples is cut at --share of its duration. A ratio is the root mean square error
 of a forecast over that of the law which turns out to be the best of all, by the samples behind the cut and with their noise. A hold is
-covered where the 95 % band contains 95 % of these samples. With --write the table goes to docs/validation/forecasts.md.
+covered where the 95 % band contains 95 % of these samples. Where a record has several holds, each is also forecast beside the others, and
+beside those before it. With --write the table goes to docs/validation/forecasts.md.
 """
 
 import argparse
@@ -37,15 +38,23 @@ SIZES, REPEATED, SAMPLES = (1e-3, 1e-2), 60, 300
 
 
 @dataclass
+class Forecast:
+    """One forecast of a hold: its root mean square error behind the cut, and whether its band covered these samples."""
+
+    error: float
+    covered: bool
+
+
+@dataclass
 class Hold:
     """What came of one hold."""
 
     file: str
     samples: int
-    # Root mean square errors behind the cut, of the combination and of each law.
-    error: float
-    laws: dict
-    covered: bool
+    # By what else was known of the body: "alone", "others", "before".
+    forecasts: dict[str, Forecast]
+    # Root mean square errors of the laws.
+    laws: dict[str, float]
     named: str | None
     certainty: str | None
 
@@ -53,9 +62,8 @@ class Hold:
     def best(self):
         return min(self.laws.values())
 
-    def ratio(self, law=None):
-        error = self.error if law is None else self.laws.get(law, np.inf)
-        return error / self.best
+    def ratio(self, law):
+        return self.laws.get(law, np.inf) / self.best
 
 
 def holds(folder, fewest):
@@ -83,28 +91,45 @@ def holds(folder, fewest):
                 yield str(path.relative_to(folder)), record.time_s[first:last], signal[first:last], "displacement" if creeps else "force"
 
 
-def judged(file, t, y, quantity, share):
-    """What the first part of a hold says of the rest; None where it says nothing."""
+def judged(file, hold, others, share):
+    """What the first part of a hold says of the rest; None where it says nothing. Others are holds, and whether they came before."""
+    t, y, quantity = hold
     cut = t[0] + share * (t[-1] - t[0])
     first = int(np.searchsorted(t, cut, side="right"))
     whole = palpate.compare(t, y, quantity=quantity, cuts=[share]).to_dict()
     laws = {law["law"]: forecast["error"] * whole["change"] for law in whole["laws"] for forecast in law["forecasts"] if forecast}
     if not laws:
         return None
-    table = palpate.forecast(t[:first], y[:first], t[first:], quantity=quantity)
-    verdict = palpate.compare(t[:first], y[:first], quantity=quantity)
     rest = y[first:]
-    inside = (table["low"] <= rest) & (rest <= table["high"])
-    error = float(np.sqrt(np.mean((table["value"] - rest) ** 2)))
-    return Hold(file, len(t), error, laws, bool(inside.mean() >= 0.95), verdict.law, verdict.certainty)
+
+    def forecast(beside):
+        table = palpate.forecast(t[:first], y[:first], t[first:], quantity=quantity, others=beside)
+        inside = (table["low"] <= rest) & (rest <= table["high"])
+        return Forecast(float(np.sqrt(np.mean((table["value"] - rest) ** 2))), bool(inside.mean() >= 0.95))
+
+    forecasts = {"alone": forecast(None)}
+    known = {"others": [other for other, _ in others], "before": [other for other, before in others if before]}
+    forecasts.update({name: forecast(beside) for name, beside in known.items() if beside})
+    verdict = palpate.compare(t[:first], y[:first], quantity=quantity)
+    return Hold(file, len(t), forecasts, laws, verdict.law, verdict.certainty)
+
+
+def share_of(ratios):
+    """Share of ratios that are near 1 and their median, as two cells."""
+    return f"{100 * np.mean([ratio <= NEAR for ratio in ratios]):.0f} | {statistics.median(ratios):.2f}"
+
+
+def cells(found, name):
+    """Near, ratio and covered of the forecasts by what was known, as three cells; of the holds that have one."""
+    known = [(hold, hold.forecasts[name]) for hold in found if name in hold.forecasts]
+    if not known:
+        return "– | – | –"
+    return f"{share_of([forecast.error / hold.best for hold, forecast in known])} | {100 * np.mean([forecast.covered for _, forecast in known]):.0f}"
 
 
 def row(name, found):
-    ratios = [hold.ratio() for hold in found]
-    near = 100 * np.mean([ratio <= NEAR for ratio in ratios])
-    covered = 100 * np.mean([hold.covered for hold in found])
     spectrum = [hold.ratio("spectrum") for hold in found]
-    return f"| {name} | {len(found)} | {near:.0f} | {statistics.median(ratios):.2f} | {covered:.0f} | {100 * np.mean([r <= NEAR for r in spectrum]):.0f} | {statistics.median(spectrum):.2f} |"
+    return f"| {name} | {len(found)} | {cells(found, 'alone')} | {cells(found, 'others')} | {cells(found, 'before')} | {share_of(spectrum)} |"
 
 
 def simulated():
@@ -130,6 +155,7 @@ def page(found, requested, left_out):
     for hold in found:
         files.setdefault(hold.file, []).append(hold)
     rows = [row(name, of) for name, of in files.items()]
+    several = [hold for hold in found if "others" in hold.forecasts]
     words = []
     for word in ("clear", "likely", "open"):
         of = [hold for hold in found if hold.certainty == word]
@@ -139,19 +165,22 @@ def page(found, requested, left_out):
     return f"""# Forecasts
 
 What the first {100 * requested.share:.0f} % of a hold says of the rest, on {len(found)} holds of {len(files)} published records, which others measured and which are no
-part of this repository. The forecast combines all laws, with weights from what each predicts within that first part. *Near*: holds in which
-its root mean square error is within 20 % of that of the law which turns out to be the best, in %; nobody knows that law before. *Ratio*: the
-median of one error over the other. *Covered*: holds in which the 95 % band contains 95 % of the samples that follow. Beside them the dense
-spectrum alone. Members, cuts, their importance and the ridge were chosen on
-these holds, among some sixty variants: other holds will do worse, by how much is not known. Not judged: {left_out} holds whose first part says nothing. One command writes this page:
+part of this repository. The forecast combines all laws. *Alone*: with weights from what each predicts within that first part. *Others*: where
+a record has several holds, with weights from what each predicts of the other holds too, which are known whole. *Before*: the same with the
+holds before it only. *Near*: holds in which the root mean square error of the forecast is within 20 % of that of the law which turns out to
+be the best, in %; nobody knows that law before. *Ratio*: the median of one error over the other. *Covered*: holds in which the 95 % band
+contains 95 % of the samples that follow. Last the dense spectrum alone. Members, cuts, their importance, the ridge, and how much other holds
+count were chosen on these holds, among some ninety variants: other holds will do worse, by how much is not known. Not judged: {left_out} holds whose
+first part says nothing. One command writes this page:
 
 ```sh
 python validation/forecasts.py "$PALPATE_DATA" --share {requested.share:.4f} --fewest {requested.fewest} --write
 ```
 
-| file | holds | near | ratio | covered | spectrum: near | ratio |
-|---|--:|--:|--:|--:|--:|--:|
+| file | holds | alone: near | ratio | covered | others: near | ratio | covered | before: near | ratio | covered | spectrum: near | ratio |
+|---|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|
 {row("**all**", found)}
+{row("**records of several holds**", several)}
 {chr(10).join(rows)}
 
 The law that `compare` names from the same first part, by its certainty: holds, and in how many % of them its forecast is within 20 % of
@@ -181,17 +210,23 @@ def main():
     parser.add_argument("--write", action="store_true", help="write the table to docs/validation/forecasts.md")
     requested = parser.parse_args()
     warnings.simplefilter("ignore", palpate.PalpateWarning)
-    found, left_out = [], 0
+    records = {}
     for file, t, y, quantity in holds(requested.folder, requested.fewest):
-        try:
-            hold = judged(file, np.asarray(t), np.asarray(y), quantity, requested.share)
-        except palpate.PalpateError:
-            hold = None
-        if hold is None:
-            left_out += 1
-            continue
-        found.append(hold)
-        print(f"{file}: {hold.samples} samples, {hold.ratio():.2f} times the best, {'covered' if hold.covered else 'not covered'}", flush=True)
+        records.setdefault((file, quantity), []).append((np.asarray(t), np.asarray(y), quantity))
+    found, left_out = [], 0
+    for (file, _), of in records.items():
+        for index, hold in enumerate(of):
+            nearest = sorted((other for other in range(len(of)) if other != index), key=lambda other: abs(other - index))
+            try:
+                result = judged(file, hold, [(of[other][:2], other < index) for other in nearest], requested.share)
+            except palpate.PalpateError:
+                result = None
+            if result is None:
+                left_out += 1
+                continue
+            found.append(result)
+            errors = ", ".join(f"{name} {forecast.error / result.best:.2f}" for name, forecast in result.forecasts.items())
+            print(f"{file}: {result.samples} samples, times the best: {errors}", flush=True)
     if not found:
         sys.exit("no hold could be judged")
     text = page(found, requested, left_out)

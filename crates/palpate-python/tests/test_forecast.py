@@ -35,6 +35,38 @@ def test_a_comparison_states_the_same_forecast() -> None:
     assert sum(member["weight"] for member in members) == pytest.approx(1.0)
 
 
+def test_other_holds_tell_what_follows() -> None:
+    t = np.linspace(0.0, 60.0, 600)
+    others = [(t, 0.5 * relaxed(t, seed)) for seed in (2, 3, 4)]
+    rest = t[30:]
+    alone = palpate.forecast(t[:30], relaxed(t)[:30], rest)
+    beside = palpate.forecast(t[:30], relaxed(t)[:30], rest, others=others)
+    truth = 1 + 2 * (1 + 4 * rest) ** -0.25
+    assert np.max(np.abs(beside["value"] - truth)) < 0.5 * np.max(np.abs(alone["value"] - truth))
+    assert np.all((beside["low"] <= truth) & (truth <= beside["high"]))
+    # Too short for a forecast of its own.
+    few = palpate.forecast(t[:10], relaxed(t)[:10], rest[:5], others=others)
+    assert np.all(np.isfinite(few["value"]))
+    with pytest.raises(palpate.OptionError, match=r"others\[1\]: expected a pair of times and signal, found ndarray"):
+        palpate.forecast(t, relaxed(t), rest, others=[(t, t), t])
+    with pytest.raises(palpate.PalpateError, match=r"others\[0\] signal"):
+        palpate.forecast(t, relaxed(t), rest, others=[(t, "x")])
+
+
+def test_holds_of_a_record_are_forecast_together() -> None:
+    t = np.linspace(0.0, 10.0, 200)
+    ramp = np.linspace(0.0, 1.0, 20, endpoint=False)
+    time, jaw, force = [], [], []
+    for index in range(3):
+        time += [*(ramp + 12 * index), *(t + 1 + 12 * index)]
+        jaw += [*(1e-3 * (index + ramp)), *np.full(200, 1e-3 * (index + 1))]
+        force += [*(3 * (index + ramp)), *((index + 1) * relaxed(t, index))]
+    record = palpate.Record.from_arrays(time_s=time, force_n=force, displacement_m=jaw)
+    table = record.compare(laws=["latency", "sls", "prony:2"]).to_dict()
+    assert [hold["comparison"]["forecast"]["other_holds"] for hold in table["records"][0]["holds"]] == [2, 2, 2]
+    assert "this hold at 5 cut points and 2 other holds best" in table["records"][0]["holds"][0]["comparison"]["forecast"]["sentence"]
+
+
 def test_what_tells_nothing_is_refused() -> None:
     t = np.arange(12.0)
     with pytest.raises(palpate.FitError, match="too short"):

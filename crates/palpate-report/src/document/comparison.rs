@@ -128,6 +128,8 @@ documents! {
             forecast.members.iter().map(|(member, weight)| MemberDocument::new(member, *weight)).collect(),
         /// Number of cut points at which the combination was tried.
         cuts: usize = forecast.cuts,
+        /// Number of other holds of the record that it was tried on.
+        other_holds: usize = forecast.other_holds,
         /// Root mean square error there, over the change until then and ln(t/T) + 0.1.
         error: f64 = forecast.error,
         /// The forecast in one sentence.

@@ -1,7 +1,7 @@
 //! The order of the steps.
 
 use super::effects::Causes;
-use super::holds::{HoldAnalysis, complete_hold, fit_exponents, prepare_hold};
+use super::holds::{HoldAnalysis, complete_hold, fit_exponents, forecast_holds, prepare_hold};
 use super::prepare::{ClockSkew, Prepared, corrected_watched, signal_findings};
 use super::together::{
     Across, EstimatedModulus, ImpliedModulus, LoadingModulus, ModulusSource, Overlay, across, changing_rate,
@@ -175,9 +175,10 @@ fn examined(
     findings.extend(until_beyond(&holds, options));
     let (exponents, extension) = fit_exponents(&mut holds, options, watch)?;
     findings.extend(extension);
-    for (hold, ramp) in holds.iter_mut().zip(ramps) {
-        complete_hold(hold, &record, ramp, options, watch)?;
+    for (hold, ramp) in holds.iter_mut().zip(&ramps) {
+        complete_hold(hold, &record, *ramp, options, watch)?;
     }
+    forecast_holds(&mut holds, &record, &ramps, options, watch)?;
     findings.extend(specimen.as_ref().and_then(|specimen| uncertain_touch(&contact, specimen, &holds)));
     let across = across(&holds, &exponents, options, 4.0 * segmentation.settings.tolerance, watch)?;
     findings.extend(changing_rate(&across.joint));

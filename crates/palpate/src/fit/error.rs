@@ -195,3 +195,11 @@ impl FitError {
         })
     }
 }
+
+/// A comparison, a fit or a forecast; none where nothing could be fitted.
+pub(crate) fn fitted<T>(made: Result<T, FitError>) -> Result<Option<T>, Cancelled> {
+    match made {
+        Err(FitError::Cancelled(cancelled)) => Err(cancelled),
+        made => Ok(made.ok()),
+    }
+}

@@ -39,6 +39,7 @@ mod spectrum;
 pub use crate::laws::ExponentChoice;
 pub use crate::optimise::{Termination, Work};
 pub use error::FitError;
+pub(crate) use error::fitted;
 pub use forecast::{Forecast, forecast};
 pub(crate) use forecast::{condensed_curve, extrapolated};
 pub(crate) use global::{combinations, distinct};

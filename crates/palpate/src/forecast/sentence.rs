@@ -1,7 +1,9 @@
 //! A verdict in one sentence.
 
+use super::HoldForecast;
 use super::result::{Certainty, Comparison, Ranking, Reservation, Verdict};
 use crate::laws::{ExponentChoice, Law};
+use crate::number::counted;
 
 /// Beyond this many times a cost is no longer reported exactly.
 const MOST_TIMES: f64 = 1000.0;
@@ -40,11 +42,11 @@ impl Comparison {
         let ends = [share(next.low), share(next.high)];
         Some(format!(
             "When the hold has lasted twice as long, the signal will have changed by another {} % [{}, {}] of its change so far, by the \
-             combination of laws that has predicted this hold best at {} cut points.",
+             combination of laws that has predicted {} best.",
             rounded(share(next.value)),
             rounded(ends[0].min(ends[1])),
             rounded(ends[0].max(ends[1])),
-            forecast.cuts
+            tried_on(forecast)
         ))
     }
 
@@ -153,6 +155,17 @@ impl Comparison {
             .collect();
         let unit = if self.ranking == Ranking::Forward { " as far off" } else { "" };
         format!("; {}{unit}", reported.join(", ").replacen(", ", " and ", 1))
+    }
+}
+
+/// What the weights of a forecast rest on.
+fn tried_on(forecast: &HoldForecast) -> String {
+    let cuts = || format!("this hold at {}", counted(forecast.cuts, "cut point"));
+    let others = || counted(forecast.other_holds, "other hold");
+    match (forecast.cuts, forecast.other_holds) {
+        (_, 0) => cuts(),
+        (0, _) => others(),
+        _ => format!("{} and {}", cuts(), others()),
     }
 }
 

@@ -1,20 +1,27 @@
 //! What a comparison of laws gives cause to say.
 
 use crate::analysis::finding::Finding;
-use crate::fit::{Fit, FitError, Termination};
-use crate::forecast::Comparison;
+use crate::fit::{Fit, LawOptions, Samples, Termination};
+use crate::forecast::{Comparison, HoldForecast};
 use crate::laws::Law;
 use crate::record::Record;
 use crate::segment::{After, HoldMode, OBSERVED, PARTS, Segment, change, error_of_mean};
 use crate::statistics::{mean, range};
-use crate::watch::Cancelled;
+use crate::watch::{Cancelled, Watch};
 
-/// A comparison or fit; none where nothing could be fitted.
-pub(in crate::analysis) fn fitted<T>(made: Result<T, FitError>) -> Result<Option<T>, Cancelled> {
-    match made {
-        Err(FitError::Cancelled(cancelled)) => Err(cancelled),
-        made => Ok(made.ok()),
+/// Adds to the comparisons of the holds of a record what each hold will show next, by what laws have predicted of all.
+pub(super) fn add_forecasts(
+    holds: Vec<(Samples<'_>, LawOptions, &mut Comparison)>,
+    laws: &[Law],
+    watch: &mut dyn Watch,
+) -> Result<(), Cancelled> {
+    let (samples, comparisons): (Vec<_>, Vec<_>) =
+        holds.into_iter().map(|(samples, options, comparison)| ((samples, options), comparison)).unzip();
+    let forecasts = HoldForecast::of_record(&samples, laws, watch)?;
+    for (comparison, forecast) in comparisons.into_iter().zip(forecasts) {
+        comparison.forecast = forecast;
     }
+    Ok(())
 }
 
 /// What a comparison gives cause to say.

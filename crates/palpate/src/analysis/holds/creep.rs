@@ -1,8 +1,8 @@
 //! Holds of constant force: the displacement creeps.
 
-use super::compared::{comparison_findings, fitted};
+use super::compared::{add_forecasts, comparison_findings};
 use crate::analysis::finding::Finding;
-use crate::fit::Samples;
+use crate::fit::{Samples, fitted};
 use crate::forecast::{CompareOptions, Comparison, compare_laws_watched};
 use crate::laws::Response;
 use crate::record::{Record, RecordError};
@@ -184,16 +184,19 @@ pub fn creep_holds(
     let record = record.repaired();
     let exchanged = record.exchanged().ok_or(CreepError::NoDisplacement)?.map_err(CreepError::Still)?;
     let held = force_held(&record, &exchanged, segment, given, watch)?;
-    let mut compare = compare.clone();
-    compare.fit.response = Response::Creep;
+    let mut each = compare.clone();
+    each.fit.response = Response::Creep;
+    // All holds are forecast together.
+    each.forecast = false;
     let time = exchanged.time();
+    let until = |times: &[f64]| until.map_or(times.len(), |until| times.partition_point(|t| *t <= until));
     let holds = held.iter().enumerate().map(|(index, hold)| {
         let from = hold.fit_start;
         let times: Vec<f64> = time[from..hold.end].iter().map(|t| t - time[from]).collect();
         let displacement = exchanged.force()[from..hold.end].to_vec();
-        let last = until.map_or(times.len(), |until| times.partition_point(|t| *t <= until));
+        let last = until(&times);
         let samples = Samples::new(&times[..last], &displacement[..last]);
-        let comparison = fitted(compare_laws_watched(&samples, &compare, &[], watch))?;
+        let comparison = fitted(compare_laws_watched(&samples, &each, &[], watch))?;
         Ok(CreepHold {
             number: index + 1,
             start: time[hold.start],
@@ -207,7 +210,16 @@ pub fn creep_holds(
             comparison,
         })
     });
-    holds.collect()
+    let mut holds: Vec<CreepHold> = holds.collect::<Result<_, CreepError>>()?;
+    let compared = holds.iter_mut().filter_map(|hold| {
+        let last = until(&hold.times);
+        let samples = Samples::new(&hold.times[..last], &hold.displacement[..last]);
+        Some((samples, each.fit.clone(), hold.comparison.as_mut()?))
+    });
+    if compare.forecast {
+        add_forecasts(compared.collect(), &each.laws(), watch)?;
+    }
+    Ok(holds)
 }
 
 #[cfg(test)]

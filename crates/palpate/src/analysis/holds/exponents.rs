@@ -1,9 +1,8 @@
 //! The exponents fitted to the holds of a record: the list, its extension, the free one.
 
-use super::compared::fitted;
 use super::hold::{HoldAnalysis, HoldoutError};
 use crate::analysis::{AnalysisOptions, Finding};
-use crate::fit::{ExponentChoice, FitError, LatencyFit, fit_hold_watched, fit_rates_watched, select_order};
+use crate::fit::{ExponentChoice, FitError, LatencyFit, fit_hold_watched, fit_rates_watched, fitted, select_order};
 use crate::statistics::mean;
 use crate::watch::{Cancelled, Progress, Watch};
 

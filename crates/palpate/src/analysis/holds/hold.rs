@@ -2,12 +2,12 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::compared::{comparison_findings, fitted, not_a_hold};
+use super::compared::{add_forecasts, comparison_findings, not_a_hold};
 use super::rate_bias::{RateBias, rate_bias};
 use crate::analysis::{AnalysisOptions, Finding};
 use crate::contact::{Shape, Specimen};
-use crate::fit::{ExponentChoice, LatencyFit, OrderSelection, Samples, Termination, select_order};
-use crate::forecast::{Comparison, KnownFit, RampChoice, compare_laws_watched};
+use crate::fit::{ExponentChoice, LatencyFit, LawOptions, OrderSelection, Samples, Termination, fitted, select_order};
+use crate::forecast::{CompareOptions, Comparison, KnownFit, RampChoice, compare_laws_watched};
 use crate::laws::Loading;
 use crate::record::Record;
 use crate::segment::{After, FitStartRule, HoldMode, Relaxation, RelaxationType, Segment, classify_relaxation};
@@ -260,18 +260,49 @@ fn compare(
     options: &AnalysisOptions,
     watch: &mut dyn Watch,
 ) -> Result<Option<Comparison>, Cancelled> {
-    let Some(mut compare) = options.compare.clone() else {
+    let Some(compare) = &options.compare else {
         return Ok(None);
     };
-    if compare.ramps == RampChoice::Measured {
-        compare.fit.loading = loading;
-    }
+    let compare = CompareOptions {
+        fit: fit_options(compare, loading),
+        // All holds are forecast together.
+        forecast: false,
+        ..compare.clone()
+    };
     let known = |fit| KnownFit {
         options: options.fit.of_latency(LatencyFit::choice(fit)),
         fit,
     };
     let known: Vec<KnownFit<'_>> = hold.fits.iter().map(known).collect();
     fitted(compare_laws_watched(&hold.samples(), &compare, &known, watch))
+}
+
+/// Adds to all compared holds what each will show next. `ramps` are the first samples of the loadings before them.
+pub(in crate::analysis) fn forecast_holds(
+    holds: &mut [HoldAnalysis],
+    record: &Record,
+    ramps: &[Option<usize>],
+    options: &AnalysisOptions,
+    watch: &mut dyn Watch,
+) -> Result<(), Cancelled> {
+    let Some(compare) = options.compare.as_ref().filter(|compare| compare.forecast) else {
+        return Ok(());
+    };
+    let compared = holds.iter_mut().zip(ramps).filter_map(|(hold, ramp)| {
+        let samples = Samples::new(&hold.times[..hold.fitted], &hold.values[..hold.fitted]);
+        let fit = fit_options(compare, loading(record, *ramp, &hold.segment));
+        Some((samples, fit, hold.comparison.as_mut()?))
+    });
+    add_forecasts(compared.collect(), &compare.laws(), watch)
+}
+
+/// Options of the fits on a hold after a loading.
+fn fit_options(compare: &CompareOptions, loading: Option<Loading>) -> LawOptions {
+    let measured = (compare.ramps == RampChoice::Measured).then_some(loading).flatten();
+    LawOptions {
+        loading: measured.or_else(|| compare.fit.loading.clone()),
+        ..compare.fit.clone()
+    }
 }
 
 /// The displacement from sample `ramp` to where the fit of a hold starts.

@@ -14,9 +14,8 @@ mod exponents;
 mod hold;
 mod rate_bias;
 
-pub(super) use compared::fitted;
 pub use creep::{CreepError, CreepHold, creep_holds};
 pub(super) use exponents::fit_exponents;
 pub use hold::{HoldAnalysis, HoldoutError, Signal};
-pub(super) use hold::{complete_hold, prepare_hold};
+pub(super) use hold::{complete_hold, forecast_holds, prepare_hold};
 pub use rate_bias::RateBias;

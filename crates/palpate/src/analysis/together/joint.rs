@@ -2,11 +2,11 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::analysis::holds::{HoldAnalysis, Signal, fitted};
+use crate::analysis::holds::{HoldAnalysis, Signal};
 use crate::analysis::{AnalysisOptions, Finding};
 use crate::fit::{
     ExponentChoice, HoldWeights, JointComparison, JointFit, JointOptions, Samples, TrendVerdict, compare_joint_watched,
-    fit_joint_watched,
+    fit_joint_watched, fitted,
 };
 use crate::laws::Law;
 use crate::segment::After;

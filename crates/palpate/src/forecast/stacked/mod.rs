@@ -10,33 +10,36 @@
 //! least ("stacking", Wolpert 1992, Breiman 1996), where later cuts count more (π). The forecast is Σ w f with the members f fitted to
 //! the whole hold. What the weights of the other cuts would have been off by at each cut is its error; it grows with ln(t/T), and the variance
 //! Σ w (f − Σ w f)² between the members is added to its square.
+//!
+//! Holds of one body resemble each other: cuts of the other holds of a record count a fifth of those of the hold itself, and where another
+//! is longer by half, what its first part of the same duration predicted counts ten times them. On each hold the least ⟨e_k²⟩ is the unit.
+//!
+//! | file | what |
+//! |---|---|
+//! | `member.rs` | what is combined |
+//! | `trial.rs` | what members fitted to first parts of a hold predict of the rest |
+//! | `pool.rs` | trials of all holds, and what the combination would have been off by |
+//! | `weights.rs` | the weights |
 
 mod member;
+mod pool;
+mod trial;
 mod weights;
 
 pub use member::ForecastMember;
-use member::{Course, members};
-use weights::stacked;
+pub use trial::TriedHold;
 
-use crate::fit::{Condensed, FitError, LawOptions, Samples};
+use member::Course;
+use pool::Pool;
+use trial::AT_ONCE;
+
+use crate::fit::{FitError, LawOptions, Samples, fitted};
 use crate::laws::Law;
 use crate::statistics::{mean, noise_in_time, normal_factor};
 use crate::watch::{Cancelled, Progress, Watch};
 
-/// Shares of the hold that members are fitted to, and how much what they predict counts.
-const CUTS: [(f64, f64); 5] = [(0.25, 0.3), (0.35, 0.5), (0.5, 1.0), (0.65, 1.5), (0.8, 2.0)];
-
-/// How many times the duration of a first part is predicted from it.
-const HORIZON: f64 = 3.0;
-
-/// Fewest samples in a first part, and behind it.
-const FEWEST: (usize, usize) = (8, 3);
-
-/// Cuts that a forecast has to be tried at.
-const LEAST_CUTS: usize = 3;
-
-/// Errors grow with ln(t/T) + this.
-const AT_ONCE: f64 = 0.1;
+/// Trials that a forecast rests on: of the hold itself, and of first parts as long of others.
+const LEAST: usize = 3;
 
 /// The forecast of a hold.
 ///
@@ -63,8 +66,10 @@ pub struct HoldForecast {
     pub members: Vec<(ForecastMember, f64)>,
     /// Root mean square of what the combination would have been off by at the cuts, over the change until then and ln(t/T) + 0.1.
     pub error: f64,
-    /// Cuts that it was tried at.
+    /// Cuts of the hold that it was tried at.
     pub cuts: usize,
+    /// Other holds that it was tried on.
+    pub other_holds: usize,
     /// Change of the signal so far, in its unit.
     pub change: f64,
     /// 1 where the signal has risen, −1 where it has fallen.
@@ -86,15 +91,6 @@ pub struct Forecasted {
     pub high: f64,
 }
 
-/// What was predicted from the first part of the hold, and came otherwise.
-struct Trial {
-    importance: f64,
-    /// Weights of the nodes, which sum to 1, and ln(t/c) + 0.1 there.
-    nodes: Vec<(f64, f64)>,
-    /// Errors of the members at the nodes as shares of the change until the cut.
-    errors: Vec<Vec<f64>>,
-}
-
 impl HoldForecast {
     /// The forecast of a hold from laws; `None` where the hold is too short for three first parts that predict anything.
     ///
@@ -106,54 +102,95 @@ impl HoldForecast {
         options: &LawOptions,
         watch: &mut dyn Watch,
     ) -> Result<Option<Self>, FitError> {
-        samples.check(1)?;
-        let mut members = members(laws);
+        Self::beside(&TriedHold::of(*samples, laws, options, watch)?, &[], watch)
+    }
+
+    /// The forecast of a hold, with weights from other holds of the body too, the nearest first; `None` where the hold is too short for
+    /// three first parts that predict anything, and fewer than three others are longer by half.
+    ///
+    /// ```
+    /// use palpate::fit::{LawOptions, Samples};
+    /// use palpate::forecast::{HoldForecast, TriedHold};
+    /// use palpate::laws::Law;
+    /// use palpate::test_problems::noisy_hold;
+    /// use palpate::watch::Unwatched;
+    /// let laws = ["latency", "sls"].map(|name| name.parse::<Law>().unwrap());
+    /// let (times, values) = noisy_hold(600, 5.0, 1e-3);
+    /// let tried = |count| {
+    ///     TriedHold::of(Samples::new(&times[..count], &values[..count]), &laws, &LawOptions::default(), &mut Unwatched)
+    /// };
+    /// // Too few samples for a forecast of its own.
+    /// let (short, long) = (tried(12)?, tried(600)?);
+    /// assert!(HoldForecast::beside(&short, &[], &mut Unwatched)?.is_none());
+    /// let forecast = HoldForecast::beside(&short, &[&long, &long, &long], &mut Unwatched)?.unwrap();
+    /// assert_eq!((forecast.cuts, forecast.other_holds), (0, 3));
+    /// # Ok::<(), palpate::fit::FitError>(())
+    /// ```
+    ///
+    /// # Errors
+    /// As [`HoldForecast::of`].
+    pub fn beside(
+        hold: &TriedHold<'_>,
+        others: &[&TriedHold<'_>],
+        watch: &mut dyn Watch,
+    ) -> Result<Option<Self>, FitError> {
+        let others = hold.alike(others);
         let mut done = 0;
-        let all = members.len() * (1 + CUTS.len());
         let mut next = || {
             done += 1;
-            watch.report(Progress::counted("forecasting", done - 1, all))
+            watch.report(Progress::counted("forecasting", done - 1, hold.members.len() * (1 + others.len())))
         };
-        let mut courses = Vec::with_capacity(members.len());
-        for index in (0..members.len()).rev() {
+        let (mut usable, mut courses) = (Vec::new(), Vec::new());
+        for (index, member) in hold.members.iter().enumerate() {
             next()?;
-            match Course::of(members[index], samples, options) {
-                Ok(course) => courses.push(course),
-                Err(_) => drop(members.remove(index)),
+            if let Ok(course) = Course::of(*member, &hold.samples, &hold.options) {
+                usable.push(index);
+                courses.push(course);
             }
         }
-        courses.reverse();
-        let mut trials = Vec::with_capacity(CUTS.len());
-        for (share, importance) in CUTS {
-            trials.extend(trial(samples, &members, options, (share, importance), &mut next)?);
-        }
-        if trials.len() < LEAST_CUTS {
+        let as_long = others.iter().map(|other| hold.as_long(other, &mut next)).collect::<Result<Vec<_>, _>>()?;
+        if hold.trials.len() + as_long.iter().flatten().count() < LEAST {
             return Ok(None);
         }
-        let count = members.len();
-        let weights = weighted(&trials, count, None);
-        let (mut square, mut importance) = (0.0, 0.0);
-        for (left_out, trial) in trials.iter().enumerate() {
-            let others = weighted(&trials, count, Some(left_out));
-            let off = |node: usize| others.iter().zip(&trial.errors).map(|(w, errors)| w * errors[node]).sum::<f64>();
-            let squares = trial.nodes.iter().enumerate().map(|(node, (w, growth))| w * (off(node) / growth).powi(2));
-            square += trial.importance * squares.sum::<f64>();
-            importance += trial.importance;
-        }
-        let (times, values) = (samples.times, samples.values);
-        let kept: Vec<usize> = (0..count).filter(|i| weights[*i] > 0.0).collect();
+        let beside: Vec<_> = others.iter().copied().zip(as_long.iter().map(Option::as_ref)).collect();
+        let pool = Pool::new(&usable, hold, &beside);
+        let weights = pool.weights();
+        let kept = || (0..usable.len()).filter(|i| weights[*i] > 0.0);
+        let (times, values) = (hold.samples.times, hold.samples.values);
         let forecast = Self {
-            duration: times[times.len() - 1] - times[0],
-            members: kept.iter().map(|i| (members[*i], weights[*i])).collect(),
-            error: (square / importance).sqrt(),
-            cuts: trials.len(),
+            duration: hold.duration(),
+            members: kept().map(|i| (hold.members[usable[i]], weights[i])).collect(),
+            error: pool.error(),
+            cuts: hold.trials.len(),
+            other_holds: others.len(),
             change: change(values).abs(),
             direction: change(values).signum(),
             noise: noise_in_time(times, values),
-            courses: kept.iter().map(|i| courses[*i].clone()).collect(),
-            options: options.clone(),
+            courses: kept().map(|i| courses[i].clone()).collect(),
+            options: hold.options.clone(),
         };
         Ok(Some(forecast).filter(|forecast| forecast.error.is_finite()))
+    }
+
+    /// The forecasts of all holds of a record, each beside the others; `None` where there is none, or no law can be fitted.
+    ///
+    /// # Errors
+    /// [`FitError::Cancelled`].
+    pub fn of_record(
+        holds: &[(Samples<'_>, LawOptions)],
+        laws: &[Law],
+        watch: &mut dyn Watch,
+    ) -> Result<Vec<Option<Self>>, Cancelled> {
+        let tried = holds.iter().map(|(samples, options)| fitted(TriedHold::of(*samples, laws, options, watch)));
+        let tried: Vec<Option<TriedHold<'_>>> = tried.collect::<Result<_, _>>()?;
+        let forecasts = tried.iter().enumerate().map(|(index, hold)| {
+            let Some(hold) = hold else { return Ok(None) };
+            let mut others: Vec<usize> = (0..tried.len()).filter(|other| *other != index).collect();
+            others.sort_by_key(|other| other.abs_diff(index));
+            let others: Vec<&TriedHold<'_>> = others.iter().filter_map(|other| tried[*other].as_ref()).collect();
+            Ok(fitted(Self::beside(hold, &others, watch))?.flatten())
+        });
+        forecasts.collect()
     }
 
     /// The forecast a time after the first sample, s, with the band that covers a sample with this confidence.
@@ -189,71 +226,4 @@ impl HoldForecast {
 /// Change of a signal: its first sample to the mean of its last five.
 fn change(values: &[f64]) -> f64 {
     mean(&values[values.len().saturating_sub(5)..]) - values[0]
-}
-
-/// Weights from all trials but one.
-fn weighted(trials: &[Trial], count: usize, left_out: Option<usize>) -> Vec<f64> {
-    let mut products = vec![0.0; count * count];
-    for (_, trial) in trials.iter().enumerate().filter(|(index, _)| Some(*index) != left_out) {
-        for i in 0..count {
-            for j in 0..=i {
-                let errors = trial.errors[i].iter().zip(&trial.errors[j]).zip(&trial.nodes);
-                let product: f64 = errors.map(|((one, other), (weight, _))| weight * one * other).sum();
-                products[i * count + j] += trial.importance * product;
-            }
-        }
-    }
-    for i in 0..count {
-        for j in 0..i {
-            products[j * count + i] = products[i * count + j];
-        }
-    }
-    stacked(&products, count)
-}
-
-/// What the members fitted to a share of the hold predict of the next; `None` where there is too little of either.
-fn trial(
-    samples: &Samples<'_>,
-    members: &[ForecastMember],
-    options: &LawOptions,
-    (share, importance): (f64, f64),
-    next: &mut impl FnMut() -> Result<(), Cancelled>,
-) -> Result<Option<Trial>, Cancelled> {
-    let (times, values) = (samples.times, samples.values);
-    let start = times[0];
-    let cut = share * (times[times.len() - 1] - start);
-    let first = times.partition_point(|t| t - start <= cut);
-    let until = times.partition_point(|t| t - start <= HORIZON * cut);
-    if first < FEWEST.0 || until < first + FEWEST.1 {
-        return Ok(None);
-    }
-    let fitted = Samples {
-        times: &times[..first],
-        values: &values[..first],
-        standard_deviations: samples.standard_deviations.map(|standard_deviations| &standard_deviations[..first]),
-    };
-    let change = change(fitted.values).abs();
-    if change <= 0.0 {
-        return Ok(None);
-    }
-    let elapsed: Vec<f64> = times[first..until].iter().map(|t| t - start).collect();
-    let rest = Condensed::finer(&elapsed, &values[first..until]);
-    let total: f64 = rest.roots.iter().map(|root| root * root).sum();
-    let nodes = rest.times.iter().zip(&rest.roots).map(|(t, root)| (root * root / total, (t / cut).ln() + AT_ONCE));
-    let errors = members.iter().map(|member| {
-        next()?;
-        let off = |predicted: Vec<f64>| -> Vec<f64> {
-            let found = rest.values.iter().zip(&rest.roots).map(|(value, root)| value / root);
-            predicted.iter().zip(found).map(|(predicted, found)| (predicted - found) / change).collect()
-        };
-        let course = Course::of(*member, &fitted, options).map(|course| off(course.at(&rest.times, options)));
-        // One that cannot be fitted to so little is as far off as all that has changed.
-        let usable = course.ok().filter(|errors| errors.iter().all(|error| error.is_finite()));
-        Ok(usable.unwrap_or_else(|| vec![1.0; rest.times.len()]))
-    });
-    Ok(Some(Trial {
-        importance,
-        nodes: nodes.collect(),
-        errors: errors.collect::<Result<_, Cancelled>>()?,
-    }))
 }

@@ -3,7 +3,7 @@
 #![allow(clippy::unwrap_used, reason = "in a test a panic is the verdict")]
 
 use palpate::fit::{LawOptions, Samples, forecast};
-use palpate::forecast::{CompareOptions, HoldForecast, Reservation, compare_laws};
+use palpate::forecast::{CompareOptions, HoldForecast, Reservation, TriedHold, compare_laws};
 use palpate::laws::Law;
 use palpate::test_problems::Rng;
 use palpate::watch::Unwatched;
@@ -58,6 +58,74 @@ fn the_band_of_a_forecast_covers_what_follows() {
     assert!(covered * 100 >= 90 * holds, "{covered} of {holds}");
     // The law that made the hold is among them, and nobody knew which it is.
     assert!(ratios[holds / 2] < 1.8, "{near} of {holds}, {ratios:?}");
+}
+
+/// Root mean square error of the forecast of a hold from its first third, beside others, and whether the band covered the rest.
+fn of_first_third(
+    (times, values): &(Vec<f64>, Vec<f64>),
+    others: &[(Vec<f64>, Vec<f64>)],
+    signal: Signal,
+) -> (f64, bool) {
+    let (laws, options) = (CompareOptions::default().laws(), LawOptions::default());
+    let first = times.partition_point(|t| *t <= DURATION / 3.0);
+    let early =
+        TriedHold::of(Samples::new(&times[..first], &values[..first]), &laws, &options, &mut Unwatched).unwrap();
+    let others: Vec<_> = others
+        .iter()
+        .map(|(t, y)| TriedHold::of(Samples::new(t, y), &laws, &options, &mut Unwatched).unwrap())
+        .collect();
+    let found = HoldForecast::beside(&early, &others.iter().collect::<Vec<_>>(), &mut Unwatched).unwrap().unwrap();
+    let rest = found.at_times(&times[first..], 0.95);
+    let inside = rest
+        .iter()
+        .zip(&values[first..])
+        .filter(|(at, value)| at.low <= **value && **value <= at.high)
+        .count();
+    let square: f64 = rest.iter().zip(&times[first..]).map(|(at, t)| (at.value - signal(*t)).powi(2)).sum();
+    ((square / rest.len() as f64).sqrt(), inside as f64 >= 0.95 * rest.len() as f64)
+}
+
+#[test]
+fn other_holds_of_the_body_make_a_forecast_better() {
+    let mut random = Rng::new(11);
+    let (mut covered, mut logarithms) = (0, Vec::new());
+    for (_, signal) in SIGNALS {
+        for noise in [2e-3, 2e-2] {
+            // The same course at other depths.
+            let mut scaled = |scale: f64| {
+                let (times, values) = hold(signal, noise, &mut random);
+                (times, values.iter().map(|value| scale * value - 0.1).collect::<Vec<_>>())
+            };
+            let others = [0.4, 0.6, 0.8, 1.4].map(&mut scaled);
+            let early = hold(signal, noise, &mut random);
+            let ((alone, _), (beside, covers)) =
+                (of_first_third(&early, &[], signal), of_first_third(&early, &others, signal));
+            covered += usize::from(covers);
+            logarithms.push((beside / alone).ln());
+        }
+    }
+    let better = logarithms.iter().filter(|logarithm| **logarithm < 0.0).count();
+    let ratio = (logarithms.iter().sum::<f64>() / logarithms.len() as f64).exp();
+    println!("{better} of {} are better, {ratio:.2} times the error, {covered} covered", logarithms.len());
+    assert!(covered >= 11 && better >= 9 && ratio < 0.7, "{better}, {ratio}, {covered}");
+}
+
+#[test]
+fn holds_that_go_another_way_tell_nothing_of_each_other() {
+    let options = LawOptions::default();
+    let laws = ["latency", "sls", "logarithmic"].map(|name| name.parse::<Law>().unwrap());
+    let (times, falling) = hold(SIGNALS[0].1, 2e-3, &mut Rng::new(2));
+    let rising: Vec<f64> = falling.iter().map(|value| 4.0 - value).collect();
+    let of = |holds: &[&Vec<f64>]| {
+        let holds: Vec<_> = holds.iter().map(|values| (Samples::new(&times, values), options.clone())).collect();
+        HoldForecast::of_record(&holds, &laws, &mut Unwatched).unwrap()
+    };
+    let (one, both) = (of(&[&falling]), of(&[&falling, &rising]));
+    assert_eq!(one[0], both[0]);
+    let three = of(&[&falling, &rising, &falling]);
+    assert_eq!(three[0].as_ref().unwrap().other_holds, 1);
+    // What cannot be fitted takes no other with it.
+    assert_eq!(of(&[&falling, &vec![1.0; SAMPLES]])[0], one[0]);
 }
 
 /// A hold of two times with 0.2 % of noise was taken for one of another law, whose BIC was worse by 990.
