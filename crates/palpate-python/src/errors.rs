@@ -37,7 +37,14 @@ pub(crate) fn refused<E: PyTypeInfo>(message: impl Display, hint: Option<impl Di
 
 fn reported(message: impl Display, hint: Option<impl Display>) -> String {
     let text = hint.map_or(message.to_string(), |hint| format!("{message}\nhint: {hint}"));
-    spelled(&text, &keyword)
+    spelled(&of_files(&text), &keyword)
+}
+
+/// Options of the command that messages about files name, as keywords.
+fn of_files(text: &str) -> String {
+    ["columns", "part"]
+        .iter()
+        .fold(text.to_owned(), |text, name| text.replace(&format!("--{name} \""), &format!("{name}=\"")))
 }
 
 /// An exception without a hint.

@@ -43,5 +43,5 @@ pub use layout::Layout;
 pub use part::{Clock, ColumnInfo, ColumnKind, Label, Metadata, Part, SkippedPart};
 pub(crate) use reader::{Found, ReadPart, not_finite, share};
 pub use reader::{Heard, ReadOptions};
-pub(crate) use recognise::names_time;
+pub(crate) use recognise::{candidates, names_time};
 pub(crate) use stacked::{MOST_RESULTS, RowKind, Starts};

@@ -195,7 +195,7 @@ impl RecordError {
                 "the rows are in reverse order: reverse them, or check the time column"
             }
             Self::ClockGoesBack { .. } => {
-                "if the clock restarts, the file holds several runs: split it there; otherwise check the time column"
+                "if the clock restarts, the file holds several tests: name each in a column test_id, or split it there; otherwise check the time column"
             }
             Self::Rate { .. } => "resample at a rate between about one sample per second and the rate of the record",
             Self::OutsideTable { .. } => {

@@ -1,7 +1,7 @@
 //! Delimited text, as test machines and scripts write it.
 //!
 //! Channels in volts are scaled where a table above them says how (`channels.rs`).
-//! A text holds one test, which is streamed, or several, one below the other (`sections.rs`).
+//! A text holds one test, which is streamed, or several, one below the other (`sections.rs`, `runs.rs`).
 //!
 //! Reading goes in two steps. [`detect`] looks at the beginning of a file and says what it found:
 //! encoding, delimiter, decimal mark, names, units, the line the data starts on. Someone (a person or a
@@ -36,6 +36,7 @@ mod detect;
 mod part;
 mod row;
 mod rows_ahead;
+mod runs;
 mod sample;
 mod sections;
 

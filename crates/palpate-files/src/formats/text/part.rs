@@ -3,7 +3,7 @@
 use super::{
     channels::{self, Scale},
     columns::read_columns,
-    detect,
+    detect, runs,
     sample::Sample,
     sections,
 };
@@ -31,6 +31,9 @@ pub(crate) fn look_into(input: &Input, options: &ReadOptions) -> Result<Found, F
     }
     let mut layout =
         detect::of_rows(&lines, block, sample.encoding, options).map_err(|problem| input.wrong(problem))?;
+    if let Some(found) = runs::look_into(input, (&lines, &layout), options)? {
+        return Ok(found);
+    }
     let scales = channels::scaled(&lines, &mut layout);
     let part = Part {
         written: layout.to_string(),

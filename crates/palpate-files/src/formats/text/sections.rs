@@ -5,6 +5,7 @@
 //! | TRIOS (TA Instruments) | a line `[step]`, the name of the step, names, units |
 //! | RheoCompass (Anton Paar) | `Result: …`, `Interval and data points: 1 60`, names and units behind a label, in the language of the program |
 //! | rSpace (Malvern, Netzsch) | another text in the first column, `Action Name` |
+//! | any other, below one line of names | another specimen in its column, or a clock that begins again (`runs.rs`) |
 //! | any other | names of columns that repeat, with a time among them |
 //!
 //! Such a text is held in memory as a whole. One table of any length is not: it is streamed.
@@ -41,7 +42,7 @@ struct Section {
     title: Option<String>,
     /// Rows of a step that its title says to be a hold.
     held: Option<usize>,
-    /// Bytes of the line of names, where it does not stand among the lines of the test.
+    /// Bytes of the lines of names, where they do not stand among the lines of the test.
     head: Range<usize>,
     /// Bytes of its lines.
     body: Range<usize>,
@@ -96,27 +97,53 @@ pub(super) fn look_into(
     let text = whole(input, encoding)?;
     let all = numbered(&text);
     let places = if by_actions { by_action(&all, delimiter) } else { stacked(&all, skip, delimiter) };
-    if places.len() > MOST_SECTIONS {
-        let expected = format!("at most {MOST_SECTIONS} tests");
-        let hint = "split the file, or export a part of it";
-        return Err(input.wrong(FileProblem::unfit("the text", expected, format!("{}", places.len()), hint)));
-    }
+    check_number(input, &places)?;
     let (sections, skipped) = laid_out(&all, places, (encoding, &fixed));
     let titled = sections.len() > 1 && sections.iter().any(|section| section.title.is_some());
     if timed(&sections) < if titled { 1 } else { 2 } {
         return Ok(None);
     }
-    let parts = parts(&sections, encoding);
+    Ok(Some(of_sections(input, text, sections, skipped, encoding)))
+}
+
+/// The tests of a text at these places.
+pub(super) fn found(
+    input: &Input,
+    text: String,
+    places: Vec<Place>,
+    (encoding, options): (Encoding, &ReadOptions),
+) -> Result<Found, FileError> {
+    check_number(input, &places)?;
+    let (sections, skipped) = laid_out(&numbered(&text), places, (encoding, options));
+    Ok(of_sections(input, text, sections, skipped, encoding))
+}
+
+fn check_number(input: &Input, places: &[Place]) -> Result<(), FileError> {
+    if places.len() > MOST_SECTIONS {
+        let expected = format!("at most {MOST_SECTIONS} tests");
+        let hint = "split the file, or export a part of it";
+        return Err(input.wrong(FileProblem::unfit("the text", expected, format!("{}", places.len()), hint)));
+    }
+    Ok(())
+}
+
+fn of_sections(
+    input: &Input,
+    text: String,
+    sections: Vec<Section>,
+    skipped: Vec<SkippedPart>,
+    encoding: Encoding,
+) -> Found {
     let input = input.clone();
-    Ok(Some(Found {
-        parts,
+    Found {
+        parts: parts(&sections, encoding),
         skipped,
         reader: Box::new(Sections { input, text, sections }),
-    }))
+    }
 }
 
 /// All of a text, decoded.
-fn whole(input: &Input, encoding: Encoding) -> Result<String, FileError> {
+pub(super) fn whole(input: &Input, encoding: Encoding) -> Result<String, FileError> {
     let bytes = input.bytes()?;
     let body = &bytes[encoding.mark_length(&bytes)..];
     if body.len() > MOST_BYTES {
@@ -126,9 +153,9 @@ fn whole(input: &Input, encoding: Encoding) -> Result<String, FileError> {
 }
 
 /// A line, and where its bytes begin.
-type Line<'t> = (usize, &'t str);
+pub(super) type Line<'t> = (usize, &'t str);
 
-fn numbered(text: &str) -> Vec<Line<'_>> {
+pub(super) fn numbered(text: &str) -> Vec<Line<'_>> {
     let begins = |line: &str| line.as_ptr() as usize - text.as_ptr() as usize;
     lines::of_text(text).into_iter().map(|line| (begins(line), line)).collect()
 }
@@ -177,13 +204,13 @@ fn first(line: &str, delimiter: Delimiter) -> &str {
     std::str::from_utf8(cell).unwrap_or_default()
 }
 
-/// A test by the indices of its lines: that of its names, where these stand elsewhere, and its own.
-struct Place {
-    title: Option<String>,
+/// A test by the indices of its lines: those of its names, where these stand elsewhere, and its own.
+pub(super) struct Place {
+    pub(super) title: Option<String>,
     /// Whether the title is that of these rows alone, and not of a result of several intervals.
-    is_step: bool,
-    names: Option<usize>,
-    lines: Range<usize>,
+    pub(super) is_step: bool,
+    pub(super) names: Range<usize>,
+    pub(super) lines: Range<usize>,
 }
 
 /// The tables of a text that stand one below the other.
@@ -201,7 +228,7 @@ fn stacked(all: &[Line<'_>], skip: usize, delimiter: Delimiter) -> Vec<Place> {
         Place {
             title,
             is_step,
-            names: None,
+            names: 0..0,
             lines,
         }
     };
@@ -254,7 +281,7 @@ fn by_action(all: &[Line<'_>], delimiter: Delimiter) -> Vec<Place> {
             _ => places.push(Place {
                 title: Some(action.to_owned()),
                 is_step: true,
-                names: Some(names),
+                names: names..names + 1,
                 lines: index..index + 1,
             }),
         }
@@ -271,7 +298,7 @@ fn laid_out(
     let (mut sections, mut skipped) = (Vec::new(), Vec::new());
     for (place, number) in places.into_iter().zip(1..) {
         let own = &all[place.lines.clone()];
-        let head = place.names.map(|index| &all[index..=index]).unwrap_or_default();
+        let head = &all[place.names.clone()];
         let lines: Vec<&str> = head.iter().chain(own).map(|(_, line)| *line).take(LAYOUT_LINES).collect();
         let layout = detect::rows(&lines, options);
         match layout.and_then(|block| detect::of_rows(&lines, block, encoding, options)) {

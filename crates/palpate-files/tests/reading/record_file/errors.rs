@@ -189,7 +189,7 @@ fn numbers_that_make_no_record_name_their_line() {
             "line 5: time must rise from row to row, found a clock that steps back by up to 1 s (1 of 3 rows",
             "to 1 s after 2 s",
         ],
-        &["the file holds several runs: split it there"],
+        &["the file holds several tests: name each in a column test_id, or split it there"],
     );
     assert!(!error.to_string().contains("in row"), "{error}");
     says("Time (s),Force (N)\n0,1\n1,1\n", "", &["press.csv: the force is 1 N in all 2 rows"], &["load cell"]);

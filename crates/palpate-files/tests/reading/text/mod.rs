@@ -4,6 +4,7 @@ mod errors;
 mod habits;
 mod records;
 mod rheometers;
+mod runs;
 
 use std::path::PathBuf;
 

@@ -1,0 +1,90 @@
+//! Several tests below one line of names: a column names them, or the clock begins again.
+
+use palpate_files::{
+    FileError,
+    input::Input,
+    open::Contents,
+    record::read_part,
+    table::{Part, ReadOptions},
+};
+
+fn open(text: &str) -> Contents {
+    let input = Input::from_bytes("runs.csv", text.as_bytes()).expect("bytes");
+    Contents::of(input, &ReadOptions::default()).unwrap_or_else(|error| panic!("{error}"))
+}
+
+fn titles(contents: &Contents) -> Vec<&str> {
+    contents.parts.iter().map(Part::title).collect()
+}
+
+/// Force of a test at 0 to 9 s.
+fn forces(contents: &Contents, part: usize) -> Vec<f64> {
+    let read = read_part(contents, part, None, &mut |_, _| Ok(())).unwrap_or_else(|error| panic!("{error}"));
+    assert_eq!(read.record.time(), (0..10).map(f64::from).collect::<Vec<_>>());
+    read.record.force().to_vec()
+}
+
+/// Rows `N;time;force` of tests, where `name` makes a test's first cell, its force falls from its number, and it begins at a time.
+fn rows(tests: usize, name: impl Fn(usize) -> String, begins: impl Fn(usize) -> usize) -> String {
+    let row = |test: usize, row: usize| format!("{};{},0;{},{row}\n", name(test), begins(test) + row, test + 1);
+    (0..tests)
+        .flat_map(|test| (0..10).map(move |at| (test, at)))
+        .map(|(test, at)| row(test, at))
+        .collect()
+}
+
+#[test]
+fn specimens_in_a_column_are_tests() {
+    let names = "Maschine;XY\nRadius;10,0;mm\n\nPrüfling;Zeit;Kraft\n;s;N\n";
+    let text = format!("{names}{}", rows(3, |test| format!("K{test}"), |_| 0));
+    let contents = open(&text);
+    assert_eq!(titles(&contents), ["K0", "K1", "K2"]);
+    assert_eq!(contents.parts.iter().map(|part| part.metadata.len()).collect::<Vec<_>>(), [2, 2, 2]);
+    for part in 0..3 {
+        assert_eq!(forces(&contents, part)[3], part as f64 + 1.3);
+    }
+    // A clock that goes on tells nothing of the specimens.
+    assert_eq!(
+        titles(&open(&format!("{names}{}", rows(2, |test| format!("K{test}"), |test| 40 * test)))),
+        ["K0", "K1"]
+    );
+    // What cannot be read has the line that it has in the file.
+    let broken = text.replace("K2;4,0;3,4", "K2;4,0;x");
+    let error: FileError = open(&broken).read(2, &[2, 3], &mut |_, _| Ok(())).unwrap_err();
+    assert!(error.to_string().contains("line 30"), "{error}");
+}
+
+#[test]
+fn numbers_of_tests_stand_behind_the_name_of_their_column() {
+    let text = format!("Test No;Time (s);Force (N)\n{}", rows(2, |test| format!("{}", test + 1), |_| 0));
+    assert_eq!(titles(&open(&text)), ["Test No 1", "Test No 2"]);
+}
+
+#[test]
+fn a_clock_that_begins_again_begins_a_test() {
+    let text = format!("Batch;Time (s);Force (N)\n{}", rows(3, |_| "a".to_owned(), |_| 0));
+    let contents = open(&text);
+    assert_eq!(titles(&contents), ["run 1", "run 2", "run 3"]);
+    assert_eq!(forces(&contents, 1)[9], 2.9);
+    // What each has for itself names it, whatever its column is called.
+    let text = format!("Gel;Time (s);Force (N)\n{}", rows(2, |test| ["soft", "stiff"][test].to_owned(), |_| 0));
+    assert_eq!(titles(&open(&text)), ["soft", "stiff"]);
+}
+
+#[test]
+fn what_is_one_test_stays_one() {
+    let one = |text: String| assert_eq!(titles(&open(&text)), ["the file"], "{text}");
+    // A clock that steps back elsewhere, passes midnight or falls; samples that are counted; a specimen that comes back.
+    one(format!("a;Time (s);Force (N)\n{}", rows(2, |_| "a".to_owned(), |test| 6 - 3 * test)));
+    let day = |test: usize| [86_390, 0][test];
+    one(format!("a;Time (s);Force (N)\n{}", rows(2, |_| "a".to_owned(), day)));
+    let falling: String = (0..20).map(|row| format!("a;{};{row}\n", 20 - row)).collect();
+    one(format!("a;Time (s);Force (N)\n{falling}"));
+    let counted: String = (0..20).map(|row| format!("{row};{row};{row}\n")).collect();
+    one(format!("Test;Time (s);Force (N)\n{counted}"));
+    one(format!(
+        "Specimen;Time (s);Force (N)\n{}",
+        rows(4, |test| format!("K{}", test % 2), |test| 10 * test)
+    ));
+    one(format!("Specimen;Time (s);Force (N)\n{}", rows(1, |_| "K".to_owned(), |_| 0)));
+}
