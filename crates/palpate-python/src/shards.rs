@@ -50,8 +50,9 @@ pub(crate) fn merge<'py>(
         map: map.unwrap_or_default(),
         csv_locale: readers(csv_locale)?,
     };
+    let table = out.clone();
     match writing_job(py, move |watch| question.run(&folders, &out, watch))?.result {
-        Merged::Batch(done) => BatchResult::from(*done).into_bound_py_any(py),
+        Merged::Batch(done) => BatchResult::new(*done, &table).into_bound_py_any(py),
         Merged::Sweep(done) => (done.runs, done.refused).into_bound_py_any(py),
     }
 }

@@ -51,6 +51,9 @@ def test_other_holds_tell_what_follows() -> None:
         palpate.forecast(t, relaxed(t), rest, others=[(t, t), t])
     with pytest.raises(palpate.PalpateError, match=r"others\[0\] signal"):
         palpate.forecast(t, relaxed(t), rest, others=[(t, "x")])
+    with pytest.raises(palpate.FitError, match=r"^others\[1\]: times must rise"):
+        palpate.forecast(t, relaxed(t), 70.0, others=[others[0], (t[::-1], t)])
+    assert len(palpate.forecast(t, relaxed(t), 70.0)) == 1
 
 
 def test_holds_of_a_record_are_forecast_together() -> None:
@@ -72,8 +75,8 @@ def test_what_tells_nothing_is_refused() -> None:
     with pytest.raises(palpate.FitError, match="too short"):
         palpate.forecast(t, 1 + np.exp(-t / 4), [20.0])
     t = np.linspace(0.0, 20.0, 300)
-    with pytest.raises(palpate.OptionError, match="from the first sample on, found -1"):
-        palpate.forecast(t, relaxed(t), [-1.0])
+    with pytest.raises(palpate.OptionError, match=r"from the last sample on, at 20 s, found 19 s\nhint: .*fit_hold\(\.\.\.\)\.predict"):
+        palpate.forecast(t, relaxed(t), [20.0, 19.0])
     with pytest.raises(palpate.OptionError, match="between 0 and 1, found 95"):
         palpate.forecast(t, relaxed(t), [30.0], confidence=95)
     with pytest.raises(palpate.OptionError, match='no law is called "x"'):

@@ -109,6 +109,34 @@ def test_dimensions_of_xarray_have_names() -> None:
     assert palpate.fit_many(time, xarray.DataArray(rows.T, dims=("sample", "specimen"))) == expected
 
 
+def test_coordinates_of_xarray_are_columns_of_the_result() -> None:
+    rows = np.array([Y, 2 * Y, 3 * Y])
+    named = xarray.DataArray(rows.T, dims=("sample", "specimen"), coords={"sample": T, "specimen": ["a", "b", "c"]})
+    fits = palpate.fit_many(named.sample, named)
+    assert fits.column_names[0] == "specimen" and fits["specimen"] == ["a", "b", "c"]
+    assert fits["exponent"].tolist() == palpate.fit_many(T, rows)["exponent"].tolist()
+    # A map: an index where a dimension has no coordinate.
+    area = xarray.DataArray(np.array([[Y, 2 * Y], [3 * Y, 4 * Y]]), dims=("x", "y", "sample"), coords={"sample": T, "x": [0.5, 1.5]})
+    table = palpate.fit_many(area.sample, area, weights=xarray.ones_like(area).transpose("y", "sample", "x"))
+    assert table["x"].tolist() == [0.5, 0.5, 1.5, 1.5] and table["y"].tolist() == [0, 1, 0, 1]
+    assert table["amplitude"][3] == pytest.approx(4 * FIT.parameters["amplitude"], rel=1e-6)
+
+
+def test_labels_that_are_dates_are_texts_in_every_unit() -> None:
+    days = np.repeat(np.array(["2024-01-01", "2024-01-02"], dtype="datetime64[D]"), 400)
+    for unit in ("ns", "us", "s"):
+        table = pandas.DataFrame({"day": days.astype(f"datetime64[{unit}]"), "t": [*T, *T], "y": [*Y, *Y]})
+        fits = palpate.fit_many(table, by="day", time="t", signal="y")
+        assert fits["day"] == ["2024-01-01 00:00:00", "2024-01-02 00:00:00"], unit
+
+
+def test_the_first_date_may_be_missing() -> None:
+    dates = DATES.copy()
+    dates[0] = np.datetime64("NaT")
+    fit = palpate.fit_hold(dates, Y, nan="omit")
+    assert len(fit.signal) == 399 and fit.parameters["exponent"] == pytest.approx(FIT.parameters["exponent"], rel=0.02)
+
+
 def test_rows_that_are_padded_are_cut() -> None:
     short, y = relaxation(300, 1e-4, 1)[0] * 0 + T[:300], Y[:300]
     alone = palpate.fit_hold(short, y)
@@ -162,6 +190,13 @@ def test_what_is_no_long_table_is_stated() -> None:
     for table in (frame, polars.DataFrame(LONG), pyarrow.table(LONG), LONG):
         with pytest.raises(palpate.OptionError, match="expected a table with a column 'nothing', found"):
             palpate.fit_many(table, by="nothing", time="t", signal="y")
+    for table in (frame, polars.DataFrame(LONG), pyarrow.table(LONG), LONG):
+        with pytest.raises(palpate.OptionError, match="'specimn', found specimen, run, t, y, w\nhint: did you mean 'specimen'?"):
+            palpate.fit_many(table, by="specimn", time="t", signal="y")
+    with pytest.raises(palpate.OptionError, match=r"hint: it is in the index: table\.reset_index\(\)"):
+        palpate.fit_many(frame.set_index("specimen"), by="specimen", time="t", signal="y")
+    with pytest.raises(palpate.OptionError, match=r"found LazyFrame\nhint: table\.collect\(\)"):
+        palpate.fit_many(polars.LazyFrame(LONG), by="specimen", time="t", signal="y")
     with pytest.raises(palpate.OptionError, match="time: expected the name of a column beside by, found NoneType"):
         palpate.fit_many(frame, by="run", signal="y")  # type: ignore[call-overload] # pyright: ignore
     with pytest.raises(palpate.OptionError, match="by: expected a label in every row, found none in row 3"):

@@ -84,7 +84,7 @@ impl SampleMean {
 }
 
 /// Median; reorders `values`. NaN for an empty slice.
-pub(crate) fn median(values: &mut [f64]) -> f64 {
+pub fn median(values: &mut [f64]) -> f64 {
     quantile(values, 0.5)
 }
 

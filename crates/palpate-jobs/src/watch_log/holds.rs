@@ -2,6 +2,7 @@
 
 use palpate::fit::Estimate;
 use palpate::observe::{ContactPhase, Held, Observation, Slip};
+use palpate::statistics::median;
 use palpate_report::document::{ObservationDocument, WatchDocument, WatchedHoldDocument};
 
 /// Something that happens.
@@ -40,7 +41,7 @@ pub struct HoldObserved {
     pub until: f64,
     /// What was held for most of its ticks.
     pub held: Held,
-    /// Force when it began and when it was last observed, N.
+    /// Force when it began and at its end, N: there the median of the last ticks, of which one or two may be of what comes next already.
     pub forces: (f64, f64),
     /// The last equilibrium force, N.
     pub equilibrium: Option<Estimate>,
@@ -51,7 +52,12 @@ pub struct HoldObserved {
     /// First time below the force of slip, s.
     pub slipped: Option<f64>,
     ticks: [u64; 2],
+    /// Forces at the last ticks, N.
+    last: [f64; LAST],
 }
+
+/// Ticks that the force at the end of a hold is the median of.
+const LAST: usize = 9;
 
 /// The holds of a log.
 #[derive(Debug, Default)]
@@ -88,6 +94,7 @@ impl Holds {
                 warned: None,
                 slipped: None,
                 ticks: [0; 2],
+                last: [observed.force; LAST],
             });
             hold.follow(observed, held);
             self.held = Some(held);
@@ -120,7 +127,10 @@ impl HoldObserved {
         self.ticks[usize::from(held == Held::Force)] += 1;
         self.held = if self.ticks[1] > self.ticks[0] { Held::Force } else { Held::Displacement };
         self.until = observed.time;
-        self.forces.1 = observed.force;
+        self.last.rotate_left(1);
+        self.last[LAST - 1] = observed.force;
+        let known = usize::try_from(self.ticks[0] + self.ticks[1]).map_or(LAST, |ticks| ticks.min(LAST));
+        self.forces.1 = median(&mut self.last.clone()[LAST - known..]);
         self.equilibrium = if held == Held::Force { None } else { observed.equilibrium_force.or(self.equilibrium) };
         self.creep = observed.creep_rate.or(self.creep);
         if observed.slip != Slip::None {

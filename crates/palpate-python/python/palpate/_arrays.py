@@ -63,7 +63,8 @@ def _seconds(array: NDArray[Any], name: str) -> NDArray[Any]:
     if array.dtype.kind == "M":
         if name != "time_s":
             raise OptionError(f"{name}: expected numbers in s, found dates\nhint: subtract the first date of the samples")
-        array = array - array[0]
+        known = array[~np.isnat(array)]
+        array = array - (known[0] if known.size else array[0])
     if array.dtype.kind == "m" and name.rstrip(")").endswith("_s"):
         return np.where(np.isnat(array), np.nan, array / np.timedelta64(1, "s"))
     return array

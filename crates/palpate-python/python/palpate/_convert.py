@@ -16,7 +16,7 @@ def needed(library: str, method: str) -> Any:
     try:
         return import_module(library)
     except ImportError as error:
-        raise ImportError(f"{method} needs {library}, which is not installed: {error}") from None
+        raise ImportError(f"{method} needs {library}, which is not installed: {error}\nhint: pip install {library.replace('_', '-')}") from None
 
 
 def table_of(result: Any) -> Table:

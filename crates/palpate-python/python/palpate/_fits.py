@@ -215,8 +215,8 @@ def fit_many(
     Parameters
     ----------
     time_s, signal, weights
-        A list of arrays of any lengths, an array of shape (curves, samples), of NumPy or xarray, or a column of lists in Arrow
-        (pyarrow, polars). One column of times, or of weights, stands for all curves. With `by`, `time_s` is a long table of pandas,
+        A list of arrays of any lengths, an array of shape (curves, samples), or a column of lists in Arrow (pyarrow, polars). An array of
+        xarray may have any number of dimensions beside that of the times; their coordinates are columns of the result. One column of times, or of weights, stands for all curves. With `by`, `time_s` is a long table of pandas,
         polars or pyarrow, a row a sample, and `time`, `signal` and `weights` are names of its columns.
     by
         Name of the column that tells the curves of a long table apart, or several names.
@@ -271,9 +271,13 @@ def fit_many(
             raise OptionError(f"{name}: expected a list of curves, found a mapping\nhint: pass list(curves.values()), or a long table with by=")
         if found is None and name != "weights":
             raise OptionError(f"{name}: expected a list of curves, found None")
-    if hasattr(signal, "dims") and len(getattr(time_s, "dims", ())) == 1 and time_s.dims[0] in signal.dims:
+    if hasattr(signal, "dims") and hasattr(signal, "coords") and not hasattr(signal, "data_vars"):
         # Dimensions of xarray have names: a curve goes along that of the times.
-        signal = signal.transpose(..., time_s.dims[0])
+        named = len(getattr(time_s, "dims", ())) == 1 and time_s.dims[0] in signal.dims
+        along = time_s.dims[0] if named else signal.dims[-1]
+        if set(getattr(weights, "dims", ())) == set(signal.dims):
+            _, weights = _long.of_dimensions(weights.transpose(*signal.dims), along)
+        labels, signal = _long.of_dimensions(signal, along)
     if getattr(signal, "ndim", 0) == 2 and getattr(time_s, "ndim", 0) == 1 and not hasattr(signal, "columns"):
         rows, samples = signal.shape
         if len(time_s) == rows != samples:

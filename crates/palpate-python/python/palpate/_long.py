@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from difflib import get_close_matches
 from typing import Any
 
 import numpy as np
@@ -17,14 +18,28 @@ def column(table: Any, name: str) -> Any:
     """A column of a table of pandas, polars, pyarrow, or of a mapping, by its name."""
     try:
         found = table[name]
-    except (KeyError, TypeError, IndexError, AttributeError, ValueError) as error:
-        raise OptionError(f"expected a table with a column {name!r}, found none: {error}") from None
     except Exception as error:
         # polars has an exception of its own for it.
-        if type(error).__name__ != "ColumnNotFoundError":
+        if not isinstance(error, (KeyError, TypeError, IndexError, AttributeError, ValueError)) and type(error).__name__ != "ColumnNotFoundError":
             raise
-        raise OptionError(f"expected a table with a column {name!r}, found {', '.join(map(str, table.columns))}") from None
+        raise OptionError(_without(table, name, error)) from None
     return found
+
+
+def _without(table: Any, name: str, error: Exception) -> str:
+    """What is wrong with a table that has no such column, and what would help."""
+    message = f"expected a table with a column {name!r}, found "
+    if hasattr(table, "collect"):
+        return f"{message}{type(table).__name__}\nhint: table.collect()"
+    names = getattr(table, "column_names", None) or getattr(table, "columns", None)
+    names = [str(other) for other in (table if names is None and isinstance(table, Mapping) else names if names is not None else [])]
+    if not names:
+        return f"{message}none: {error}"
+    message += ", ".join(names)
+    if name in getattr(getattr(table, "index", None), "names", ()):
+        return f"{message}\nhint: it is in the index: table.reset_index()"
+    close = get_close_matches(name, names, 1)
+    return f"{message}\nhint: did you mean {close[0]!r}?" if close else message
 
 
 def curves(table: Any, by: str | Sequence[str], columns: Sequence[str]) -> tuple[Labels, list[list[Any]]]:
@@ -58,8 +73,29 @@ def curves(table: Any, by: str | Sequence[str], columns: Sequence[str]) -> tuple
 
 def _plain(values: Any) -> list[Any]:
     """Labels as plain objects; those of other kinds as texts, and all of them where some are."""
-    listed = values.to_pylist() if hasattr(values, "to_pylist") else np.asarray(values).tolist()
+    if hasattr(values, "to_pylist"):
+        listed = values.to_pylist()
+    else:
+        array = np.asarray(values)
+        # NumPy lists dates in nanoseconds as whole numbers.
+        listed = (array.astype("datetime64[us]") if array.dtype.kind == "M" else array).tolist()
     plain = [label if label is None or isinstance(label, (int, float, str)) else str(label) for label in listed]
     if not any(isinstance(label, str) for label in plain):
         return plain
     return [label if label is None or label != label else str(label) for label in plain]
+
+
+def of_dimensions(signal: Any, along: str) -> tuple[Labels, Any]:
+    """The curves of an array of xarray along one of its dimensions, a row each, and what tells them apart.
+
+    These are the coordinates of the other dimensions, and where there are several dimensions the index along those that have none.
+    """
+    others = [name for name in signal.dims if name != along]
+    signal = signal.transpose(*others, along)
+    labels: Labels = {}
+    for place, name in enumerate(others):
+        if name in signal.coords or len(others) > 1:
+            along_one = np.asarray(signal.coords[name]) if name in signal.coords else np.arange(signal.shape[place])
+            shape = [1] * place + [signal.shape[place]] + [1] * (len(others) - place - 1)
+            labels[str(name)] = _plain(np.broadcast_to(along_one.reshape(shape), signal.shape[:-1]).reshape(-1))
+    return labels, np.asarray(signal).reshape(-1, signal.shape[-1]) if others else signal

@@ -551,10 +551,15 @@ class BatchResult(_Value):
     """Tests without a hold; each has one row, whose ``termination`` says why."""
     loading_modulus_pa: Final[float | None]
     """Median of Young's modulus of the first loading ramp over the tests that have one, Pa."""
+    table: Final[str]
+    """Path of the table, as given: ``pandas.read_parquet(result.table)``."""
     rows: Final[int]
     """Rows of the table."""
     failures: Final[list[str]]
     """Why tests gave no rows, a sentence each."""
+    def summary(self) -> str:
+        """What this result comes to, as text."""
+        ...
     def map(self, quantity: str) -> str:
         """A map of a quantity over the positions of the curves, as SVG.
 
@@ -2229,7 +2234,7 @@ def compare(
 def forecast(
     time_s: ArrayLike,
     signal: ArrayLike,
-    at_s: ArrayLike,
+    at_s: float | ArrayLike,
     *,
     laws: Sequence[LawName] | None = None,
     weights: ArrayLike | None = None,
@@ -2243,8 +2248,8 @@ def forecast(
     ----------
     time_s, signal, weights : array_like, shape (N,)
         As for `fit_hold`.
-    at_s : array_like
-        Times to predict, on the clock of ``time_s``, none before its first.
+    at_s : float or array_like
+        Times to predict, on the clock of ``time_s``, none before its last: the hold itself is what was fitted.
     laws
         Names of laws; if left out, all that suit.
     quantity

@@ -17,7 +17,7 @@ _METHODS: list[tuple[str, Callable[..., Any], tuple[type, ...]]] = [
     ("to_polars", _convert.to_polars, _TABLES),
     ("to_xarray", _convert.to_xarray, _TABLES),
     ("to_dict", _convert.to_dict, (_palpate.Table, _palpate.Record, _palpate.Prediction, _palpate.Trajectory)),
-    ("summary", _show.summary, _TABLES[1:]),
+    ("summary", _show.summary, (*_TABLES[1:], _palpate.BatchResult)),
     ("_repr_html_", _show._repr_html_, _SHOWN),
     ("plot", _plot.series, (_palpate.Record, _palpate.Trajectory)),
     ("plot", _plot.fit, (_palpate.Fit,)),

@@ -96,7 +96,7 @@ shown! {
         /// Which law predicts best, or has the lowest BIC, in a sentence; None without alternatives.
         sentence: Option<&str> = self.sentence.as_deref(),
         /// What the parameters alone do not tell, in sentences.
-        remarks: Vec<String> = self.document.remarks.clone(),
+        remarks: Vec<String> = self.document.remarks.iter().map(|text| text.replace("--fit-until", "fit_until_s")).collect(),
         /// Why the search ended: "converged", or what kept it from that.
         termination: &str = self.requested().termination.as_deref().unwrap_or_default(),
         /// Whether it ended at an optimum inside the range that was searched.

@@ -22,8 +22,8 @@ const SOME: usize = 1 << 14;
 /// ----------
 /// time_s, signal, weights : array_like, shape (N,)
 ///     As for `fit_hold`.
-/// at_s : array_like
-///     Times to predict, on the clock of ``time_s``, none before its first.
+/// at_s : float or array_like
+///     Times to predict, on the clock of ``time_s``, none before its last: the hold itself is what was fitted.
 /// laws
 ///     Names of laws; if left out, all that suit.
 /// quantity
@@ -78,7 +78,8 @@ pub(crate) fn forecast(
     others: Option<Listed<Bound<'_, PyAny>>>,
     confidence: f64,
 ) -> PyResult<Table> {
-    let (times, values, at) = (doubles(time_s, "time_s")?, doubles(signal, "signal")?, doubles(at_s, "at_s")?);
+    let (times, values) = (doubles(time_s, "time_s")?, doubles(signal, "signal")?);
+    let at = moments(at_s)?;
     let standard_deviations = standard_deviations_of(weights, false)?;
     let others: Vec<Hold> =
         others.as_deref().unwrap_or_default().iter().enumerate().map(hold_of).collect::<PyResult<_>>()?;
@@ -87,9 +88,13 @@ pub(crate) fn forecast(
         let message = format!("confidence: expected a number between 0 and 1, found {confidence}");
         return Err(refused_plainly::<OptionError>(message));
     }
-    if let Some(early) = at.iter().find(|time| !time.is_finite() || times.first().is_some_and(|first| *time < first)) {
-        let message = format!("at_s: expected times from the first sample on, found {early} s");
-        return Err(refused_plainly::<OptionError>(message));
+    let last = times.last().copied().unwrap_or(f64::NEG_INFINITY);
+    if let Some(early) = at.iter().find(|time| !time.is_finite() || **time < last) {
+        let message = format!("at_s: expected times from the last sample on, at {last} s, found {early} s");
+        return Err(refused::<OptionError>(
+            message,
+            Some("the curve of a law within the hold is that of fit_hold(...).predict"),
+        ));
     }
     let mut options = CompareOptions {
         laws: all_laws(laws.as_deref().unwrap_or_default())?,
@@ -102,25 +107,41 @@ pub(crate) fn forecast(
     let made = at_length(py, move |mut heard| {
         let samples = samples_of(&times, &values, standard_deviations.as_deref());
         let mut tried = |samples| TriedHold::of(samples, &options.laws(), &options.fit, &mut heard);
-        let hold = tried(samples)?;
-        let others: Vec<_> = others.iter().map(|(t, y)| tried(Samples::new(t, y))).collect::<Result<_, _>>()?;
-        let found = HoldForecast::beside(&hold, &others.iter().collect::<Vec<_>>(), &mut heard)?;
+        let hold = tried(samples).map_err(|error| (None, error))?;
+        let tried = others
+            .iter()
+            .enumerate()
+            .map(|(index, (t, y))| tried(Samples::new(t, y)).map_err(|error| (Some(index), error)));
+        let others: Vec<_> = tried.collect::<Result<_, _>>()?;
+        let found = HoldForecast::beside(&hold, &others.iter().collect::<Vec<_>>(), &mut heard);
+        let found = found.map_err(|error| (None, error))?;
         let Some(found) = found else { return Ok(None) };
         let elapsed: Vec<f64> = at.iter().map(|time| time - times[0]).collect();
         let mut forecasts = Vec::with_capacity(at.len());
         for some in elapsed.chunks(SOME) {
-            heard.look()?;
+            heard.look().map_err(|ended| (None, ended.into()))?;
             forecasts.extend(found.at_times(some, confidence));
         }
         Ok(Some((at, forecasts)))
     })?;
-    let made = made.map_err(|error: palpate::fit::FitError| refused_plainly::<FitError>(error))?;
+    let made = made.map_err(|(other, error): (Option<usize>, palpate::fit::FitError)| {
+        let place = other.map_or_else(String::new, |index| format!("others[{index}]: "));
+        refused_plainly::<FitError>(format!("{place}{error}"))
+    })?;
     let Some((at, forecasts)) = made else {
         let message = "expected a hold whose beginning tells something of its end, found one that is too short or does not change";
         return Err(refused::<FitError>(message, Some("give the hold more samples")));
     };
     let rows: Vec<_> = at.into_iter().zip(forecasts).collect();
     Table::of(columns!(rows, row => at_s = row.0, value = row.1.value, low = row.1.low, high = row.1.high))
+}
+
+/// Times to predict, s; a single one is a column of one.
+fn moments(at_s: &Bound<'_, PyAny>) -> PyResult<Vec<f64>> {
+    match at_s.extract::<f64>() {
+        Ok(one) => Ok(vec![one]),
+        Err(_) => doubles(at_s, "at_s"),
+    }
 }
 
 /// Times, s, and signal.

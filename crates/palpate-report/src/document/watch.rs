@@ -47,7 +47,7 @@ documents! {
         equilibrium_force_n?: Option<f64> = equilibrium,
         /// `hold_ends`; omitted in the summary.
         event?: Option<String> = None,
-        /// Force at its last tick, N.
+        /// Force at its end, the median of its last nine ticks, N.
         force_end_n: f64 = force_end,
         /// Force at its start, N.
         force_start_n: f64 = force_start,

@@ -78,7 +78,14 @@ impl CalibratedRecord {
         let Some(chosen) = self.chosen() else {
             return vec!["The law could not be calibrated on this record.".to_owned()];
         };
-        let mut lines = vec![format!("Law calibrated on this record: {}.", chosen.material.candidate())];
+        let law = chosen.material.candidate();
+        let mut lines = vec![match chosen.termination.is_good() {
+            true => format!("Law calibrated on this record: {law}."),
+            false => format!(
+                "The record does not determine the law {law}: the search did not end at an optimum ({}). What follows is where it ended.",
+                word(chosen.termination).replace('_', " ")
+            ),
+        }];
         lines.extend(formula_of_material(&chosen.material));
         let percent = |share: f64| significant(100.0 * share, 2);
         let fitted = format!("Root mean square residual: {}", quantity(chosen.rmse, "N", 3));

@@ -1,6 +1,6 @@
 //! What a planned grip says, in sentences.
 
-use palpate::contact::Sides;
+use palpate::contact::{Shape, Sides};
 use palpate::grip::{
     BackOff, Control, ForceHold, Grasp, GripError, Objective, PlanKind, PositionHold, Regrip, Schedule, TimeToSlip,
 };
@@ -95,11 +95,14 @@ impl GrippedBody<'_> {
         }
         let refused = self.refused().into_iter().filter(|(name, _)| *name != self.requested());
         remarks.extend(refused.map(|(name, error)| format!("No {name}: {error}.")));
-        if self.grip.material().body().sides == Sides::One {
-            remarks.push(
-                "The material was tested from one side: each of the two jaws moves this distance, towards the other."
-                    .to_owned(),
-            );
+        let body = self.grip.material().body();
+        if body.sides == Sides::One {
+            // A body of constant section is deformed along all of its length, whichever end moves.
+            let moves = match body.shape {
+                Shape::Prism { .. } => "the jaws together close by this distance",
+                _ => "each of the two jaws moves this distance, towards the other",
+            };
+            remarks.push(format!("The material was tested from one side: {moves}."));
         }
         remarks.extend(self.extrapolations().iter().map(|beyond| format!("Beyond the test: {beyond}.")));
         remarks

@@ -81,6 +81,15 @@ pub enum Finding {
         /// Correlation of their estimates.
         correlation: f64,
     },
+    /// The recommended law has a time constant longer than the hold.
+    TimeBeyondHold {
+        /// That law.
+        law: Law,
+        /// Its longest time constant, s.
+        time_constant: f64,
+        /// The hold, s.
+        duration: f64,
+    },
     /// Terms of a series are redundant.
     TermsIndistinguishable {
         /// Those laws.
@@ -309,6 +318,16 @@ pub enum Finding {
         apart: f64,
         /// The largest squeeze, m.
         squeeze: f64,
+    },
+    /// The displacement counts from first touch, as was stated, but is above zero where nothing is pressed yet.
+    DisplacementNotZero {
+        /// Displacement where the record begins, m.
+        start: f64,
+    },
+    /// Force and displacement count from first touch, as was stated, but there is a force where the displacement is zero.
+    ForceNotZero {
+        /// Force where the record begins, N.
+        start: f64,
     },
     /// A column seems to have the opposite sign.
     SignSuspicious {

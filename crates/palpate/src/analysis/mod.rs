@@ -35,7 +35,7 @@ pub use options::{AnalysisOptions, Geometry, LayersChoice};
 pub use pipeline::{Analysis, analyze, analyze_watched, examine};
 pub(crate) use prepare::measured_motion;
 pub use prepare::{
-    ClockSkew, Corrected, Prepared, clock_skew, corrected, corrected_watched, prepared, suspicious_signs,
+    ClockSkew, Corrected, Prepared, clock_skew, corrected, corrected_watched, prepared, suspicious_signs, wrong_zero,
 };
 pub use stated::{HoldReport, StatedRelaxation};
 pub use together::{

@@ -75,11 +75,9 @@ pub fn compare_laws_watched(
         cuts = cuts.into_iter().zip(reported).filter(|(_, reported)| *reported).map(|(cut, _)| cut).collect();
         forecast_from(&mut rows, &cuts)?;
     }
-    let closest = rows
-        .iter()
-        .filter_map(|row| row.fit.as_ref().ok())
-        .min_by(|a, b| a.residual_square.total_cmp(&b.residual_square));
-    let effective = closest.map_or(values.len() as f64, Fit::effective_samples);
+    let fits = || rows.iter().filter_map(|row| row.fit.as_ref().ok());
+    let closest = fits().min_by(|a, b| a.residual_square.total_cmp(&b.residual_square));
+    let effective = closest.map_or(values.len() as f64, |closest| independent(closest, fits()));
     let refuting = rows.iter().find_map(|row| row.spectrum.as_ref());
     let effective = match (refuting, closest) {
         (Some(spectrum), Some(closest)) if spectrum.residual_square < CLOSER * closest.residual_square => {
@@ -112,6 +110,15 @@ pub fn compare_laws_watched(
     };
     comparison.verdict = judge(&comparison);
     Ok(comparison)
+}
+
+/// Samples that count as independent: most of what laws say that describe the hold about as closely as the closest. Terms of a series that
+/// follow the noise leave residuals that look slow, one time in fifty; those of another law show then that they are not.
+fn independent<'f>(closest: &Fit, fits: impl Iterator<Item = &'f Fit>) -> f64 {
+    let variance = |fit: &Fit| fit.residual_square / (fit.samples as f64 - fit.free_parameters() as f64).max(1.0);
+    let alike = 1.02 + 3.0 / closest.samples as f64;
+    let close = fits.filter(|fit| variance(fit) <= alike * variance(closest));
+    close.map(Fit::effective_samples).fold(closest.effective_samples(), f64::max)
 }
 
 /// Where the spectrum leaves less than this share of what the closest law leaves, the residuals of that law are no noise.

@@ -2,11 +2,12 @@
 //!
 //! Holds are independent of each other, as stretches of one hold are not. For every law that was fitted on all of them, the mean logarithm of
 //! its mean square forecast errors on a hold is one number a hold (where nothing is held out on three holds, its difference of BIC), and the
-//! paired test of `confidence_set.rs` over these numbers says which laws are worse than the best beyond chance.
+//! paired test of `confidence_set.rs` over these numbers says which laws are worse than the best beyond chance; by BIC the sum of the differences
+//! has to exceed 6 too, as on one hold.
 
 use super::confidence_set::{MARGIN, is_worse, losses};
 use super::result::{Comparison, Ranking, Row};
-use super::verdict::{REFUTED, preferred};
+use super::verdict::{EVIDENCE, REFUTED, preferred};
 use crate::laws::Law;
 use crate::statistics::mean;
 
@@ -25,7 +26,7 @@ pub struct PooledVerdict {
     pub holds: usize,
 }
 
-/// Judges laws by all holds together; `None` for fewer than three holds, or where no law was fitted on all of them.
+/// Judges laws by all holds together; `None` for fewer than three holds, or where fewer than two laws were fitted on all of them.
 ///
 /// ```
 /// use palpate::fit::Samples;
@@ -82,8 +83,17 @@ pub fn pooled<'a>(comparisons: &[&'a Comparison]) -> Option<PooledVerdict> {
         pooled.iter().filter(|law| !any_stands || law.stands || law.law == Law::Spectrum).collect();
     let candidates = usable.iter().filter(|law| !any_stands || law.stands);
     let best = candidates.min_by(|a, b| a.middle().total_cmp(&b.middle()))?;
+    // One law says nothing of the others, which were not fitted on all holds.
+    if usable.len() < 2 {
+        return None;
+    }
     let margin = if forward { MARGIN } else { 1.0 };
-    let alike = usable.iter().filter(|law| !is_worse(&law.figures, &best.figures, margin, usable.len() - 1));
+    let is_worse = |law: &Pooled| {
+        // Without forecasts the penalty for a parameter, which is the same on all holds, is no evidence of its own.
+        let has_evidence = forward || law.evidence > best.evidence + EVIDENCE;
+        has_evidence && is_worse(&law.figures, &best.figures, margin, usable.len() - 1)
+    };
+    let alike = usable.iter().filter(|law| !is_worse(law));
     let alike: Vec<&Pooled> = alike.copied().collect();
     let chosen = alike.iter().min_by(|a, b| preferred((a.law, a.evidence), (b.law, b.evidence)))?;
     Some(PooledVerdict {

@@ -8,7 +8,7 @@ use super::result::{Certainty, Comparison, Ranking, Reservation, Row, Verdict};
 use crate::laws::Law;
 
 /// A difference of BIC beyond which the law with the lower one is twenty times as probable, so that they are distinguishable.
-const EVIDENCE: f64 = 6.0;
+pub(super) const EVIDENCE: f64 = 6.0;
 
 /// A difference of BIC beyond which a law is refuted ("very strong" evidence in the scale of Kass and Raftery).
 pub(super) const REFUTED: f64 = 10.0;

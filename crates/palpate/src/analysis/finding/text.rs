@@ -37,6 +37,16 @@ impl Finding {
                 "the estimated equilibrium depends on the exponent; a different exponent gives a different equilibrium",
                 "hold longer, or compare holds at one fixed exponent",
             ),
+            Self::TimeBeyondHold { law, time_constant, duration } => caution(
+                "time_beyond_hold",
+                format!(
+                    "the longest time constant of {law} is {} s, the hold lasts {} s",
+                    significant(*time_constant, 3),
+                    significant(*duration, 3)
+                ),
+                "a hold does not show how a process ends that outlasts it: this time constant, its amplitude and the equilibrium are extrapolated, and a drift looks like one",
+                "hold longer, or report the parameters of shorter times alone",
+            ),
             Self::EquilibriumBeyondZero { share, interval } => caution(
                 "equilibrium_beyond_zero",
                 format!(
@@ -248,7 +258,7 @@ impl Finding {
                     "rows_stray",
                     match count {
                         1 => format!("one row of the force is an outlier: {force} N at {time} s"),
-                        _ => format!("{count} single rows of the force are outliers, the first at {time} s with {force} N"),
+                        _ => format!("{count} rows of the force are outliers, the first at {time} s with {force} N"),
                     },
                     "a spike of the load cell or the logger biases the fit; a real peak does not belong to a hold",
                     "remove the rows if they are not forces; `⟨compare/loss=huber⟩` reduces their weight",
@@ -448,6 +458,18 @@ impl Finding {
                 ),
                 "the body does not load by the law of this rule, or the force drifts in air; strains and modulus share the difference",
                 "set touch in the test description to another rule or a displacement",
+            ),
+            Self::DisplacementNotZero { start } => caution(
+                "displacement_not_zero",
+                format!("the record begins at a displacement of {} mm without a force", significant(1e3 * start, 4)),
+                "displacements count from first touch here, and this one does not: strains and modulus are those of a body that is pressed that far already",
+                "set touch = \"auto\" in [contact] of the test description, or the displacement at which the jaw meets the body",
+            ),
+            Self::ForceNotZero { start } => caution(
+                "force_not_zero",
+                format!("the record begins with a force of {} N at a displacement of zero", significant(*start, 3)),
+                "the load cell was not tared, or the displacement counts from a preload: strains, modulus and equilibrium forces contain the difference",
+                "set the force's offset in the test description where the load cell was not tared; where it was, touch = \"auto\" in [contact], or the displacement at first touch",
             ),
             Self::SignSuspicious { column, fall } => {
                 let (fall, unit) = if column == "force" { (*fall, "N") } else { (1e3 * fall, "mm") };

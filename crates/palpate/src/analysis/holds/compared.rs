@@ -1,7 +1,7 @@
 //! What a comparison of laws gives cause to say.
 
 use crate::analysis::finding::Finding;
-use crate::fit::{Fit, LawOptions, Samples, Termination};
+use crate::fit::{Fit, LawOptions, ParameterKind, Samples, Termination};
 use crate::forecast::{Comparison, HoldForecast};
 use crate::laws::Law;
 use crate::record::Record;
@@ -40,6 +40,7 @@ pub(super) fn comparison_findings(comparison: &Comparison) -> Vec<Finding> {
         [verdict.law].iter().chain(alternatives).copied().collect()
     });
     let mut findings = Vec::new();
+    findings.extend(time_beyond_hold(comparison));
     if !at_bound.is_empty() {
         findings.push(Finding::ParametersAtBound { laws: at_bound });
     }
@@ -50,6 +51,20 @@ pub(super) fn comparison_findings(comparison: &Comparison) -> Vec<Finding> {
         findings.push(Finding::LawsIndistinguishable { laws: alike });
     }
     findings
+}
+
+/// A time constant of the recommended law that outlasts the hold.
+fn time_beyond_hold(comparison: &Comparison) -> Option<Finding> {
+    let law = comparison.verdict.as_ref()?.law;
+    let fit = comparison.rows.iter().find(|row| row.law == law)?.fit.as_ref().ok()?;
+    let times = fit.parameters.iter().filter(|parameter| parameter.name.kind == ParameterKind::Time);
+    let time_constant = times.map(|parameter| parameter.estimate.value).fold(0.0, f64::max);
+    let duration = comparison.duration;
+    (time_constant > duration).then_some(Finding::TimeBeyondHold {
+        law,
+        time_constant,
+        duration,
+    })
 }
 
 /// What shows that a hold is not one of constant displacement with a force that relaxes.

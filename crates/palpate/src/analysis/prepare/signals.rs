@@ -1,7 +1,7 @@
 //! What the columns of a record, and what was done to them, give cause to say.
 
 use crate::analysis::{Corrected, Finding, Prepared};
-use crate::record::{Column, Correction, Record, SignalReport, Values, stray_rows};
+use crate::record::{Column, Correction, Record, SignalReport, Values, absurd_rows, stray_rows};
 use crate::segment::{ContactChoice, ContactPoint, HoldMode, Segment, SegmentOptions, Segmentation, find_phases};
 use crate::statistics::{median, noise};
 
@@ -154,9 +154,12 @@ fn holds_above_start(values: &[f64], found: &Segmentation) -> bool {
     levels.iter().find(|level| level.abs() >= 0.5 * most).is_some_and(|level| *level > 0.0)
 }
 
-/// [`Finding::RowsStray`] for rows of the force that stray alone and were not repaired.
+/// [`Finding::RowsStray`] for rows of the force that stray alone and were not repaired, and for a few that stand far off together.
 fn rows_astray(record: &Record) -> Option<Finding> {
-    let rows = stray_rows(record.force());
+    let mut rows = stray_rows(record.force());
+    rows.extend(absurd_rows(record.force()));
+    rows.sort_unstable();
+    rows.dedup();
     let first = *rows.first()?;
     Some(Finding::RowsStray {
         count: rows.len(),
@@ -205,6 +208,28 @@ fn touch_findings(record: &Record, contact: &ContactPoint, requested: ContactCho
     findings
 }
 
+/// [`Finding::DisplacementNotZero`] or [`Finding::ForceNotZero`] by the first row of a record whose columns are stated to count from first touch
+/// ([`ContactChoice::AsRecorded`]).
+#[must_use]
+pub fn wrong_zero(record: &Record) -> Option<Finding> {
+    /// Shares of the travel: what is a displacement, and what is none.
+    const MOVED: (f64, f64) = (0.2, 0.01);
+    /// Shares of the largest force, likewise.
+    const PRESSED: (f64, f64) = (0.03, 0.01);
+    let (force, displacement) = (record.force(), record.displacement()?);
+    // A ramp of few rows has left its beginning in the second.
+    let (first_force, first) = (*force.first()?, *displacement.first()?);
+    let farthest =
+        |values: &[f64], from: f64| values.iter().fold(0.0, |most: f64, value| most.max((value - from).abs()));
+    let (travel, largest) = (farthest(displacement, first), farthest(force, 0.0));
+    let noise = noise(force);
+    if first > MOVED.0 * travel && first_force.abs() <= (PRESSED.1 * largest).max(3.0 * noise) {
+        return Some(Finding::DisplacementNotZero { start: first });
+    }
+    let is_pressed = first.abs() <= MOVED.1 * travel && first_force.abs() > (PRESSED.0 * largest).max(8.0 * noise);
+    is_pressed.then_some(Finding::ForceNotZero { start: first_force })
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -236,6 +261,19 @@ mod tests {
         assert_eq!(suspicious_signs(&stairs(1.0)), []);
         let codes: Vec<&str> = suspicious_signs(&stairs(-1.0)).iter().map(Finding::code).collect();
         assert_eq!(codes, ["sign_suspicious", "sign_suspicious"]);
+    }
+
+    #[test]
+    fn columns_that_do_not_count_from_first_touch_are_reported() {
+        let shifted = |travel: f64, force: f64| {
+            let record = stairs(1.0);
+            let displacement = record.displacement().unwrap().iter().map(|d| d + travel).collect();
+            let force = record.force().iter().map(|f| f + force).collect();
+            wrong_zero(&Record::new(record.time().to_vec(), Some(displacement), force).unwrap())
+        };
+        assert_eq!((shifted(0.0, 0.0), shifted(-6.0, 0.0), shifted(0.0, 0.05)), (None, None, None));
+        assert_eq!(shifted(6.0, 0.0).map(|finding| finding.code()), Some("displacement_not_zero"));
+        assert_eq!(shifted(0.0, -1.0).map(|finding| finding.code()), Some("force_not_zero"));
     }
 
     /// The torque that sets a rotor in motion, and brakes it, was a force that falls first.

@@ -193,7 +193,7 @@ impl HoldForecast {
         forecasts.collect()
     }
 
-    /// The forecast a time after the first sample, s, with the band that covers a sample with this confidence.
+    /// The forecast a time after the first sample, s, from the end of the hold on, with the band that covers a sample with this confidence.
     #[must_use]
     pub fn at(&self, elapsed: f64, confidence: f64) -> Forecasted {
         self.at_times(&[elapsed], confidence)[0]

@@ -15,8 +15,8 @@ use rounding::rounding_step_heard;
 pub(super) use stamps::gap_rows;
 pub use stamps::{Gaps, Reversals, SampleInterval, Stamps};
 pub(super) use values::lost_rows;
-pub(crate) use values::stray_rows;
 pub use values::{Saturation, Strays, Values};
+pub(crate) use values::{absurd_rows, stray_rows};
 
 use std::convert::Infallible;
 

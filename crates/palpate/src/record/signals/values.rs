@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::{Column, rounding_step_heard};
-use crate::statistics::{bounds, noise};
+use crate::statistics::{bounds, noise, quantile};
 
 /// What a measured column is like; its unit is that of the column.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -115,6 +115,33 @@ pub(crate) fn stray_rows(values: &[f64]) -> Vec<usize> {
         before = if alone { 0.5 * (before + after) } else { here };
     }
     rows
+}
+
+/// Successive rows, few of all, that stand tens of times farther off than nearly all others reach and begin and end at once: what a load
+/// cell shows beyond its range, or a logger for a value that it did not get.
+pub(crate) fn absurd_rows(values: &[f64]) -> Vec<usize> {
+    /// Most of them, as a share of all, and the share of rows on either side that are no measure of the others.
+    const MOST: f64 = 0.02;
+    const FAR: f64 = 20.0;
+    let mut sorted = values.to_vec();
+    let (low, high) = (quantile(&mut sorted, MOST), quantile(&mut sorted, 1.0 - MOST));
+    let off = |value: f64| (value - high).max(low - value);
+    let is_far = |value: f64| high > low && off(value) > FAR * (high - low);
+    let mut rows = Vec::new();
+    let mut begun = 0;
+    for run in values.chunk_by(|a, b| is_far(*a) == is_far(*b)) {
+        let rest = begun + run.len();
+        let jumps = |inside: usize, outside: Option<usize>| {
+            outside
+                .and_then(|row| values.get(row))
+                .is_none_or(|next| (values[inside] - next).abs() > 0.9 * off(values[inside]))
+        };
+        if is_far(run[0]) && jumps(begun, begun.checked_sub(1)) && jumps(rest - 1, Some(rest)) {
+            rows.extend(begun..rest);
+        }
+        begun = rest;
+    }
+    if rows.len() as f64 > MOST * values.len() as f64 { Vec::new() } else { rows }
 }
 
 /// Whether the lines through the two rows before and the two after both lead to within `least` of row `i`: the corner of a triangle of
@@ -252,6 +279,23 @@ mod tests {
         let relaxation = |i: u32| 0.7 + 0.3 * (-0.02 * (f64::from(i) - 100.0).max(0.0)).exp();
         let force = |i: u32| 1000.0 * displacement(i) * relaxation(i);
         ((0..400).map(displacement).collect(), (0..400).map(force).collect())
+    }
+
+    /// Five rows of 99,999 N at the beginning of a hold went into its fit without a word.
+    #[test]
+    fn a_few_rows_beyond_the_range_of_the_load_cell_are_absurd() {
+        let (_, force) = squeeze();
+        let with = |rows: std::ops::Range<usize>, value: f64| {
+            let mut force = force.clone();
+            force[rows].fill(value);
+            absurd_rows(&force)
+        };
+        assert_eq!(with(100..105, 99_999.0), [100, 101, 102, 103, 104]);
+        assert_eq!(with(397..400, -32_768.0), [397, 398, 399]);
+        assert!(with(100..105, 30.0).is_empty() && with(100..150, 99_999.0).is_empty());
+        // A force that falls to a hundredth at once, but not in one row.
+        let falling: Vec<f64> = (0..400).map(|i| (-0.5 * f64::from(i)).exp() + 1e-5 * f64::from(i % 7)).collect();
+        assert!(absurd_rows(&falling).is_empty());
     }
 
     #[test]

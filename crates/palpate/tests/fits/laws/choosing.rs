@@ -113,6 +113,48 @@ fn holds_together_distinguish_what_one_leaves_open() {
     assert!(pooled(&holds.iter().take(2).collect::<Vec<_>>()).is_none());
 }
 
+/// Three holds of 16 samples, of which nothing is held out, distinguished the dense spectrum "from every other law".
+#[test]
+fn short_holds_together_distinguish_no_laws_that_fit_alike() {
+    let mut random = Rng::new(1);
+    for _ in 0..10 {
+        let hold = |level: f64, random: &mut Rng| {
+            let times: Vec<f64> = (0..16).map(|i| 0.02 * f64::from(i)).collect();
+            let values: Vec<f64> =
+                times.iter().map(|t| level * (1.2 + 1.8 * (-t / 4.0).exp()) + 2e-3 * random.normal()).collect();
+            compare_laws(&Samples::new(&times, &values), &CompareOptions::default()).unwrap()
+        };
+        let holds = [1.0, 2.0, 3.0].map(|level| hold(level, &mut random));
+        assert!(holds.iter().all(|hold| hold.ranking == Ranking::Information));
+        let found = pooled(&holds.iter().collect::<Vec<_>>());
+        assert!(found.as_ref().is_none_or(|found| found.indistinguishable.len() > 1), "{found:?}");
+    }
+}
+
+/// A series of three exponentials that followed the noise left residuals like a walk: 3 of 600 samples counted, and no law was refuted.
+#[test]
+fn white_noise_counts_in_full_whatever_the_closest_law_leaves() {
+    let mut random = Rng::new(9);
+    let laws = ["latency:3", "prony:3", "sls"].map(|name| name.parse().unwrap()).to_vec();
+    let options = CompareOptions {
+        laws,
+        forecast: false,
+        ..CompareOptions::default()
+    };
+    let mut collapsed = 0;
+    for hold in 0..300 {
+        let times: Vec<f64> = (0..600).map(|i| 0.1 * f64::from(i)).collect();
+        let values: Vec<f64> = times.iter().map(|t| 4.9 + 2.1 / (1.0 + t).sqrt() + 1e-2 * random.normal()).collect();
+        let found = compare_laws(&Samples::new(&times, &values), &options).unwrap();
+        let fit = |law: &str| found.rows.iter().find(|row| row.law.to_string() == law).unwrap().fit.as_ref().unwrap();
+        let (truth, series) = (fit("latency:3"), fit("prony:3"));
+        collapsed +=
+            usize::from(series.rmse < truth.rmse && series.effective_samples() < 0.1 * truth.effective_samples());
+        assert!(found.effective_samples >= truth.effective_samples(), "{hold}: {}", found.effective_samples);
+    }
+    assert!(collapsed > 0, "the test shows what it is to show");
+}
+
 /// The claim that the project rests on, on a record measured by others.
 #[test]
 fn four_numbers_predict_half_an_hour_of_tape_as_well_as_a_dense_spectrum() {
