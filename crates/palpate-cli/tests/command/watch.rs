@@ -136,3 +136,19 @@ fn rows_out_of_order_are_reported_and_readings_that_are_none_are_refused() {
     let none = file(folder.path(), "none.csv", rows.join("\n"));
     assert!(refused(folder.path(), &["watch", &none]).contains("expected a finite number"));
 }
+
+/// The force at the end of a hold was that of a reading of the release: 2.968 for 3.128 N.
+#[test]
+fn the_force_at_the_end_of_a_hold_is_that_of_its_end() {
+    let folder = tempdir().unwrap();
+    let row = |i: u32| {
+        let t = 0.05 * f64::from(i);
+        let travel = t.min(2.0).min((22.0 - t).max(0.0));
+        format!("{t:.2},{travel:.4},{:.5}\n", travel * (1.0 + 0.5 * (-(t - 2.0).max(0.0) / 4.0).exp()))
+    };
+    let rows: String = (0..480).map(row).collect();
+    let log = file(folder.path(), "log.csv", format!("Time (s),Displacement (mm),Force (N)\n{rows}"));
+    let reported = objects(&done(folder.path(), &["watch", &log, "--format", "jsonl"]));
+    let hold = &reported.last().unwrap()["holds"][0];
+    assert!((hold["force_end_n"].as_f64().unwrap() - 2.013).abs() < 0.01, "{hold}");
+}

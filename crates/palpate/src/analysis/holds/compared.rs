@@ -108,3 +108,30 @@ fn drift(record: &Record, segment: &Segment) -> Option<Finding> {
         fall: if fall > 0.0 { first - least } else { 0.0 },
     })
 }
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used, reason = "in a test a panic is the verdict")]
+
+    use super::*;
+    use crate::forecast::{CompareOptions, compare_laws};
+    use crate::test_problems::Rng;
+
+    /// An equilibrium of −66 N, by a time constant of 110 min from a hold of 65 s, stood without a word.
+    #[test]
+    fn a_time_constant_that_outlasts_the_hold_is_reported() {
+        let codes = |duration: f64| -> Vec<&'static str> {
+            let mut random = Rng::new(4);
+            let times: Vec<f64> = (0..400).map(|i| duration * f64::from(i) / 399.0).collect();
+            let values: Vec<f64> = times.iter().map(|t| 1.0 + (-t / 10.0).exp() + 1e-3 * random.normal()).collect();
+            let laws = vec!["sls".parse().unwrap()];
+            let options = CompareOptions {
+                laws,
+                ..CompareOptions::default()
+            };
+            let found = compare_laws(&Samples::new(&times, &values), &options).unwrap();
+            comparison_findings(&found).iter().map(Finding::code).collect()
+        };
+        assert!(codes(5.0).contains(&"time_beyond_hold") && !codes(20.0).contains(&"time_beyond_hold"));
+    }
+}
