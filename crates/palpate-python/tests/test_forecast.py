@@ -48,7 +48,7 @@ def test_other_holds_tell_what_follows() -> None:
     few = palpate.forecast(t[:10], relaxed(t)[:10], rest[:5], others=others)
     assert np.all(np.isfinite(few["value"]))
     with pytest.raises(palpate.OptionError, match=r"others\[1\]: expected a pair of times and signal, found ndarray"):
-        palpate.forecast(t, relaxed(t), rest, others=[(t, t), t])
+        palpate.forecast(t, relaxed(t), rest, others=[(t, t), t])  # type: ignore[list-item] # pyright: ignore[reportArgumentType]
     with pytest.raises(palpate.PalpateError, match=r"others\[0\] signal"):
         palpate.forecast(t, relaxed(t), rest, others=[(t, "x")])
     with pytest.raises(palpate.FitError, match=r"^others\[1\]: times must rise"):
