@@ -130,7 +130,8 @@ impl HoldObserved {
         self.last.rotate_left(1);
         self.last[LAST - 1] = observed.force;
         let known = usize::try_from(self.ticks[0] + self.ticks[1]).map_or(LAST, |ticks| ticks.min(LAST));
-        self.forces.1 = median(&mut self.last.clone()[LAST - known..]);
+        let mut last = self.last;
+        self.forces.1 = median(&mut last[LAST - known..]);
         self.equilibrium = if held == Held::Force { None } else { observed.equilibrium_force.or(self.equilibrium) };
         self.creep = observed.creep_rate.or(self.creep);
         if observed.slip != Slip::None {

@@ -81,6 +81,13 @@ pub enum Finding {
         /// Correlation of their estimates.
         correlation: f64,
     },
+    /// The force changes at once within a hold.
+    ForceStep {
+        /// When, s.
+        time: f64,
+        /// By how much, N.
+        step: f64,
+    },
     /// The recommended law has a time constant longer than the hold.
     TimeBeyondHold {
         /// That law.

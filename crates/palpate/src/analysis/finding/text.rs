@@ -37,6 +37,12 @@ impl Finding {
                 "the estimated equilibrium depends on the exponent; a different exponent gives a different equilibrium",
                 "hold longer, or compare holds at one fixed exponent",
             ),
+            Self::ForceStep { time, step } => caution(
+                "force_step",
+                format!("the force {} by {} N at once at {} s", if *step < 0.0 { "falls" } else { "rises" }, significant(step.abs(), 3), significant(*time, 5)),
+                "the body slipped or cracked, the grip gave way or something struck the machine: no law of relaxation describes the hold across it",
+                "repeat the test, or fit the part before with ⟨fit_until⟩",
+            ),
             Self::TimeBeyondHold { law, time_constant, duration } => caution(
                 "time_beyond_hold",
                 format!(

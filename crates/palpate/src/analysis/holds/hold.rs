@@ -3,6 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::compared::{add_forecasts, comparison_findings, not_a_hold};
+use super::jump::force_step;
 use super::rate_bias::{RateBias, rate_bias};
 use crate::analysis::{AnalysisOptions, Finding};
 use crate::contact::{Shape, Specimen};
@@ -191,6 +192,7 @@ pub(in crate::analysis) fn complete_hold(
         hold.findings.extend(hold.comparison.iter().flat_map(comparison_findings));
     }
     hold.findings.extend(not_a_hold(record, &hold.segment));
+    hold.findings.extend(force_step(record, &hold.segment));
     Ok(())
 }
 

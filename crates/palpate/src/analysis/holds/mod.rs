@@ -5,6 +5,7 @@
 //! | `hold.rs` | signal, choice of the exponent, comparison of laws, findings |
 //! | `exponents.rs` | fits in both domains with the listed exponents, the extension of the list, the free one |
 //! | `creep.rs` | holds of constant force |
+//! | `jump.rs` | steps of the force within a hold |
 //! | `rate_bias.rs` | how far noise takes the rate domain from the truth |
 //! | `compared.rs` | what a comparison of laws gives cause to say; holds that are none: drift, feedback control |
 
@@ -12,6 +13,7 @@ mod compared;
 mod creep;
 mod exponents;
 mod hold;
+mod jump;
 mod rate_bias;
 
 pub use creep::{CreepError, CreepHold, creep_holds};
