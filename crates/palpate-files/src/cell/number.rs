@@ -75,7 +75,26 @@ pub(crate) fn classify(cell: &[u8]) -> Cell {
 
 /// Whether a cell spells "no number" or "infinite" in one of the usual ways, or overflows.
 pub(crate) fn is_not_finite(cell: &[u8]) -> bool {
-    const WORDS: [&[u8]; 8] = [b"na", b"n/a", b"#n/a", b"#value!", b"#div/0!", b"#num!", b"null", b"infinite"];
+    // The errors of a spreadsheet in English, German, French, Italian and Spanish.
+    const WORDS: [&[u8]; 17] = [
+        b"na",
+        b"n/a",
+        b"null",
+        b"infinite",
+        b"#div/0!",
+        b"#n/a",
+        b"#value!",
+        b"#num!",
+        b"#nv",
+        b"#wert!",
+        b"#zahl!",
+        b"#valeur!",
+        b"#nombre!",
+        b"#n/d",
+        b"#valore!",
+        "#¡valor!".as_bytes(),
+        "#¡num!".as_bytes(),
+    ];
     let bare = match cell {
         [b'+' | b'-', rest @ ..] => rest,
         all => all,

@@ -1,4 +1,4 @@
-//! Words that headers of records use, in English, German, French, Spanish, Chinese and Japanese.
+//! Words that headers of records use, in English, German, French, Spanish, Italian, Chinese and Japanese.
 
 use super::quantity::Quantity;
 
@@ -24,20 +24,20 @@ pub(crate) struct Vocabulary {
 pub(crate) const VOCABULARY: [Vocabulary; 4] = [
     Vocabulary {
         quantity: Quantity::Time,
-        plain: "time zeit temps tiempo",
-        loose: "elapsed seconds secondes sekunden timestamp stamp epoch durée duree",
+        plain: "time zeit temps tiempo tempo",
+        loose: "elapsed seconds secondes sekunden timestamp stamp zeitstempel horodatage epoch durée duree secondi",
         endings: "zeit",
         characters: "时间 時間",
         letter: Some("t"),
     },
     Vocabulary {
         quantity: Quantity::Displacement,
-        plain: "displacement verschiebung weg déplacement deplacement desplazamiento",
+        plain: "displacement verschiebung weg déplacement deplacement desplazamiento spostamento",
         loose: "extension travel stroke crosshead traverse position pos indentation allongement deflection course \
             recorrido carrera disp distance distanz distancia depth tiefe profondeur profundidad elongation pd \
             extensión alargamiento deformation verformung déformation deformación deformacion compression \
             stauchung eindrückung eindrueckung eindruckung compresión compresion penetration eindringtiefe eindringung eindrucktiefe pénétration \
-            penetración penetracion enfoncement indentación indentacion posición posicion hub 变形 變形 压缩量 压入深度 伸長 \
+            penetración penetracion enfoncement corsa posizione allungamento deformazione compressione penetrazione profondità profondita indentación indentacion posición posicion hub 变形 變形 压缩量 压入深度 伸長 \
             伸び 変形量 圧縮量 押込み量 押込量 押込み深さ",
         endings: "weg",
         characters: "位移 変位 變位 ストローク",
@@ -45,15 +45,15 @@ pub(crate) const VOCABULARY: [Vocabulary; 4] = [
     },
     Vocabulary {
         quantity: Quantity::Force,
-        plain: "force load kraft fuerza",
-        loose: "loadcell effort charge carga fx fy fz fn",
+        plain: "force load kraft fuerza forza",
+        loose: "loadcell effort charge carga carico fx fy fz fn",
         endings: "kraft",
         characters: "力 载荷 荷重 负荷 負荷",
         letter: Some("F"),
     },
     Vocabulary {
         quantity: Quantity::Stress,
-        plain: "stress spannung contrainte esfuerzo",
+        plain: "stress spannung contrainte esfuerzo tensione sforzo",
         loose: "",
         endings: "spannung",
         characters: "应力 応力",
@@ -65,7 +65,7 @@ pub(crate) const VOCABULARY: [Vocabulary; 4] = [
 /// quantities derived from it.
 pub(crate) const OTHER: &str = "goal target set setpoint command commanded cmd demand desired reference ref nominal soll consigne objetivo \
     limit threshold schwelle seuil umbral per max min maximum minimum peak std sd stdev error count offset rate \
-    speed velocity acceleration strain size dehnung stiffness modulus constant compliance viscosity oscillation oscillatory complex \
+    speed velocity acceleration strain size dehnung velocità velocita stiffness modulus constant compliance viscosity oscillation oscillatory complex \
     storage loss amplitude temperature temperatur température temperatura temp humidity";
 
 /// Beginnings of German words for what was commanded, not measured: `Sollweg`, `Sollkraft`, `Sollwert`.

@@ -84,7 +84,7 @@ pub fn pooled<'a>(comparisons: &[&'a Comparison]) -> Option<PooledVerdict> {
     let candidates = usable.iter().filter(|law| !any_stands || law.stands);
     let best = candidates.min_by(|a, b| a.middle().total_cmp(&b.middle()))?;
     // One law says nothing of the others, which were not fitted on all holds.
-    if usable.len() < 2 {
+    if pooled.len() < 2 {
         return None;
     }
     let margin = if forward { MARGIN } else { 1.0 };

@@ -251,3 +251,20 @@ fn times_of_day_and_german_dates_are_times() {
     );
     assert!(error.hint().unwrap().contains("12.03.2024 10:11:12.5"));
 }
+
+/// `Tempo`, `Forza` and `Corsa` were no names, and `Zeitstempel` no time; two rows with Excel's `#NV` stopped the reading.
+#[test]
+fn headers_in_italian_and_errors_of_a_spreadsheet_in_german() {
+    let italian = "Tempo (s);Corsa (mm);Forza (N);Velocità (mm/s)\n0,0;0;1,5;0\n0,5;1;2,5;2\n1,0;1;2,0;0\n";
+    let found = read(italian, "").unwrap();
+    assert_eq!(found.record.displacement().unwrap(), [0.0, 1e-3, 1e-3]);
+    assert_eq!(found.record.force(), [1.5, 2.5, 2.0]);
+    let table =
+        "Zeitstempel;Weg (mm);Kraft (N)\n12.03.2024 10:11:12;0;1\n12.03.2024 10:11:13;1;2\n12.03.2024 10:11:14;1;1,5\n";
+    assert_eq!(read(table, "").unwrap().record.time(), [0.0, 1.0, 2.0]);
+    let rows: String = (0..80)
+        .map(|i| format!("{i};{}\n", if i == 40 { "#NV".to_owned() } else { format!("1,{i}") }))
+        .collect();
+    let found = read(format!("Zeit (s);Kraft (N)\n{rows}"), "").unwrap();
+    assert_eq!(found.record.time().len(), 79);
+}

@@ -123,7 +123,7 @@ impl HoldForecast {
     /// let (short, long) = (tried(12)?, tried(600)?);
     /// assert!(HoldForecast::beside(&short, &[], &mut Unwatched)?.is_none());
     /// let forecast = HoldForecast::beside(&short, &[&long, &long, &long], &mut Unwatched)?.unwrap();
-    /// assert_eq!((forecast.cuts, forecast.other_holds), (0, 3));
+    /// assert_eq!((forecast.cuts, forecast.other_holds), (2, 3));
     /// # Ok::<(), palpate::fit::FitError>(())
     /// ```
     ///
