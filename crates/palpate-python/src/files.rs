@@ -313,13 +313,20 @@ impl BatchResult {
 
 /// What a batch found over all holds; ``print(result)`` shows what ``palpate batch`` prints.
 #[pyclass(frozen, eq, name = "BatchResult", module = "palpate")]
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Serialize, Deserialize)]
 pub(crate) struct BatchResult {
     answer: BatchAnswer,
     rows: usize,
     map: CurveMap,
     table: String,
     failures: Vec<String>,
+}
+
+/// Wherever their tables stand.
+impl PartialEq for BatchResult {
+    fn eq(&self, other: &Self) -> bool {
+        (self.rows, &self.answer, &self.map, &self.failures) == (other.rows, &other.answer, &other.map, &other.failures)
+    }
 }
 
 shown! {
