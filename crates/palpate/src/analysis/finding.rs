@@ -400,7 +400,10 @@ impl Finding {
     pub fn rank(&self) -> impl Ord + use<> {
         let is_no_hold = matches!(
             self,
-            Self::DriftInsteadOfRelaxation { .. } | Self::NothingHeld { .. } | Self::FeedbackControlled { .. }
+            Self::DriftInsteadOfRelaxation { .. }
+                | Self::NothingHeld { .. }
+                | Self::FeedbackControlled { .. }
+                | Self::ForceStep { .. }
         );
         (std::cmp::Reverse(self.severity()), !is_no_hold)
     }
@@ -436,9 +439,11 @@ mod tests {
             Finding::OneHold,
             Finding::DriftInsteadOfRelaxation { rise: 0.5, fall: 0.0 },
             Finding::NoContactArea,
+            Finding::ForceStep { time: 30.0, step: -2.0 },
         ];
         findings.sort_by_key(Finding::rank);
         let codes = findings.map(|finding| finding.code());
-        assert_eq!(codes, ["no_contact_area", "drift_instead_of_relaxation", "equilibrium_extrapolated", "one_hold"]);
+        let first = ["no_contact_area", "drift_instead_of_relaxation", "force_step"];
+        assert_eq!(codes, [first[0], first[1], first[2], "equilibrium_extrapolated", "one_hold"]);
     }
 }
