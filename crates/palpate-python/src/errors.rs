@@ -7,7 +7,7 @@ use palpate::analysis::Finding;
 use palpate::units::UnitError;
 use palpate_files::description::{DescriptionError, KeyProblem};
 use palpate_jobs::{ErrorKind, JobError};
-use palpate_report::spelling::spelled;
+use palpate_report::spelling::{spelled, with_flags};
 use pyo3::exceptions::{PyUserWarning, PyValueError};
 use pyo3::prelude::*;
 use pyo3::{PyTypeInfo, create_exception};
@@ -37,14 +37,18 @@ pub(crate) fn refused<E: PyTypeInfo>(message: impl Display, hint: Option<impl Di
 
 fn reported(message: impl Display, hint: Option<impl Display>) -> String {
     let text = hint.map_or(message.to_string(), |hint| format!("{message}\nhint: {hint}"));
-    spelled(&of_files(&text), &keyword)
+    spelled(&in_keywords(&text), &keyword)
 }
 
-/// Options of the command that messages about files name, as keywords.
-fn of_files(text: &str) -> String {
+/// A text that names options as the command does, with keywords in their place.
+pub(crate) fn in_keywords(text: &str) -> String {
+    let known = ["⟨compare/creep⟩", "⟨compare/loss=huber⟩", "⟨fit_until⟩"];
+    let text = known
+        .iter()
+        .fold(text.to_owned(), |text, option| text.replace(&with_flags(option), &spelled(option, &keyword)));
     ["columns", "part"]
         .iter()
-        .fold(text.to_owned(), |text, name| text.replace(&format!("--{name} \""), &format!("{name}=\"")))
+        .fold(text, |text, name| text.replace(&format!("--{name} \""), &format!("{name}=\"")))
 }
 
 /// An exception without a hint.
@@ -95,7 +99,7 @@ pub(crate) fn unwritten(error: JobError) -> PyErr {
 }
 
 /// An option of a job as a keyword, with its unit; thresholds of phases stand in the description of a test, which every job takes.
-pub(crate) fn keyword(name: &str, value: Option<&str>) -> String {
+fn keyword(name: &str, value: Option<&str>) -> String {
     let (job, name) = name.split_once('/').map_or((None, name), |(job, name)| (Some(job), name));
     let unit = match name {
         "minimum_hold" | "tolerance" => return format!("phases.{name}"),

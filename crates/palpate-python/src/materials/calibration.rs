@@ -8,7 +8,7 @@ use palpate_report::study::calibration_page;
 use pyo3::prelude::*;
 use serde::{Deserialize, Serialize};
 
-use crate::errors::{PalpateError, refused_plainly};
+use crate::errors::{PalpateError, in_keywords, refused_plainly};
 use crate::html::framed;
 use crate::materials::material::{Material, as_toml};
 use crate::shown::shown;
@@ -96,7 +96,7 @@ shown! {
         /// Which law predicts best, or has the lowest BIC, in a sentence; None without alternatives.
         sentence: Option<&str> = self.sentence.as_deref(),
         /// What the parameters alone do not tell, in sentences.
-        remarks: Vec<String> = self.document.remarks.iter().map(|text| text.replace("--fit-until", "fit_until_s")).collect(),
+        remarks: Vec<String> = self.document.remarks.iter().map(|text| in_keywords(text)).collect(),
         /// Why the search ended: "converged", or what kept it from that.
         termination: &str = self.requested().termination.as_deref().unwrap_or_default(),
         /// Whether it ended at an optimum inside the range that was searched.

@@ -13,13 +13,12 @@ use palpate_jobs::{Analyze, Analyzed, Outcome, Results, write_reports};
 use palpate_report::document::{AnalysisDocument, FitDocument, HoldDocument, StatedRelaxationDocument};
 use palpate_report::result::ParameterDocument;
 use palpate_report::result::{Input, word};
-use palpate_report::spelling::{spelled, with_flags};
 use palpate_report::study::FileOptions;
 use pyo3::prelude::*;
 use pyo3::types::PyType;
 use serde::{Deserialize, Serialize};
 
-use crate::errors::{OptionError, PalpateError, keyword, refused_plainly, unwritten, warn_of};
+use crate::errors::{OptionError, PalpateError, in_keywords, refused_plainly, unwritten, warn_of};
 use crate::html::framed;
 use crate::listed::Listed;
 use crate::pickles::{Made, Piece, Pieces, made_again, unpickled};
@@ -45,9 +44,7 @@ impl Finding {
 
     /// What helps; a document names options as the command does.
     fn remedy_in_python(&self) -> String {
-        ["⟨compare/creep⟩", "⟨compare/loss=huber⟩"].iter().fold(self.found.remedy.clone(), |text, option| {
-            text.replace(&with_flags(option), &spelled(option, &keyword))
-        })
+        in_keywords(&self.found.remedy)
     }
 }
 

@@ -75,11 +75,10 @@ pub(super) fn look_into(
         return Ok(None);
     }
     let bounds: Vec<usize> = [0].into_iter().chain(starts).chain([all.len() - head]).map(|row| head + row).collect();
-    let titles = titles(&all, &bounds, layout, named);
     // What stands above the names belongs to the first, and so to all.
     let skip = options.skip_lines.unwrap_or(0).min(head);
     let names = layout.header_line.map_or(head, |line| line - 1);
-    let places = bounds.windows(2).zip(titles).map(|(pair, title)| Place {
+    let places = bounds.windows(2).zip(titles(&all, &bounds, layout, named)).map(|(pair, title)| Place {
         title: Some(title),
         is_step: false,
         names: if pair[0] == head { skip..head } else { names..head },
@@ -92,7 +91,10 @@ pub(super) fn look_into(
         part: None,
         ..options.clone()
     };
-    sections::found(input, text, places.collect(), (layout.encoding, &options)).map(Some)
+    let places: Vec<Place> = places.collect();
+    sections::check_number(input, &places)?;
+    let (found, skipped) = sections::laid_out(&all, places, (layout.encoding, &options));
+    Ok(Some(sections::of_sections(input, text, found, skipped, layout.encoding)))
 }
 
 /// Index of the column that is named as one that tells tests apart.

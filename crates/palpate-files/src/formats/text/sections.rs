@@ -37,7 +37,7 @@ const LAYOUT_LINES: usize = 4000;
 const ACTION: &str = "Action Name";
 
 /// Where one test stands.
-struct Section {
+pub(super) struct Section {
     /// What the file calls it.
     title: Option<String>,
     /// Rows of a step that its title says to be a hold.
@@ -106,19 +106,7 @@ pub(super) fn look_into(
     Ok(Some(of_sections(input, text, sections, skipped, encoding)))
 }
 
-/// The tests of a text at these places.
-pub(super) fn found(
-    input: &Input,
-    text: String,
-    places: Vec<Place>,
-    (encoding, options): (Encoding, &ReadOptions),
-) -> Result<Found, FileError> {
-    check_number(input, &places)?;
-    let (sections, skipped) = laid_out(&numbered(&text), places, (encoding, options));
-    Ok(of_sections(input, text, sections, skipped, encoding))
-}
-
-fn check_number(input: &Input, places: &[Place]) -> Result<(), FileError> {
+pub(super) fn check_number(input: &Input, places: &[Place]) -> Result<(), FileError> {
     if places.len() > MOST_SECTIONS {
         let expected = format!("at most {MOST_SECTIONS} tests");
         let hint = "split the file, or export a part of it";
@@ -127,7 +115,7 @@ fn check_number(input: &Input, places: &[Place]) -> Result<(), FileError> {
     Ok(())
 }
 
-fn of_sections(
+pub(super) fn of_sections(
     input: &Input,
     text: String,
     sections: Vec<Section>,
@@ -290,7 +278,7 @@ fn by_action(all: &[Line<'_>], delimiter: Delimiter) -> Vec<Place> {
 }
 
 /// The tests with the layout of each, and those that have none.
-fn laid_out(
+pub(super) fn laid_out(
     all: &[Line<'_>],
     places: Vec<Place>,
     (encoding, options): (Encoding, &ReadOptions),
