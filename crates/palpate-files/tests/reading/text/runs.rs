@@ -86,5 +86,8 @@ fn what_is_one_test_stays_one() {
         "Specimen;Time (s);Force (N)\n{}",
         rows(4, |test| format!("K{}", test % 2), |test| 10 * test)
     ));
+    // Parts of one test, whose clock goes on.
+    let part = |test: usize| ["Ramp", "Hold"][test].to_owned();
+    one(format!("Test;Time (s);Force (N)\n{}", rows(2, part, |test| 10 * test)));
     one(format!("Specimen;Time (s);Force (N)\n{}", rows(1, |_| "K".to_owned(), |_| 0)));
 }
