@@ -166,8 +166,8 @@ def page(found, requested, left_out):
 
 What the first {100 * requested.share:.0f} % of a hold says of the rest, on {len(found)} holds of {len(files)} published records, which others measured and which are no
 part of this repository. The forecast combines all laws. *Alone*: with weights from what each predicts within that first part. *Others*: where
-a record has several holds, with weights from what each predicts of the other holds too, which are known whole. *Before*: the same with the
-holds before it only. *Near*: holds in which the root mean square error of the forecast is within 20 % of that of the law which turns out to
+a record has several holds, with weights from what each predicts of the other holds too, which are known whole, and with the courses of those
+that are longer by half as members. *Before*: the same with the holds before it only. *Near*: holds in which the root mean square error of the forecast is within 20 % of that of the law which turns out to
 be the best, in %; nobody knows that law before. *Ratio*: the median of one error over the other. *Covered*: holds in which the 95 % band
 contains 95 % of the samples that follow. Last the dense spectrum alone. Members, cuts, their importance, the ridge, and how much other holds
 count were chosen on these holds, among some ninety variants: other holds will do worse, by how much is not known. Not judged: {left_out} holds whose

@@ -282,6 +282,20 @@ fn student_factor(level: f64, freedom: f64) -> f64 {
     }
 }
 
+/// `values` given at rising `knots`, linearly interpolated at rising `times`; outside they stay what they are at the ends.
+pub(crate) fn interpolated(knots: &[f64], values: &[f64], times: &[f64]) -> Vec<f64> {
+    let mut after = 1;
+    let at = |time: f64| {
+        while after + 1 < knots.len() && knots[after] < time {
+            after += 1;
+        }
+        let (t0, t1) = (knots[after - 1], knots[after]);
+        let share = ((time - t0) / (t1 - t0)).clamp(0.0, 1.0);
+        values[after - 1] + share * (values[after] - values[after - 1])
+    };
+    times.iter().copied().map(at).collect()
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -125,13 +125,16 @@ documents! {
         at: Vec<ForecastedDocument> = FORECAST_AT.iter().map(at).collect(),
         /// What is combined.
         members: Vec<MemberDocument> =
-            forecast.members.iter().map(|(member, weight)| MemberDocument::new(member, *weight)).collect(),
+            forecast.combined.members.iter().map(|(member, weight)| MemberDocument::new(member, *weight)).collect(),
+        /// Time since the start of the fit up to which other holds are known, s, where their courses are among the members; from there on the
+        /// forecast goes on as laws without them do.
+        known_until_s: Option<f64> = forecast.beyond.as_ref().map(|(until, _)| *until),
         /// Number of cut points at which the combination was tried.
         cuts: usize = forecast.cuts,
         /// Number of other holds of the record that it was tried on.
         other_holds: usize = forecast.other_holds,
         /// Root mean square error there, over the change until then and ln(t/T) + 0.1.
-        error: f64 = forecast.error,
+        error: f64 = forecast.combined.error,
         /// The forecast in one sentence.
         sentence: String = comparison.forecast_sentence().unwrap_or_default(),
     }

@@ -30,4 +30,4 @@ pub use pooled::{PooledVerdict, pooled};
 pub use result::{Certainty, Comparison, Ranking, Reservation, Row, Verdict};
 pub(crate) use sentence::listed;
 pub use sentence::name_in_words;
-pub use stacked::{ForecastMember, Forecasted, HoldForecast, TriedHold};
+pub use stacked::{Combination, ForecastMember, Forecasted, HoldForecast, TriedHold};

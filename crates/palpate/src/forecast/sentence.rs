@@ -40,9 +40,10 @@ impl Comparison {
         // In the direction in which it has changed.
         let share = |value: f64| 100.0 * (value - last) / forecast.change * forecast.direction;
         let ends = [share(next.low), share(next.high)];
+        let combined = if forecast.beyond.is_some() { "laws and of the courses of other holds" } else { "laws" };
         Some(format!(
             "When the hold has lasted twice as long, the signal will have changed by another {} % [{}, {}] of its change so far, by the \
-             combination of laws that has predicted {} best.",
+             combination of {combined} that has predicted {} best.",
             rounded(share(next.value)),
             rounded(ends[0].min(ends[1])),
             rounded(ends[0].max(ends[1])),

@@ -6,6 +6,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::fit::{Condensed, FitError, LawOptions, Samples, condensed_curve, extrapolated};
 use crate::laws::{Law, LawCurve};
+use crate::statistics::interpolated;
 
 /// Fewest samples that a course through the later ones is fitted to.
 const FEWEST: usize = 6;
@@ -20,6 +21,8 @@ pub enum ForecastMember {
     Logarithm(f64),
     /// a + b tᵖ through the samples after this share of the duration, with p from −2 to 1.
     Power(f64),
+    /// a + b x(t) with the course x of each other hold of the body that is longer, through the samples after this share of the duration.
+    OtherHolds(f64),
 }
 
 impl fmt::Display for ForecastMember {
@@ -28,6 +31,7 @@ impl fmt::Display for ForecastMember {
             Self::Law(law) => law.fmt(f),
             Self::Logarithm(share) => write!(f, "logarithm of time from {share} of the hold"),
             Self::Power(share) => write!(f, "power of time from {share} of the hold"),
+            Self::OtherHolds(share) => write!(f, "course of the other holds from {share} of the hold"),
         }
     }
 }
@@ -35,7 +39,7 @@ impl fmt::Display for ForecastMember {
 /// Shares of the duration from which on later samples are taken.
 const LATER: [f64; 2] = [0.1, 0.3];
 
-/// All members beside these laws.
+/// All members beside these laws that need no other hold.
 pub(super) fn members(laws: &[Law]) -> Vec<ForecastMember> {
     let later = LATER.iter().flat_map(|share| [ForecastMember::Logarithm(*share), ForecastMember::Power(*share)]);
     laws.iter().copied().map(ForecastMember::Law).chain(later).collect()
@@ -52,6 +56,11 @@ pub(super) enum Course {
         a: f64,
         b: f64,
     },
+    /// Values at rising times since the first sample, s.
+    Known {
+        times: Vec<f64>,
+        values: Vec<f64>,
+    },
 }
 
 impl Course {
@@ -63,6 +72,7 @@ impl Course {
             ForecastMember::Power(share) => {
                 (share, (-16..=8).filter(|i| *i != 0).map(|i| 0.125 * f64::from(i)).collect())
             }
+            ForecastMember::OtherHolds(_) => return Err(FitError::NoDecay),
         };
         let start = samples.times[0];
         let scale = samples.times[samples.times.len() - 1] - start;
@@ -90,6 +100,7 @@ impl Course {
             Self::Later { scale, power, a, b } => {
                 times.iter().map(|time| a + b * abscissa(time / scale, *power)).collect()
             }
+            Self::Known { times: known, values } => interpolated(known, values, times),
         }
     }
 }
@@ -102,20 +113,20 @@ fn abscissa(time: f64, power: f64) -> f64 {
 
 /// The line through the nodes, and the square that it leaves.
 fn straight(nodes: &Condensed, power: f64) -> Option<(f64, f64, f64)> {
-    let points = || {
-        let (values, roots) = (nodes.values.iter(), nodes.roots.iter());
-        nodes
-            .times
-            .iter()
-            .zip(values.zip(roots))
-            .map(|(t, (y, root))| (abscissa(*t, power), y / root, root * root))
-    };
-    let weight: f64 = points().map(|(_, _, w)| w).sum();
-    let (x, y) = points().fold((0.0, 0.0), |(x, y), (at, value, w)| (x + w * at / weight, y + w * value / weight));
-    let (square, product) = points().fold((0.0, 0.0), |(square, product), (at, value, w)| {
+    let values = nodes.values.iter().zip(&nodes.roots);
+    let point = |(t, (y, root)): (&f64, (&f64, &f64))| (abscissa(*t, power), y / root, root * root);
+    line(&nodes.times.iter().zip(values).map(point).collect::<Vec<_>>())
+}
+
+/// a and b of the line y = a + b x through points (x, y, weight), and the weighted square that it leaves.
+pub(super) fn line(points: &[(f64, f64, f64)]) -> Option<(f64, f64, f64)> {
+    let weight: f64 = points.iter().map(|(_, _, w)| w).sum();
+    let mean = |(x, y): (f64, f64), (at, value, w): &(f64, f64, f64)| (x + w * at / weight, y + w * value / weight);
+    let (x, y) = points.iter().fold((0.0, 0.0), mean);
+    let (square, product) = points.iter().fold((0.0, 0.0), |(square, product), (at, value, w)| {
         (square + w * (at - x) * (at - x), product + w * (at - x) * (value - y))
     });
     let slope = product / square;
-    let left: f64 = points().map(|(at, value, w)| w * (value - y - slope * (at - x)).powi(2)).sum();
+    let left: f64 = points.iter().map(|(at, value, w)| w * (value - y - slope * (at - x)).powi(2)).sum();
     (slope.is_finite() && left.is_finite()).then_some((y - slope * x, slope, left))
 }

@@ -13,25 +13,34 @@
 //!
 //! Holds of one body resemble each other: cuts of the other holds of a record count a fifth of those of the hold itself, and where another
 //! is longer by half, what its first part of the same duration predicted counts ten times them. On each hold the least ⟨e_k²⟩ is the unit.
+//! Where two others or more are longer by half, two members follow their courses, scaled to the hold; from the time on to which half of these
+//! are known, the forecast goes on as laws without them do.
 //!
 //! | file | what |
 //! |---|---|
 //! | `member.rs` | what is combined |
+//! | `others.rs` | the course of other holds |
+//! | `combination.rs` | members with their weights |
 //! | `trial.rs` | what members fitted to first parts of a hold predict of the rest |
 //! | `pool.rs` | trials of all holds, and what the combination would have been off by |
 //! | `weights.rs` | the weights |
 
+mod combination;
 mod member;
+mod others;
 mod pool;
 mod trial;
 mod weights;
 
+pub use combination::Combination;
 pub use member::ForecastMember;
 pub use trial::TriedHold;
 
+use combination::Combined;
 use member::Course;
-use pool::Pool;
-use trial::AT_ONCE;
+use others::Others;
+use pool::OfAnother;
+use trial::{AT_ONCE, Trial};
 
 use crate::fit::{FitError, LawOptions, Samples, fitted};
 use crate::laws::Law;
@@ -62,10 +71,11 @@ const LEAST: usize = 3;
 pub struct HoldForecast {
     /// Duration of the hold so far, s.
     pub duration: f64,
-    /// What is combined, with its weight; those of no weight are left out.
-    pub members: Vec<(ForecastMember, f64)>,
-    /// Root mean square of what the combination would have been off by at the cuts, over the change until then and ln(t/T) + 0.1.
-    pub error: f64,
+    /// What is combined after the hold.
+    pub combined: Combination,
+    /// Where the courses of other holds are among it: the time since the first sample up to which these are known, s, and what goes on from
+    /// there without them.
+    pub beyond: Option<(f64, Combination)>,
     /// Cuts of the hold that it was tried at.
     pub cuts: usize,
     /// Other holds that it was tried on.
@@ -76,7 +86,6 @@ pub struct HoldForecast {
     pub direction: f64,
     /// Standard deviation of the noise of a sample.
     pub noise: f64,
-    courses: Vec<Course>,
     options: LawOptions,
 }
 
@@ -140,36 +149,49 @@ impl HoldForecast {
             done += 1;
             watch.report(Progress::counted("forecasting", done - 1, hold.members.len() * (1 + others.len())))
         };
-        let (mut usable, mut courses) = (Vec::new(), Vec::new());
-        for (index, member) in hold.members.iter().enumerate() {
+        let mut fitted = Vec::with_capacity(hold.members.len());
+        for member in &hold.members {
             next()?;
-            if let Ok(course) = Course::of(*member, &hold.samples, &hold.options) {
-                usable.push(index);
-                courses.push(course);
-            }
+            fitted.push((*member, Course::of(*member, &hold.samples, &hold.options).ok()));
         }
         let as_long = others.iter().map(|other| hold.as_long(other, &mut next)).collect::<Result<Vec<_>, _>>()?;
         if hold.trials.len() + as_long.iter().flatten().count() < LEAST {
             return Ok(None);
         }
-        let beside: Vec<_> = others.iter().copied().zip(as_long.iter().map(Option::as_ref)).collect();
-        let pool = Pool::new(&usable, hold, &beside);
-        let weights = pool.weights();
-        let kept = || (0..usable.len()).filter(|i| weights[*i] > 0.0);
+        let mut own = hold.trials.clone();
+        let of_another = |(other, as_long): (&&TriedHold<'_>, Option<Trial>)| OfAnother {
+            trials: other.trials.clone(),
+            as_long,
+        };
+        let mut of_others: Vec<OfAnother> = others.iter().zip(as_long).map(of_another).collect();
+        let laws = Combination::of(&fitted, &own, &of_others);
+        let (combined, beyond) = match Others::longer(hold, &others) {
+            None => (laws, None),
+            Some(known) => {
+                own.iter_mut().for_each(|trial| *trial = known.tried(trial, hold, None));
+                for (number, of) in of_others.iter_mut().enumerate() {
+                    let trials = of.trials.iter_mut().chain(&mut of.as_long);
+                    trials.for_each(|trial| *trial = known.tried(trial, others[number], Some(number)));
+                }
+                fitted.extend(known.courses(&hold.samples));
+                (Combination::of(&fitted, &own, &of_others), Some((known.until, laws)))
+            }
+        };
         let (times, values) = (hold.samples.times, hold.samples.values);
         let forecast = Self {
             duration: hold.duration(),
-            members: kept().map(|i| (hold.members[usable[i]], weights[i])).collect(),
-            error: pool.error(),
+            combined,
+            beyond,
             cuts: hold.trials.len(),
             other_holds: others.len(),
             change: change(values).abs(),
             direction: change(values).signum(),
             noise: noise_in_time(times, values),
-            courses: kept().map(|i| courses[i].clone()).collect(),
             options: hold.options.clone(),
         };
-        Ok(Some(forecast).filter(|forecast| forecast.error.is_finite()))
+        let errors = [Some(&forecast.combined), forecast.beyond.as_ref().map(|(_, laws)| laws)];
+        let is_known = errors.into_iter().flatten().all(|combination| combination.error.is_finite());
+        Ok(is_known.then_some(forecast))
     }
 
     /// The forecasts of all holds of a record, each beside the others; `None` where there is none, or no law can be fitted.
@@ -202,24 +224,42 @@ impl HoldForecast {
     /// The same at many times.
     #[must_use]
     pub fn at_times(&self, elapsed: &[f64], confidence: f64) -> Vec<Forecasted> {
-        let courses: Vec<Vec<f64>> = self.courses.iter().map(|course| course.at(elapsed, &self.options)).collect();
         let factor = normal_factor(confidence);
-        let forecasted = |(index, elapsed): (usize, &f64)| {
-            let members = || self.members.iter().zip(&courses).map(|((_, weight), course)| (weight, course[index]));
-            let value: f64 = members().map(|(weight, found)| weight * found).sum();
-            let spread: f64 = members().map(|(weight, found)| weight * (found - value).powi(2)).sum();
-            let beyond = elapsed / self.duration;
-            let grown = if beyond > 1.0 { (beyond.ln() + AT_ONCE) * self.error * self.change } else { 0.0 };
+        let forecasted = |(combined, growth): (Combined, f64)| {
             // Variances between the members and of what they have missed so far (law of total variance).
-            let variance = grown * grown + spread + self.noise * self.noise;
+            let variance = growth * self.change.powi(2) + combined.spread + self.noise * self.noise;
             let half = factor * variance.sqrt();
             Forecasted {
-                value,
-                low: value - half,
-                high: value + half,
+                value: combined.value,
+                low: combined.value - half,
+                high: combined.value + half,
             }
         };
-        elapsed.iter().enumerate().map(forecasted).collect()
+        self.combined_at(elapsed).into_iter().map(forecasted).collect()
+    }
+
+    /// What is combined, and the mean square that it is off by over that of the change.
+    fn combined_at(&self, elapsed: &[f64]) -> Vec<(Combined, f64)> {
+        let growth = |elapsed: f64| {
+            let beyond = elapsed / self.duration;
+            if beyond > 1.0 { (beyond.ln() + AT_ONCE).powi(2) } else { 0.0 }
+        };
+        let until = self.beyond.as_ref().map_or(f64::INFINITY, |(until, _)| *until);
+        let reached: Vec<f64> = elapsed.iter().map(|t| t.min(until)).collect();
+        let square = self.combined.error.powi(2);
+        let reached = self.combined.at(&reached, &self.options).into_iter().zip(&reached);
+        let mut found: Vec<_> = reached.map(|(combined, t)| (combined, square * growth(*t))).collect();
+        let Some((until, laws)) = &self.beyond else {
+            return found;
+        };
+        let start = laws.at(&[*until], &self.options)[0];
+        let later = laws.at(elapsed, &self.options).into_iter().zip(elapsed);
+        for ((combined, grown), (later, t)) in found.iter_mut().zip(later).filter(|(_, (_, t))| **t > *until) {
+            combined.value += later.value - start.value;
+            combined.spread += (later.spread - start.spread).max(0.0);
+            *grown += laws.error.powi(2) * (growth(*t) - growth(*until));
+        }
+        found
     }
 }
 

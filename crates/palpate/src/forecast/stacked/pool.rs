@@ -1,6 +1,6 @@
 //! All that a forecast is weighed by: what laws have predicted of the hold so far, and of other holds of the record.
 
-use super::trial::{Trial, TriedHold};
+use super::trial::Trial;
 use super::weights::stacked;
 
 /// What first parts of the other holds count together, where those of the hold itself count 1.
@@ -14,6 +14,14 @@ pub(super) struct Pool<'a> {
     /// Numbers of the members that are weighed.
     members: &'a [usize],
     groups: Vec<Group<'a>>,
+}
+
+/// Trials of another hold.
+pub(super) struct OfAnother {
+    /// Of its first parts.
+    pub(super) trials: Vec<Trial>,
+    /// Of a first part as long as the hold that is forecast, where it is longer.
+    pub(super) as_long: Option<Trial>,
 }
 
 struct Group<'a> {
@@ -32,23 +40,19 @@ struct Counted<'a> {
 
 impl<'a> Pool<'a> {
     /// The trials of a hold and of others, each with that of a first part as long as the hold, where there is one.
-    pub(super) fn new(
-        members: &'a [usize],
-        hold: &'a TriedHold<'_>,
-        others: &[(&'a TriedHold<'_>, Option<&'a Trial>)],
-    ) -> Self {
+    pub(super) fn new(members: &'a [usize], own: &'a [Trial], others: &'a [OfAnother]) -> Self {
         let group = |trials: Vec<Counted<'a>>| Group::new(trials, members);
-        let own = counted(&hold.trials, 1.0, members).map(|trial| group(vec![trial]));
+        let own = counted(own, 1.0, members).map(|trial| group(vec![trial]));
         let mut groups: Vec<Group<'a>> = own.collect();
-        let (count, longer) = (others.len() as f64, others.iter().filter(|(_, as_long)| as_long.is_some()).count());
-        groups.extend(others.iter().map(|(other, as_long)| {
+        let (count, longer) = (others.len() as f64, others.iter().filter(|other| other.as_long.is_some()).count());
+        groups.extend(others.iter().map(|OfAnother { trials, as_long }| {
             // Their errors contain the noise of another hold, beside another change.
             let unlike = |part| Counted {
                 importance: 0.0,
                 ..part
             };
-            let parts = counted(&other.trials, OTHERS / count, members).map(unlike);
-            group(parts.chain(counted(*as_long, AS_LONG / longer as f64, members)).collect())
+            let parts = counted(trials, OTHERS / count, members).map(unlike);
+            group(parts.chain(counted(as_long, AS_LONG / longer as f64, members)).collect())
         }));
         Self { members, groups }
     }

@@ -19,7 +19,7 @@ const FEWEST: (usize, usize) = (8, 3);
 pub(super) const AT_ONCE: f64 = 0.1;
 
 /// How many times as long as a hold another has to be, to tell what follows after the same time.
-const LONGER: f64 = 1.5;
+pub(super) const LONGER: f64 = 1.5;
 
 /// Most other holds: the nearest in the order of the record.
 const MOST: usize = 24;
@@ -27,7 +27,14 @@ const MOST: usize = 24;
 /// What was predicted from the first part of a hold, and came otherwise.
 #[derive(Debug, Clone)]
 pub(super) struct Trial {
+    /// Time since the first sample up to which was fitted, s.
+    pub(super) cut: f64,
     pub(super) importance: f64,
+    /// Times of the nodes since the first sample, s.
+    pub(super) times: Vec<f64>,
+    values: Vec<f64>,
+    /// Change until the cut.
+    change: f64,
     /// Weights of the nodes, which sum to 1, and ln(t/c) + 0.1 there.
     pub(super) nodes: Vec<(f64, f64)>,
     /// Errors of the members at the nodes as shares of the change until the cut.
@@ -77,6 +84,22 @@ impl<'a> TriedHold<'a> {
         times[times.len() - 1] - times[0]
     }
 
+    /// Number of samples up to a time since the first, s.
+    fn until(&self, elapsed: f64) -> usize {
+        let times = self.samples.times;
+        times.partition_point(|t| t - times[0] <= elapsed)
+    }
+
+    /// The samples up to a time since the first, s.
+    pub(super) fn first_part(&self, elapsed: f64) -> Samples<'a> {
+        let until = self.until(elapsed);
+        Samples {
+            times: &self.samples.times[..until],
+            values: &self.samples.values[..until],
+            standard_deviations: self.samples.standard_deviations.map(|all| &all[..until]),
+        }
+    }
+
     /// What the members fitted up to a time, s, predict of the next; `None` where there is too little of either.
     fn trial(
         &self,
@@ -84,51 +107,46 @@ impl<'a> TriedHold<'a> {
         importance: f64,
         next: &mut dyn FnMut() -> Result<(), Cancelled>,
     ) -> Result<Option<Trial>, Cancelled> {
-        let Samples {
-            times,
-            values,
-            standard_deviations,
-        } = self.samples;
-        let start = times[0];
-        let first = times.partition_point(|t| t - start <= cut);
-        let until = times.partition_point(|t| t - start <= HORIZON * cut);
+        let (times, values) = (self.samples.times, self.samples.values);
+        let (first, until) = (self.until(cut), self.until(HORIZON * cut));
         if first < FEWEST.0 || until < first + FEWEST.1 {
             return Ok(None);
         }
-        let fitted = Samples {
-            times: &times[..first],
-            values: &values[..first],
-            standard_deviations: standard_deviations.map(|standard_deviations| &standard_deviations[..first]),
-        };
+        let fitted = self.first_part(cut);
         let change = change(fitted.values).abs();
         if change <= 0.0 {
             return Ok(None);
         }
-        let elapsed: Vec<f64> = times[first..until].iter().map(|t| t - start).collect();
+        let elapsed: Vec<f64> = times[first..until].iter().map(|t| t - times[0]).collect();
         let rest = Condensed::finer(&elapsed, &values[first..until]);
         let total: f64 = rest.roots.iter().map(|root| root * root).sum();
         let nodes = rest.times.iter().zip(&rest.roots);
-        let nodes = nodes.map(|(t, root)| (root * root / total, (t / cut).ln() + AT_ONCE)).collect();
-        let errors = self.members.iter().map(|member| {
+        let trial = Trial {
+            cut,
+            importance,
+            nodes: nodes.map(|(t, root)| (root * root / total, (t / cut).ln() + AT_ONCE)).collect(),
+            values: rest.values.iter().zip(&rest.roots).map(|(value, root)| value / root).collect(),
+            times: rest.times,
+            change,
+            errors: Vec::new(),
+            products: Vec::new(),
+        };
+        let predicted = self.members.iter().map(|member| {
             next()?;
-            let off = |predicted: Vec<f64>| -> Vec<f64> {
-                let found = rest.values.iter().zip(&rest.roots).map(|(value, root)| value / root);
-                predicted.iter().zip(found).map(|(predicted, found)| (predicted - found) / change).collect()
-            };
-            let course = Course::of(*member, &fitted, &self.options);
-            let errors = course.map(|course| off(course.at(&rest.times, &self.options)));
-            // One that cannot be fitted to so little is as far off as all that has changed.
-            let usable = errors.ok().filter(|errors| errors.iter().all(|error| error.is_finite()));
-            Ok(usable.unwrap_or_else(|| vec![1.0; rest.times.len()]))
+            let course = Course::of(*member, &fitted, &self.options).ok();
+            Ok(course.map(|course| course.at(&trial.times, &self.options)))
         });
-        Ok(Some(Trial::new(importance, nodes, errors.collect::<Result<_, Cancelled>>()?)))
+        let predicted: Vec<_> = predicted.collect::<Result<_, Cancelled>>()?;
+        Ok(Some(trial.with(predicted)))
     }
 
     /// Other holds that tell something of this one, the nearest first: of the same members, with a signal that goes the same way.
     pub(super) fn alike<'b>(&self, others: &[&'b TriedHold<'b>]) -> Vec<&'b TriedHold<'b>> {
-        let direction = change(self.samples.values).signum();
+        let duration = self.duration();
+        // A longer hold may turn around later.
+        let direction = |hold: &TriedHold<'_>| change(&hold.samples.values[..hold.until(duration)]).signum();
         let is_alike = |other: &&&TriedHold<'_>| {
-            let same = other.members == self.members && change(other.samples.values).signum() == direction;
+            let same = other.members == self.members && direction(other) == direction(self);
             same && !other.trials.is_empty()
         };
         others.iter().filter(is_alike).take(MOST).copied().collect()
@@ -148,19 +166,31 @@ impl<'a> TriedHold<'a> {
 }
 
 impl Trial {
-    fn new(importance: f64, nodes: Vec<(f64, f64)>, errors: Vec<Vec<f64>>) -> Self {
+    /// The trial with further members, by what they predict at its nodes. One that cannot be fitted to so little is as far off as all that
+    /// has changed.
+    pub(super) fn with(&self, predicted: impl IntoIterator<Item = Option<Vec<f64>>>) -> Self {
+        let off = |predicted: Vec<f64>| -> Vec<f64> {
+            predicted
+                .iter()
+                .zip(&self.values)
+                .map(|(predicted, found)| (predicted - found) / self.change)
+                .collect()
+        };
+        let usable = |errors: &Vec<f64>| errors.iter().all(|error| error.is_finite());
+        let errors = predicted.into_iter().map(|predicted| predicted.map(off).filter(usable));
+        let errors = errors.map(|errors| errors.unwrap_or_else(|| vec![1.0; self.times.len()]));
+        let errors: Vec<Vec<f64>> = self.errors.iter().cloned().chain(errors).collect();
         let mut products = Vec::with_capacity(errors.len() * errors.len());
         for one in &errors {
             products.extend(errors.iter().map(|other| -> f64 {
-                let nodes = one.iter().zip(other).zip(&nodes);
+                let nodes = one.iter().zip(other).zip(&self.nodes);
                 nodes.map(|((one, other), (weight, _))| weight * one * other).sum()
             }));
         }
         Self {
-            importance,
-            nodes,
             errors,
             products,
+            ..self.clone()
         }
     }
 

@@ -1,8 +1,7 @@
 //! The zero of a record, and the same motion without a body.
 
-use super::resample::interpolated;
 use crate::record::{Correction, Record, RecordError, Tare};
-use crate::statistics::range;
+use crate::statistics::{interpolated, range};
 
 /// How far the jaw of an air run may stand from that of the record, as a share of the way.
 const SAME_PLACE: f64 = 0.02;

@@ -1,10 +1,10 @@
 //! Force and displacement with time stamps of their own.
 
 use super::dropouts::replace;
-use super::resample::interpolated;
 use crate::record::checks::{self, RecordError};
 use crate::record::signals::stray_rows;
 use crate::record::{Column, Correction, Record};
+use crate::statistics::interpolated;
 
 impl Record {
     /// A record whose displacement has time stamps of its own, brought onto the times of the force.

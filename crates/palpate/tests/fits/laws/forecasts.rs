@@ -41,7 +41,7 @@ fn the_band_of_a_forecast_covers_what_follows() {
             let first = times.partition_point(|t| *t <= DURATION / 3.0);
             let early = Samples::new(&times[..first], &values[..first]);
             let found = HoldForecast::of(&early, &laws, &options, &mut Unwatched).unwrap().unwrap();
-            assert!((found.members.iter().map(|(_, weight)| weight).sum::<f64>() - 1.0).abs() < 1e-9);
+            assert!((found.combined.members.iter().map(|(_, weight)| weight).sum::<f64>() - 1.0).abs() < 1e-9);
             let rest: Vec<_> = times[first..].iter().map(|t| found.at(*t, 0.95)).zip(&values[first..]).collect();
             let inside = rest.iter().filter(|(at, value)| at.low <= **value && **value <= at.high).count();
             covered += usize::from(inside as f64 >= 0.95 * rest.len() as f64);
@@ -108,6 +108,80 @@ fn other_holds_of_the_body_make_a_forecast_better() {
     let ratio = (logarithms.iter().sum::<f64>() / logarithms.len() as f64).exp();
     println!("{better} of {} are better, {ratio:.2} times the error, {covered} covered", logarithms.len());
     assert!(covered >= 11 && better >= 9 && ratio < 0.7, "{better}, {ratio}, {covered}");
+}
+
+/// The forecast of the first third of a hold beside others of the same course that are known for a time, s.
+fn beside_known(signal: Signal, scales: &[f64], known: f64) -> HoldForecast {
+    let (laws, options) = (CompareOptions::default().laws(), LawOptions::default());
+    let mut random = Rng::new(5);
+    let mut first_part = |scale: f64, until: f64| {
+        let (times, values) = hold(signal, 2e-3, &mut random);
+        let count = times.partition_point(|t| *t <= until);
+        let values: Vec<f64> = values[..count].iter().map(|value| scale * value - 0.1).collect();
+        (times[..count].to_vec(), values)
+    };
+    let holds: Vec<_> = [first_part(1.0, DURATION / 3.0)]
+        .into_iter()
+        .chain(scales.iter().map(|scale| first_part(*scale, known)))
+        .collect();
+    let tried: Vec<_> = holds
+        .iter()
+        .map(|(t, y)| TriedHold::of(Samples::new(t, y), &laws, &options, &mut Unwatched).unwrap())
+        .collect();
+    HoldForecast::beside(&tried[0], &tried[1..].iter().collect::<Vec<_>>(), &mut Unwatched)
+        .unwrap()
+        .unwrap()
+}
+
+/// A body that gives way after 35 s in every hold: no law knows, the other holds do.
+#[test]
+fn what_other_holds_did_later_is_forecast() {
+    let signal: Signal = |t| 1.0 + 2.0 * (1.0 + t).powf(-0.3) - 0.3 * (1.0 + ((t - 35.0) / 4.0).tanh());
+    let scales = [0.5, 0.8, 1.3];
+    let found = beside_known(signal, &scales, DURATION);
+    let (until, _) = found.beyond.as_ref().unwrap();
+    assert!((until - DURATION).abs() < 0.2);
+    for time in [25.0, 35.0, 45.0, 59.0] {
+        let (at, truth) = (found.at(time, 0.95), signal(time) - 0.1);
+        assert!((at.value - truth).abs() < 0.02 && at.low < truth && truth < at.high, "{time} s: {at:?}, {truth}");
+    }
+    // Beside one other hold alone nothing has shown that its course recurs.
+    let one = beside_known(signal, &scales[..1], DURATION);
+    assert!(one.beyond.is_none() && (one.at(59.0, 0.95).value - signal(59.0)).abs() > 0.2);
+}
+
+#[test]
+fn the_forecast_goes_on_as_laws_do_where_other_holds_end() {
+    let signal = SIGNALS[0].1;
+    let found = beside_known(signal, &[0.5, 0.8, 1.3], 40.0);
+    let (until, laws) = found.beyond.as_ref().unwrap();
+    assert!(
+        (until - 40.0).abs() < 0.2
+            && laws.members.iter().all(|(member, _)| !member.to_string().contains("other holds"))
+    );
+    let (before, after) = (found.at(*until, 0.95), found.at(until + 1e-6, 0.95));
+    assert!((after.value - before.value).abs() < 1e-6 && after.high - after.low >= before.high - before.low);
+    let (end, later) = (found.at(60.0, 0.95), found.at(180.0, 0.95));
+    assert!((end.value - (signal(60.0) - 0.1)).abs() < 0.01, "{end:?}");
+    assert!(
+        (later.value - (signal(180.0) - 0.1)).abs() < 0.03 && later.high - later.low > end.high - end.low,
+        "{later:?}"
+    );
+}
+
+/// The direction of a longer hold was that of all of it.
+#[test]
+fn a_longer_hold_that_turns_back_tells_of_its_beginning() {
+    let (laws, options) = (["latency", "sls"].map(|name| name.parse::<Law>().unwrap()), LawOptions::default());
+    let mut random = Rng::new(4);
+    let turning: Signal = |t| 1.0 + 2.0 * (1.0 + t).powf(-0.5) + 0.06 * (t - 15.0).max(0.0);
+    let ((times, early), (_, long)) = (hold(turning, 2e-3, &mut random), hold(turning, 2e-3, &mut random));
+    let first = times.partition_point(|t| *t <= 12.0);
+    let early = TriedHold::of(Samples::new(&times[..first], &early[..first]), &laws, &options, &mut Unwatched).unwrap();
+    let long = TriedHold::of(Samples::new(&times, &long), &laws, &options, &mut Unwatched).unwrap();
+    assert!(turning(60.0) > turning(0.0));
+    let found = HoldForecast::beside(&early, &[&long], &mut Unwatched).unwrap().unwrap();
+    assert_eq!(found.other_holds, 1);
 }
 
 #[test]
