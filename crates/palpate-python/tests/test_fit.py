@@ -220,6 +220,56 @@ def test_bounds_may_be_lists_and_open() -> None:
         assert palpate.fit_hold(t, y, bounds={"exponent": pair}).parameters["exponent"] == pytest.approx(free, rel=1e-6)
 
 
+def test_intervals_and_samples_end_at_bounds() -> None:
+    """Intervals reached beyond bounds, and so did one of two samples."""
+    t = np.linspace(0.0, 40.0, 400)
+    signal = 1 + 2 * np.exp(-t / 8) + np.random.default_rng(0).normal(0.0, 0.01, 400)
+    free = palpate.fit_hold(t, signal, law="standard-linear-solid")
+    estimate = free.estimates["equilibrium"]
+    assert estimate.standard_error is not None and estimate.interval is not None
+    low, high = estimate.value - 0.5 * estimate.standard_error, estimate.value + estimate.standard_error
+    fit = palpate.fit_hold(t, signal, law="standard-linear-solid", bounds={"equilibrium": (low, high), "time_constant_s": (1.0, None)})
+    assert fit.bounds == {"equilibrium": (low, high), "time_constant_s": (1.0, None)} and free.bounds == {}
+    assert fit.estimates["equilibrium"].interval == (low, high)
+    assert fit.estimates["time_constant_s"].interval == pytest.approx(free.estimates["time_constant_s"].interval)
+    draws = fit.sample(5000, seed=1)["equilibrium"]
+    assert draws.size == 5000 and low <= draws.min() < draws.max() <= high
+    assert draws.std() < 0.5 * estimate.standard_error
+    assert pickle.loads(pickle.dumps(fit)) == fit and fit != free
+    table = palpate.fit_many(t, [signal], law="standard-linear-solid", bounds={"equilibrium": (low, high)})
+    assert (table["equilibrium_low"][0], table["equilibrium_high"][0]) == (low, high)
+    tight = palpate.fit_hold(t, signal, law="standard-linear-solid", bounds={"equilibrium": (estimate.value - 1e-9, estimate.value + 1e-9)})
+    with pytest.raises(palpate.FitError, match="expected bounds that hold more than one in 1000 sets"):
+        tight.sample(10)
+
+
+def test_the_limit_of_a_law_has_the_interval_of_its_equilibrium() -> None:
+    """Its interval was NaN."""
+    t = np.linspace(0.0, 40.0, 400)
+    signal = 1 + 2 * np.exp(-t / 8) + np.random.default_rng(0).normal(0.0, 0.01, 400)
+    fractional = palpate.fit_hold(t, signal, law="fractional-zener")
+    assert fractional.predict(np.inf) == fractional.parameters["equilibrium"]
+    for law in ("standard-linear-solid", "stretched", "diffusion", "latency:3"):
+        fit = palpate.fit_hold(t, signal, law=law, intervals="curvature")
+        equilibrium = fit.estimates["equilibrium"]
+        assert fit.predict(np.inf) == equilibrium.value
+        value, low, high = fit.predict(np.inf, interval=0.95)
+        assert (value, low, high) == pytest.approx((equilibrium.value, *(equilibrium.interval or ())), rel=1e-9)
+    growing = palpate.fit_hold(t, signal, law="logarithmic")
+    with pytest.raises(palpate.OptionError, match="predict: expected finite times of logarithmic, which has no limit, found inf"):
+        growing.predict([1.0, np.inf])
+
+
+def test_an_estimate_is_formatted_with_its_error() -> None:
+    """A format was a TypeError."""
+    estimate = palpate.fit_hold(*relaxation(noise=1e-3), fixed={"exponent": 5}).estimates
+    one = estimate["equilibrium"]
+    assert f"{one:.3f}" == f"{one.value:.3f} ± {one.standard_error:.3f}" and f"{one}" == str(one) == repr(one)
+    assert f"{estimate['exponent']:.2f}" == "5.00"
+    with pytest.raises(ValueError, match="format"):
+        f"{one:x}"
+
+
 def test_intervals_rest_on_what_was_requested_for() -> None:
     # The law is the one that made the data and the noise is white: all three methods must agree.
     t = np.linspace(0.0, 10.0, 400)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from datetime import datetime, timedelta
+
 import numpy as np
 import palpate
 import pytest
@@ -54,6 +56,20 @@ def test_other_holds_tell_what_follows() -> None:
     with pytest.raises(palpate.FitError, match=r"^others\[1\]: times must rise"):
         palpate.forecast(t, relaxed(t), 70.0, others=[others[0], (t[::-1], t)])
     assert len(palpate.forecast(t, relaxed(t), 70.0)) == 1
+
+
+def test_a_forecast_is_on_the_clock_of_dates() -> None:
+    """Dates and durations were refused as times to predict, and dates in other holds."""
+    t = np.linspace(0.0, 10.0, 100)
+    start = np.datetime64("2024-02-29T23:59:30", "ns")
+    dates = start + (1e9 * t).astype("timedelta64[ns]")
+    signal, laws = 1 + 2 * np.exp(-t / 3), ["maxwell", "standard-linear-solid"]
+    plain = palpate.forecast(t, signal, at_s=[20.0], laws=laws)
+    for at in (start + np.timedelta64(20, "s"), datetime(2024, 2, 29, 23, 59, 50), timedelta(seconds=20), [np.timedelta64(20, "s")]):
+        table = palpate.forecast(dates, signal, at_s=at, laws=laws, others=[(dates, signal)])
+        assert table["at_s"].tolist() == [20.0] and table["value"][0] == pytest.approx(plain["value"][0], rel=1e-3)
+    with pytest.raises(palpate.OptionError, match="at_s: expected numbers in s or durations, as the samples have, found dates"):
+        palpate.forecast(t, signal, at_s=start, laws=laws)
 
 
 def test_holds_of_a_record_are_forecast_together() -> None:

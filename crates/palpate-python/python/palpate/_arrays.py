@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from datetime import timedelta
+from datetime import timedelta, timezone
 from importlib.util import find_spec
 from typing import Any
 
@@ -52,19 +52,72 @@ def as_doubles(values: Any, name: str, omit_nan: bool = False) -> NDArray[np.flo
         raise OptionError(f"{name}: expected numbers, found {_reported(array[0])}") from None
 
 
+def _dates(array: NDArray[Any]) -> NDArray[np.datetime64] | None:
+    """Dates as those of NumPy; None of another column."""
+    if array.dtype.kind == "O" and array.size and not isinstance(array[0], timedelta) and hasattr(array[0], "timestamp"):
+        # Dates with a time zone are objects: those of pandas keep nanoseconds in `value`.
+        moments = [moment.value if hasattr(moment, "value") else round(1e6 * _with_zone(moment).timestamp()) * 1000 for moment in array]
+        return np.array(moments, dtype="datetime64[ns]")
+    return array if array.dtype.kind == "M" else None
+
+
+def _with_zone(moment: Any) -> Any:
+    """A date of `datetime` with its zone; without one it is in UTC, as those of NumPy and pandas are."""
+    return moment if moment.tzinfo is not None else moment.replace(tzinfo=timezone.utc)
+
+
+def _first(dates: NDArray[np.datetime64]) -> np.datetime64:
+    """The first of some dates that is known."""
+    known = dates[~np.isnat(dates)]
+    first: np.datetime64 = known[0] if known.size else dates[0]
+    return first
+
+
+def first_date_ns(times: Any) -> int | None:
+    """The first date of a column of times in ns since 1970; None of a column of others."""
+    if isinstance(times, np.ndarray) and times.dtype.kind == "f":
+        return None
+    try:
+        column = np.asarray(_units.in_si(times, "time_s"))
+    except ValueError:
+        # What reads the column says what is wrong with it.
+        return None
+    dates = _dates(column) if column.ndim == 1 and column.size else None
+    return None if dates is None else int(_first(dates).astype("datetime64[ns]").astype(np.int64))
+
+
+def at_times(values: Any, name: str, first_ns: int | None) -> tuple[NDArray[np.float64], bool]:
+    """Times to evaluate at in s, and whether it is a single one.
+
+    They are on the clock of samples whose first date is `first_ns` (ns since 1970); without it dates are refused.
+    """
+    values = _units.in_si(values, name)
+    try:
+        column = np.asarray(values)
+    except ValueError:
+        # What reads the column says what is wrong with it.
+        return as_doubles(values, name), False
+    is_single = column.ndim == 0 and column.dtype.kind not in "USV"
+    if is_single:
+        values = column = column.reshape(1)
+    dates = _dates(column) if column.ndim == 1 else None
+    if dates is None:
+        return as_doubles(values, name), is_single
+    if first_ns is None:
+        message = f"{name}: expected numbers in s or durations, as the samples have, found dates"
+        raise OptionError(f"{message}\nhint: subtract the date at which their clock is 0")
+    return as_doubles(dates - np.datetime64(first_ns, "ns"), name), is_single
+
+
 def _seconds(array: NDArray[Any], name: str) -> NDArray[Any]:
     """Durations in s, and dates in s since the first; other columns as they are."""
-    if array.dtype.kind == "O" and isinstance(array[0], timedelta):
-        array = array.astype("timedelta64[ns]")
-    elif array.dtype.kind == "O" and hasattr(array[0], "timestamp"):
-        # Dates with a time zone are objects: those of pandas keep nanoseconds in `value`.
-        moments = [moment.value if hasattr(moment, "value") else round(1e6 * moment.timestamp()) * 1000 for moment in array]
-        array = np.array(moments, dtype="datetime64[ns]")
-    if array.dtype.kind == "M":
-        if name != "time_s":
+    dates = _dates(array)
+    if dates is not None:
+        if not name.endswith("time_s"):
             raise OptionError(f"{name}: expected numbers in s, found dates\nhint: subtract the first date of the samples")
-        known = array[~np.isnat(array)]
-        array = array - (known[0] if known.size else array[0])
+        array = dates - _first(dates)
+    elif array.dtype.kind == "O" and isinstance(array[0], timedelta):
+        array = array.astype("timedelta64[ns]")
     if array.dtype.kind == "m" and name.rstrip(")").endswith("_s"):
         return np.where(np.isnat(array), np.nan, array / np.timedelta64(1, "s"))
     return array

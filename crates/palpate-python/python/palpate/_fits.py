@@ -5,13 +5,15 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import Any, Union, overload
 
-from palpate import _arrays, _long, _palpate
+from palpate import _arrays, _long, _palpate, _units
 from palpate._options import Intervals, LawName, Loss, Missing, Noise, Response
 from palpate._palpate import Fit, OptionError, Table
 from palpate._progress import bar
 
-#: Lower and upper end of what a number may be; None leaves an end open.
-Bound = Union[tuple[Union[float, None], Union[float, None]], Sequence[Union[float, None]]]
+#: Lower and upper end of what a number may be; None leaves an end open. Quantities of pint are of any type to a checker of types.
+Bound = Union[tuple[Union[float, None], Union[float, None]], Sequence[Union[float, None]], Any]
+#: Parameters without a dimension.
+_PURE = "exponent", "stretching", "order", "log_ratio"
 
 
 def number(value: Any, name: str) -> float:
@@ -30,14 +32,27 @@ def _named(values: Any, name: str, example: str) -> list[tuple[str, Any]]:
     return [(str(key), value) for key, value in values.items()]
 
 
-def _ends(pair: Any, name: str) -> tuple[float, float]:
+def _parameter(name: str, value: Any, place: str, signal: Any) -> float:
+    """A parameter in the unit of a fit; quantities of pint are converted to it, which for some parameters is that of the signal."""
+    if not _units.is_quantity(value):
+        return number(value, place)
+    end = _units.ending(name)
+    try:
+        if end or name in _PURE:
+            return _units.number(value, _units.ENDINGS.get(end, ""))
+        return _units.number_like(value, signal)
+    except OptionError as error:
+        raise OptionError(f"{place}: {error}") from None
+
+
+def _ends(name: str, pair: Any, place: str, signal: Any) -> tuple[float, float]:
     """Both ends of a bound; one that is None is left open."""
     if isinstance(pair, str) or not hasattr(pair, "__len__") or len(pair) != 2:
-        raise OptionError(f"{name}: expected a lower and an upper end, found {pair!r}")
+        raise OptionError(f"{place}: expected a lower and an upper end, found {pair!r}")
     low, high = pair
     return (
-        float("-inf") if low is None else number(low, name),
-        float("inf") if high is None else number(high, name),
+        float("-inf") if low is None else _parameter(name, low, place, signal),
+        float("inf") if high is None else _parameter(name, high, place, signal),
     )
 
 
@@ -52,6 +67,7 @@ def _keywords(
     log_spaced: int | None,
     intervals: str,
     nan: str,
+    signal: Any = None,
 ) -> dict[str, Any]:
     words = {"law": law, "response": response, "loss": loss, "noise": noise, "intervals": intervals, "nan": nan}
     for name, word in words.items():
@@ -63,8 +79,8 @@ def _keywords(
         raise OptionError(f"log_spaced: expected a number of samples, found {log_spaced!r}")
     return {
         **words,
-        "fixed": held and [(name, number(value, f'fixed["{name}"]')) for name, value in held],
-        "bounds": bounded and [(name, _ends(pair, f'bounds["{name}"]')) for name, pair in bounded],
+        "fixed": held and [(name, _parameter(name, value, f'fixed["{name}"]', signal)) for name, value in held],
+        "bounds": bounded and [(name, _ends(name, pair, f'bounds["{name}"]', signal)) for name, pair in bounded],
         "confidence": number(confidence, "confidence"),
         "log_spaced": log_spaced,
     }
@@ -105,9 +121,9 @@ def fit_hold(
     response
         "relaxation" or "creep".
     fixed
-        Numbers held at a value, by name: ``{"exponent": 5, "equilibrium": 0}``; all but amplitudes.
+        Numbers held at a value, by name: ``{"exponent": 5, "equilibrium": 0}``; all but amplitudes. Quantities of pint are converted.
     bounds
-        Bounds of numbers, by name: ``{"exponent": (1, 10)}``; None leaves an end open.
+        Bounds of numbers, by name: ``{"exponent": (1, 10)}``; None leaves an end open. Intervals, and the sets of `Fit.sample`, end there.
     loss
         "squares", or "huber" or "tukey" where single samples stray.
     noise
@@ -145,11 +161,12 @@ def fit_hold(
     >>> round(fit.parameters["time_constant_s"], 6)
     8.0
     """
-    keywords = _keywords(law, response, fixed, bounds, loss, noise, confidence, log_spaced, intervals, nan)
+    keywords = _keywords(law, response, fixed, bounds, loss, noise, confidence, log_spaced, intervals, nan, signal)
+    first_date_ns = _arrays.first_date_ns(time_s)
     if nan == "omit":
         time_s, signal = _arrays.as_doubles(time_s, "time_s", True), _arrays.as_doubles(signal, "signal", True)
         weights = None if weights is None else _arrays.as_doubles(weights, "weights", True)
-    return _palpate.fit_hold(time_s, signal, weights, keywords)
+    return _palpate.fit_hold(time_s, signal, weights, keywords, first_date_ns)
 
 
 @overload
@@ -254,8 +271,10 @@ def fit_many(
     >>> fits["specimen"], fits["time_constant_s"].round(3).tolist()
     (['a', 'b'], [8.0, 5.0])
     """
-    keywords = _keywords(law, response, fixed, bounds, loss, noise, confidence, log_spaced, intervals, nan)
+    keywords = _keywords(law, response, fixed, bounds, loss, noise, confidence, log_spaced, intervals, nan, signal)
     labels: _long.Labels = {}
+    for name, found in {"time_s": time_s, "signal": signal, "weights": weights}.items():
+        _long.check_ungrouped(found, name)
     if by is not None:
         names = {"time": time, "signal": signal, "weights": weights}
         for name, found in names.items():

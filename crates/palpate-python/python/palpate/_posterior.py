@@ -20,6 +20,20 @@ _SCALES: dict[str, tuple[Any, Any]] = {
 }
 
 
+#: Rounds of draws, each of as many sets as are wanted, before bounds count as too narrow to draw inside of them.
+_MOST_ROUNDS = 1000
+
+
+def _inside(sets: dict[str, NDArray[np.float64]], bounds: dict[str, Any]) -> dict[str, NDArray[np.float64]]:
+    """The sets of parameters inside the bounds."""
+    ends = {name: (-np.inf if low is None else low, np.inf if high is None else high) for name, (low, high) in bounds.items() if name in sets}
+    inside = np.ones(len(next(iter(sets.values()), [])), dtype=bool)
+    for name, (low, high) in ends.items():
+        # A parameter that ended at a bound varies by rounding alone.
+        inside &= (sets[name] >= low - 1e-12 * abs(low)) & (sets[name] <= high + 1e-12 * abs(high))
+    return {name: np.clip(values[inside], *ends.get(name, (-np.inf, np.inf))) for name, values in sets.items()}
+
+
 def _scale(searched: str) -> tuple[str, Any, Any]:
     prefix = next(prefix for prefix in _SCALES if searched.startswith(prefix))
     return searched.removeprefix(prefix), *_SCALES[prefix]
@@ -31,7 +45,8 @@ def sample(self: Any, n: int = 1000, *, seed: int | None = None) -> dict[str, ND
     A multivariate normal distribution in the scales of `searched`, with `covariance`: rates and times, whose logarithms were
     searched, are log-normal. It is what the curvature at the optimum says; where `interval_method` is another one, the true
     distribution is not normal and its tails are those of the intervals. `covariance` is the mean over the models of the noise that are likely:
-    where one of little probability has a long memory, the draws spread wider than the intervals.
+    where one of little probability has a long memory, the draws spread wider than the intervals. Where the fit had `bounds`, sets
+    outside of them are drawn again.
 
     Parameters
     ----------
@@ -48,7 +63,7 @@ def sample(self: Any, n: int = 1000, *, seed: int | None = None) -> dict[str, ND
     Raises
     ------
     FitError
-        The data leave a parameter open: there is no covariance.
+        The data leave a parameter open: there is no covariance. Bounds so narrow that hardly a set lies inside of them.
     OptionError
         Fewer than one set; a seed that is no whole number, or below 0.
 
@@ -72,8 +87,15 @@ def sample(self: Any, n: int = 1000, *, seed: int | None = None) -> dict[str, ND
         raise OptionError(f"seed: expected a whole number, 0 or more, or None, found {seed!r}") from None
     scales = [_scale(name) for name in self.searched]
     centre = [forward(self.parameters[name]) for name, forward, _ in scales]
-    drawn = generator.multivariate_normal(centre, self.covariance, size=n, method="eigh")
-    found = {name: back(drawn[:, place]) for place, (name, _, back) in enumerate(scales)}
+    found = {name: np.empty(0) for name, _, _ in scales}
+    for _ in range(_MOST_ROUNDS):
+        drawn = generator.multivariate_normal(centre, self.covariance, size=n, method="eigh")
+        sets = _inside({name: back(drawn[:, place]) for place, (name, _, back) in enumerate(scales)}, self.bounds)
+        found = {name: np.concatenate([values, sets[name]])[:n] for name, values in found.items()}
+        if not scales or len(found[scales[0][0]]) == n:
+            break
+    else:
+        raise FitError(f"expected bounds that hold more than one in {_MOST_ROUNDS} sets of the distribution, found narrower ones\nhint: hold the parameter with fixed=")
     return {name: found.get(name, np.full(n, value)) for name, value in self.parameters.items()}
 
 
@@ -116,7 +138,7 @@ def evaluate(self: Any, time_s: Any = None, **parameters: float) -> Any:
     Parameters
     ----------
     time_s : float or array_like, shape (N,), optional
-        Time on the clock of the samples, s; the times of the samples if left out.
+        Time on the clock of the samples, s, a duration or, where the samples had dates, a date; the times of the samples if left out.
     parameters
         Values in place of those that were found: ``fit.eval(exponent=3)``.
 
@@ -135,13 +157,13 @@ def evaluate(self: Any, time_s: Any = None, **parameters: float) -> Any:
         raise OptionError(f"expected parameters of {self.law} ({', '.join(self.parameters)}), found {', '.join(unknown)}")
     if not parameters:
         return self.predict(time_s)
-    from palpate._arrays import as_doubles
+    from palpate._arrays import at_times
 
-    times = self.time_s if time_s is None else as_doubles(np.atleast_1d(time_s), "eval(time_s)")
+    times, is_single = (self.time_s, False) if time_s is None else at_times(time_s, "eval(time_s)", self._first_date_ns)
     replaced = {name: number(value, name) for name, value in parameters.items()}
     law = _creep if self.to_dict()["response"] == "creep" else _relaxation
     values = law(self, times - self.start_s, {**self.parameters, **replaced})
-    return float(values[0]) if time_s is not None and np.ndim(time_s) == 0 else values
+    return float(values[0]) if is_single else values
 
 
 def _relaxation(fit: Any, elapsed_s: NDArray[np.float64], parameters: dict[str, float]) -> NDArray[np.float64]:

@@ -50,6 +50,17 @@ def number(quantity: Any, unit: str) -> float:
     return float(quantity.to(_of_pint(unit)).magnitude)
 
 
+def number_like(quantity: Any, column: Any) -> float:
+    """One quantity in the base units of SI, where a column has the same dimension."""
+    first: Any = column[0] if isinstance(column, (list, tuple)) and column else column
+    if not is_quantity(first):
+        message = f"expected a number in the unit of the signal, which states none, found a quantity in {quantity.units}"
+        raise OptionError(f"{message}\nhint: give the signal as a quantity too, or the number alone")
+    if not quantity.is_compatible_with(first.units):
+        raise OptionError(f"expected a quantity in {first.units}, the unit of the signal, found one in {quantity.units}")
+    return float(quantity.to_base_units().magnitude)
+
+
 def seconds(value: Any) -> float | None:
     """A duration of `datetime`, pandas or NumPy in s; None of anything else."""
     if isinstance(value, timedelta):

@@ -13,7 +13,7 @@ use palpate::number::{significant, with_interval};
 use palpate::watch::{Unwatched, Watch};
 use palpate_report::result::word;
 use pyo3::prelude::*;
-use pyo3::types::{IntoPyDict, PyDict};
+use pyo3::types::{IntoPyDict, PyDict, PyFloat};
 use serde::{Deserialize, Serialize};
 
 use crate::arrays::{array, doubles};
@@ -56,6 +56,21 @@ shown! {
         self.estimate.value
     }
 
+    /// Value and standard error, each by the format; without one what ``str`` gives.
+    fn __format__(&self, py: Python<'_>, format: &str) -> PyResult<String> {
+        if format.is_empty() {
+            return Ok(self.__repr__());
+        }
+        let number = |value: f64| -> PyResult<String> {
+            PyFloat::new(py, value).call_method1("__format__", (format,))?.extract()
+        };
+        let value = number(self.estimate.value)?;
+        Ok(match self.estimate.standard_error {
+            Some(error) => format!("{value} ± {}", number(error)?),
+            None => value,
+        })
+    }
+
     fn __repr__(&self) -> String {
         reported(&self.estimate, 6)
     }
@@ -94,7 +109,12 @@ fn unit_word(unit: ParameterUnit) -> &'static str {
 pub(crate) struct PyFit {
     fit: Fit,
     samples: Fitted,
+    bounds: Vec<Bounds>,
+    first_date_ns: Option<i64>,
 }
+
+/// Both ends of what a parameter could be, by its name; none where an end was open.
+type Bounds = (String, [Option<f64>; 2]);
 
 /// The samples of a fit, one column each; weights are 1/σ.
 #[derive(Clone, PartialEq, Serialize, Deserialize)]
@@ -109,18 +129,33 @@ struct Fitted {
 struct Parts {
     fit: Fit,
     samples: Fitted,
+    #[serde(default)]
+    bounds: Vec<Bounds>,
+    #[serde(default)]
+    first_date_ns: Option<i64>,
 }
 
 impl TryFrom<Parts> for PyFit {
     type Error = &'static str;
 
-    fn try_from(Parts { fit, samples }: Parts) -> Result<Self, Self::Error> {
+    fn try_from(parts: Parts) -> Result<Self, Self::Error> {
+        let Parts {
+            fit,
+            samples,
+            bounds,
+            first_date_ns,
+        } = parts;
         let count = samples.times.len();
         let is_valid = samples.values.len() == count
             && samples.weights.as_ref().is_none_or(|weights| weights.len() == count)
             && fit.samples <= count;
         if is_valid {
-            Ok(Self { fit, samples })
+            Ok(Self {
+                fit,
+                samples,
+                bounds,
+                first_date_ns,
+            })
         } else {
             Err("a time and a value for each sample of a fit")
         }
@@ -128,6 +163,23 @@ impl TryFrom<Parts> for PyFit {
 }
 
 impl PyFit {
+    /// A fit to samples at times since `start`, on the clock of that.
+    pub(crate) fn since(start: f64, fit: &Fit, elapsed: &[f64], values: &[f64]) -> Self {
+        let samples = Fitted {
+            times: elapsed.iter().map(|time| start + time).collect(),
+            values: values.to_vec(),
+            weights: None,
+        };
+        let mut fit = fit.clone();
+        fit.start += start;
+        Self {
+            fit,
+            samples,
+            bounds: Vec::new(),
+            first_date_ns: None,
+        }
+    }
+
     /// The fitted curve at the times of the samples.
     fn curve(&self) -> Vec<f64> {
         let elapsed: Vec<f64> = self.samples.times.iter().map(|time| time - self.fit.start).collect();
@@ -239,6 +291,9 @@ shown! {
             .filter(|parameter| parameter.role != ParameterRole::Derived)
             .map(|parameter| (parameter.name.to_string(), parameter.estimate.value))
             .into_py_dict(py),
+        /// Bounds of parameters as they were given, by name: lower and upper end, None where it is open.
+        bounds<'py>(py): PyResult<Bound<'py, PyDict>> =
+            self.bounds.iter().map(|(name, [low, high])| (name, (*low, *high))).into_py_dict(py),
         /// Covariance of `searched` for residuals that correlate as they do; None where the data leave a parameter open.
         covariance<'py>(py): PyResult<Option<Bound<'py, PyArray2<f64>>>> =
             self.fit.covariance().map(|rows| square(py, rows)).transpose(),
@@ -255,8 +310,8 @@ shown! {
     /// Parameters
     /// ----------
     /// time_s : float or array_like, shape (N,), optional
-    ///     Time on the clock of the samples that were fitted, s; before the first of them the signal is that at the start, at NaN
-    ///     it is NaN. Without any, the times of the samples.
+    ///     Time on the clock of the samples that were fitted, s, or a duration on it; dates where the samples had dates. Before the first
+    ///     sample the signal is that at the start, at inf it is the limit of the law, at NaN it is NaN. Without any, the times of the samples.
     /// elapsed_s : float or array_like, shape (N,), optional
     ///     Instead of `time_s`: time since the first sample, s.
     /// interval : float, optional
@@ -273,7 +328,8 @@ shown! {
     /// Raises
     /// ------
     /// OptionError
-    ///     A coverage outside 0 to 1, another word, or both of `time_s` and `elapsed_s`.
+    ///     A coverage outside 0 to 1, another word, both of `time_s` and `elapsed_s`; dates where the samples had none; an infinite time of a law
+    ///     without a limit.
     #[pyo3(signature = (time_s=None, *, elapsed_s=None, interval=None, of="curve"))]
     fn predict<'py>(
         &self,
@@ -284,8 +340,8 @@ shown! {
         of: &str,
     ) -> PyResult<Bound<'py, PyAny>> {
         let ((mut elapsed, is_scalar), start) = match (time_s, elapsed_s) {
-            (Some(times), None) => (scalar_or_doubles(times, "predict(time_s)")?, self.fit.start),
-            (None, Some(elapsed)) => (scalar_or_doubles(elapsed, "predict(elapsed_s)")?, 0.0),
+            (Some(times), None) => (times_of(times, "predict(time_s)", self.first_date_ns)?, self.fit.start),
+            (None, Some(elapsed)) => (times_of(elapsed, "predict(elapsed_s)", None)?, 0.0),
             (None, None) => ((self.samples.times.clone(), false), self.fit.start),
             (Some(_), Some(_)) => {
                 let message = "predict takes either time_s, on the clock of the record, or elapsed_s, since its first sample";
@@ -306,6 +362,10 @@ shown! {
         for some in elapsed.chunks_mut(AT_ONCE) {
             py.check_signals()?;
             some.iter_mut().for_each(|time| *time -= start);
+        }
+        if elapsed.contains(&f64::INFINITY) && !self.fit.predict(f64::INFINITY).is_finite() {
+            let message = format!("predict: expected finite times of {}, which has no limit, found inf", self.fit.law);
+            return Err(refused_plainly::<OptionError>(message));
         }
         let Some(confidence) = interval else {
             let mut values = Vec::with_capacity(elapsed.len());
@@ -334,6 +394,12 @@ shown! {
         Ok((value, low, high).into_pyobject(py)?.into_any())
     }
 
+    /// The first date of the samples in ns since 1970; None where their times were none.
+    #[getter]
+    fn _first_date_ns(&self) -> Option<i64> {
+        self.first_date_ns
+    }
+
     /// The fit as text, in the manner of lmfit.
     fn report(&self) -> String {
         report(&self.fit)
@@ -360,17 +426,18 @@ shown! {
     }
 }
 
-/// One number or a column of them, and which of both.
-fn scalar_or_doubles(values: &Bound<'_, PyAny>, name: &str) -> PyResult<(Vec<f64>, bool)> {
-    let is_scalar = match values.getattr("ndim") {
-        Ok(dimensions) => dimensions.eq(0)?,
-        Err(_) => values.extract::<f64>().is_ok(),
-    };
-    if !is_scalar {
+/// Times to evaluate at on the clock of samples whose first date is this, s, and whether it is a single one.
+pub(crate) fn times_of(
+    values: &Bound<'_, PyAny>,
+    name: &str,
+    first_date_ns: Option<i64>,
+) -> PyResult<(Vec<f64>, bool)> {
+    if values.is_exact_instance_of::<PyArray1<f64>>() {
         return Ok((doubles(values, name)?, false));
     }
-    let column = values.py().import("numpy")?.call_method1("atleast_1d", (values,))?;
-    Ok((doubles(&column, name)?, true))
+    let arrays = values.py().import("palpate._arrays")?;
+    let (times, is_scalar) = arrays.call_method1("at_times", (values, name, first_date_ns))?.extract()?;
+    Ok((doubles(&times, name)?, is_scalar))
 }
 
 fn report(fit: &Fit) -> String {
@@ -547,7 +614,8 @@ pub(crate) fn fitted(
     watch: &mut dyn Watch,
 ) -> Result<Fit, palpate::fit::FitError> {
     let samples = samples_of(times, values, standard_deviations);
-    fit_law_watched(&samples, requested.law, &requested.options, watch)
+    let fit = fit_law_watched(&samples, requested.law, &requested.options, watch)?;
+    Ok(fit.within(&requested.options.bounds))
 }
 
 #[pyfunction]
@@ -557,6 +625,7 @@ pub(crate) fn fit_hold<'py>(
     signal: &Bound<'py, PyAny>,
     weights: Option<&Bound<'py, PyAny>>,
     keywords: Keywords,
+    first_date_ns: Option<i64>,
 ) -> PyResult<PyFit> {
     let (mut times, mut values) = (doubles(time_s, "time_s")?, doubles(signal, "signal")?);
     let requested = keywords.requested()?;
@@ -581,7 +650,14 @@ pub(crate) fn fit_hold<'py>(
         let fit = fitted(&times, &values, standard_deviations.as_deref(), &requested, watch)?;
         let weights = standard_deviations.map(|found| found.iter().map(|deviation| deviation.recip()).collect());
         let samples = Fitted { times, values, weights };
-        Ok(PyFit { fit, samples })
+        let end = |end: f64| Some(end).filter(|end| end.is_finite());
+        let bounds = requested.options.bounds.iter();
+        Ok(PyFit {
+            fit,
+            samples,
+            bounds: bounds.map(|(name, (low, high))| (name.clone(), [end(*low), end(*high)])).collect(),
+            first_date_ns,
+        })
     };
     let fit = match is_brief {
         true => briefly(py, || fit(&mut Unwatched))?,

@@ -8,7 +8,7 @@ use super::compare::quantity_of;
 use crate::arrays::doubles;
 use crate::errors::{FitError, OptionError, refused, refused_plainly};
 use crate::files::all_laws;
-use crate::fits::fit::{samples_of, standard_deviations_of};
+use crate::fits::fit::{samples_of, standard_deviations_of, times_of};
 use crate::listed::Listed;
 use crate::table::{Table, columns};
 use crate::work::at_length;
@@ -23,7 +23,8 @@ const SOME: usize = 1 << 14;
 /// time_s, signal, weights : array_like, shape (N,)
 ///     As for `fit_hold`.
 /// at_s : float or array_like
-///     Times to predict, on the clock of ``time_s``, none before its last: the hold itself is what was fitted.
+///     Times to predict, on the clock of ``time_s``, none before its last: the hold itself is what was fitted. Durations are times on that
+///     clock too, and so are dates where ``time_s`` has dates.
 /// laws
 ///     Names of laws; if left out, all that suit.
 /// quantity
@@ -80,7 +81,7 @@ pub(crate) fn forecast(
     confidence: f64,
 ) -> PyResult<Table> {
     let (times, values) = (doubles(time_s, "time_s")?, doubles(signal, "signal")?);
-    let at = moments(at_s)?;
+    let (at, _) = times_of(at_s, "at_s", first_date_ns(time_s)?)?;
     let standard_deviations = standard_deviations_of(weights, false)?;
     let others: Vec<Hold> =
         others.as_deref().unwrap_or_default().iter().enumerate().map(hold_of).collect::<PyResult<_>>()?;
@@ -137,12 +138,9 @@ pub(crate) fn forecast(
     Table::of(columns!(rows, row => at_s = row.0, value = row.1.value, low = row.1.low, high = row.1.high))
 }
 
-/// Times to predict, s; a single one is a column of one.
-fn moments(at_s: &Bound<'_, PyAny>) -> PyResult<Vec<f64>> {
-    match at_s.extract::<f64>() {
-        Ok(one) => Ok(vec![one]),
-        Err(_) => doubles(at_s, "at_s"),
-    }
+/// The first date of a column of times in ns since 1970; none of numbers.
+fn first_date_ns(time_s: &Bound<'_, PyAny>) -> PyResult<Option<i64>> {
+    time_s.py().import("palpate._arrays")?.call_method1("first_date_ns", (time_s,))?.extract()
 }
 
 /// Times, s, and signal.

@@ -206,6 +206,18 @@ impl Fit {
         self.searched.len()
     }
 
+    /// The fit with intervals that end at these bounds of parameters, by name.
+    #[must_use]
+    pub fn within(mut self, bounds: &[(String, (f64, f64))]) -> Self {
+        for (name, (least, most)) in bounds {
+            let bounded = self.parameters.iter_mut().find(|parameter| parameter.name == **name);
+            if let Some((low, high)) = bounded.and_then(|parameter| parameter.estimate.interval.as_mut()) {
+                (*low, *high) = (low.max(*least), high.min(*most));
+            }
+        }
+        self
+    }
+
     /// The signal a time `elapsed` (s) after the first sample, after the loading if there was one.
     #[must_use]
     pub fn predict(&self, elapsed: f64) -> f64 {

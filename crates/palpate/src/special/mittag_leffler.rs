@@ -84,6 +84,8 @@ pub(crate) fn mittag_leffler_decay_value_many(times: &[f64], rate: f64, alpha: f
     let sum = Sum::new(alpha);
     for (times, value) in times.chunks(BLOCK).zip(value.chunks_mut(BLOCK)) {
         sum.value(&Samples::new(times, rate, alpha), value);
+        // At the limit the sum is ∞/∞.
+        times.iter().zip(value).filter(|(time, _)| time.is_infinite()).for_each(|(_, value)| *value = 0.0);
     }
 }
 

@@ -8,7 +8,7 @@ use crate::vector::add_multiple;
 impl Fit {
     /// The curve a time `elapsed` (s) after the first sample, also beyond the last, with its confidence interval.
     ///
-    /// The interval is that of the curve, not of a sample: g ± t √(gᵀ C g) with g the derivatives of the curve by the searched
+    /// The interval is that of the curve, not of a sample; after an infinite time it is that of the limit: g ± t √(gᵀ C g) with g the derivatives of the curve by the searched
     /// parameters and C their covariance for noise that correlates as the residuals do. It knows of no other law: far beyond the
     /// hold it is as good as the law is. Where the intervals of the parameters are those of profiles, the band also contains the curves at their
     /// ends ([`profile`](Self::profile)), scaled to its coverage. Of an end that the data leave open the band is open from when more than half of the
@@ -64,7 +64,11 @@ impl Fit {
         let (Some(uncertainty), Some(white)) = (&self.uncertainty, &self.white_covariance) else {
             return values.into_iter().map(Estimate::fixed).collect();
         };
-        let gradients = self.gradients(elapsed);
+        let mut gradients = self.gradients(elapsed);
+        // At its limit a curve moves with the constant alone: 0 · ∞ is 0 there.
+        for at in (0..elapsed.len()).filter(|at| elapsed[*at] == f64::INFINITY && values[*at].is_finite()) {
+            gradients.iter_mut().filter(|column| !column[at].is_finite()).for_each(|column| column[at] = 0.0);
+        }
         let mut found =
             uncertainty.estimates(&values, &gradients, white, |index| deviation(index).powi(2), |_| Scale::Linear);
         if let Some(profile) = &self.profile {
@@ -223,6 +227,18 @@ mod tests {
         // 2 × 1.966 standard errors: Student's t at 397 degrees of freedom.
         assert!((width(curve.interval) / curve.standard_error.unwrap() - 2.0 * 1.966).abs() < 1e-3);
         assert!((width(sample.interval) / sum - 2.0 * 1.966).abs() < 1e-3);
+    }
+
+    /// Derivatives at the limit were 0 · ∞: its interval was NaN.
+    #[test]
+    fn the_limit_of_a_curve_has_the_interval_of_its_constant() {
+        let (times, values) = noisy_hold(400, 1.0, 1e-2);
+        for law in ["standard-linear-solid", "latency:3", "fractional-zener"] {
+            let fit = fit_law(&Samples::new(&times, &values), law.parse().unwrap(), &LawOptions::default()).unwrap();
+            let (limit, constant) = (fit.predict_interval(f64::INFINITY), fit.estimate("equilibrium").unwrap());
+            assert_eq!(limit.value, constant.value, "{law}");
+            assert!((limit.standard_error.unwrap() / constant.standard_error.unwrap() - 1.0).abs() < 1e-9, "{law}");
+        }
     }
 
     /// Large products of the covariance of an equilibrium far below the hold took each other away to less than nothing: bands were NaN.
