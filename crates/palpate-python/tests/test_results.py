@@ -50,7 +50,7 @@ with warnings.catch_warnings():
     # The example goes beyond its test.
     warnings.simplefilter("ignore", palpate.PalpateWarning)
     RESULTS = results()
-DRAWN = ["Record", "Fit", "Comparison", "Calibration", "Prediction", "Trajectory", "Grip"]
+DRAWN = [name for name in RESULTS if name != "Table"]
 
 
 @pytest.mark.parametrize("name", RESULTS)
@@ -132,6 +132,46 @@ def test_a_comparison_keeps_its_samples() -> None:
     assert comparison != palpate.compare(T, Y + 1.0, laws=["latency", "maxwell", "standard-linear-solid"])
 
 
+def test_a_comparison_of_a_record_states_its_law() -> None:
+    """Its law and its sentence stood in its document alone."""
+    comparison = RESULTS["RecordComparison"]
+    [record] = comparison.to_dict()["records"]
+    assert comparison.law == record["answer"]["law"] == "latency" and comparison.sentence == record["answer"]["sentence"]
+    assert comparison.sentence in repr(comparison)
+    holds = comparison.holds
+    assert holds["hold"].tolist() == [hold["index"] for hold in record["holds"]] == [1, 2, 3, 4, 5] and set(holds["law"]) <= {"latency", "maxwell"}
+    assert holds["certainty"] == [hold["comparison"]["verdict"]["certainty"] for hold in record["holds"]]
+    ax = comparison.plot()
+    scores = {law: [row["forward_score"] for row in comparison.laws if row["law"] == law] for law in ("latency", "maxwell")}
+    assert [bar.get_width() for bar in ax.patches] == sorted(np.median(found) for found in scores.values())
+    assert sorted(ax.lines[0].get_xdata()) == sorted(sum(scores.values(), []))
+    pyplot.close("all")
+
+
+def test_a_hold_of_an_analysis_is_a_fit() -> None:
+    """From the holds of an analysis no way led to a Fit with its samples."""
+    analysis = RESULTS["Analysis"]
+    for index, hold in enumerate(analysis.holds):
+        fit = analysis.fit(hold["index"])
+        assert fit.law == f"latency:{hold['preferred_exponent']:g}" and fit.start_s == hold["fit_start_s"] == fit.time_s[0]
+        [row] = [row for row in analysis.fits if (row["hold"], row["law"], row["domain"]) == (index + 1, fit.law, "time")]
+        assert fit.parameters["equilibrium"] == row["equilibrium"] and fit.rmse == row["rmse"]
+        np.testing.assert_allclose(fit.residual, fit.signal - fit.predict(fit.time_s))
+        again = palpate.fit_hold(fit.time_s, fit.signal, law=fit.law)
+        assert again.parameters["equilibrium"] == pytest.approx(fit.parameters["equilibrium"], rel=1e-6)
+    assert analysis.fit(law="latency:2").law == "latency:2" and pickle.loads(pickle.dumps(analysis)).fit() == analysis.fit()
+    with pytest.raises(palpate.OptionError, match="hold: expected a number from 1 to 5, found 0"):
+        analysis.fit(0)
+    with pytest.raises(palpate.OptionError, match=r'law: expected one that was fitted to hold 1 \(latency, .*\), found "maxwell"\nhint:'):
+        analysis.fit(law="maxwell")
+    ax = analysis.plot(color="red")
+    assert [line.get_label() for line in ax.lines] == ["measured", *(f"hold {hold}: {analysis.fit(hold).law}" for hold in range(1, 6))]
+    measured, first = ax.lines[:2]
+    at = np.searchsorted(measured.get_xdata(), first.get_xdata())
+    np.testing.assert_allclose(first.get_ydata(), measured.get_ydata()[at], atol=0.05 * measured.get_ydata().max())
+    pyplot.close("all")
+
+
 def test_figures_show_the_numbers() -> None:
     fit, trajectory = RESULTS["Fit"], RESULTS["Trajectory"]
     ax = fit.plot(interval=0.9, color="red")
@@ -170,10 +210,12 @@ def test_a_summary_has_the_numbers() -> None:
     assert fit.law in fit.summary() and record.title in record.summary()
 
 
-@pytest.mark.parametrize("name", [name for name in RESULTS if name != "RecordComparison"])
+@pytest.mark.parametrize("name", RESULTS)
 def test_a_notebook_shows_a_result(name: str) -> None:
     page = RESULTS[name]._repr_html_()
     assert page.startswith("<") and page.endswith(">")
+    if name == "RecordComparison":
+        assert RESULTS[name].sentence in page and "<td>maxwell</td>" in page
     if name in ("Record", "Fit", "Comparison", "Trajectory"):
         cells = [line.split()[0] for line in RESULTS[name].summary().splitlines()[2:] if line.strip()]
         assert cells and all(f"<td>{cell}</td>" in page for cell in cells)

@@ -118,6 +118,74 @@ def comparison(self: Any, ax: Any = None, **bars: Any) -> Any:
     return ax
 
 
+def record_comparison(self: Any, ax: Any = None, **bars: Any) -> Any:
+    """Draw how well each law predicts what follows: the median over the holds of the error of its forecasts as a bar, that of each as a point.
+
+    Errors are root mean squares over the change in the hold.
+
+    Parameters
+    ----------
+    ax : matplotlib.axes.Axes, optional
+        Axes to draw on; those of a new figure if left out.
+    bars
+        Options of ``Axes.barh``.
+
+    Returns
+    -------
+    matplotlib.axes.Axes
+
+    Raises
+    ------
+    ImportError
+        Without matplotlib.
+    """
+    scores: dict[str, list[float]] = {}
+    for row in self.laws:
+        if np.isfinite(row["forward_score"]):
+            scores.setdefault(row["law"], []).append(row["forward_score"])
+    scores = dict(sorted(scores.items(), key=lambda pair: float(np.median(pair[1]))))
+    ax = axes(ax)
+    colors = ["C0" if law == self.law else "0.7" for law in scores]
+    ax.barh(list(scores), [float(np.median(found)) for found in scores.values()], **{"color": colors, **bars})
+    points = [(score, law) for law, found in scores.items() for score in found if len(found) > 1]
+    ax.plot([score for score, _ in points], [law for _, law in points], ".", color="0.2", label="one hold")
+    # The best stands at the top.
+    ax.invert_yaxis()
+    ax.set(xlabel="Error of forecasts / change in the hold")
+    if points:
+        ax.legend()
+    return ax
+
+
+def analysis(self: Any, ax: Any = None, **line: Any) -> Any:
+    """Draw the force over time, and in each hold the law that `Analysis.fit` gives.
+
+    Parameters
+    ----------
+    ax : matplotlib.axes.Axes, optional
+        Axes to draw on; those of a new figure if left out.
+    line
+        Options of ``Axes.plot`` for the laws.
+
+    Returns
+    -------
+    matplotlib.axes.Axes
+
+    Raises
+    ------
+    ImportError
+        Without matplotlib.
+    """
+    time_s, force_n, curves = self._course()
+    ax = axes(ax)
+    ax.plot(time_s, force_n, ".", color="0.6", markersize=3, label="measured")
+    for hold, law, times_s, forces_n in curves:
+        ax.plot(times_s, forces_n, **{"label": f"hold {hold}: {law}", **line})
+    ax.set(xlabel=label("time_s"), ylabel=label("force_n"))
+    ax.legend()
+    return ax
+
+
 def calibration(self: Any, ax: Any = None, **line: Any) -> Any:
     """Draw measured and simulated force over time.
 

@@ -11,7 +11,7 @@ _TABLES = (
     *(_palpate.Table, _palpate.Record, _palpate.Fit, _palpate.Comparison, _palpate.RecordComparison, _palpate.Analysis),
     *(_palpate.Calibration, _palpate.Prediction, _palpate.Trajectory, _palpate.Grip),
 )
-_SHOWN = _palpate.Record, _palpate.Fit, _palpate.Comparison, _palpate.Trajectory
+_SHOWN = _palpate.Record, _palpate.Fit, _palpate.Comparison, _palpate.RecordComparison, _palpate.Trajectory
 _METHODS: list[tuple[str, Callable[..., Any], tuple[type, ...]]] = [
     ("to_pandas", _convert.to_pandas, _TABLES),
     ("to_polars", _convert.to_polars, _TABLES),
@@ -22,6 +22,8 @@ _METHODS: list[tuple[str, Callable[..., Any], tuple[type, ...]]] = [
     ("plot", _plot.series, (_palpate.Record, _palpate.Trajectory)),
     ("plot", _plot.fit, (_palpate.Fit,)),
     ("plot", _plot.comparison, (_palpate.Comparison,)),
+    ("plot", _plot.record_comparison, (_palpate.RecordComparison,)),
+    ("plot", _plot.analysis, (_palpate.Analysis,)),
     ("plot", _plot.calibration, (_palpate.Calibration,)),
     ("plot", _plot.prediction, (_palpate.Prediction,)),
     ("plot", _plot.grip, (_palpate.Grip,)),

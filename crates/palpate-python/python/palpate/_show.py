@@ -27,7 +27,7 @@ def _rows(result: Any) -> list[list[Any]]:
         estimates = result.estimates.items()
         return [head, *([name, one.value, one.standard_error, *(one.interval or (None, None)), one.unit] for name, one in estimates)]
     table = table_of(result)
-    if isinstance(result, _palpate.Comparison):
+    if isinstance(result, (_palpate.Comparison, _palpate.RecordComparison)):
         return [table.column_names, *(list(row.values()) for row in table)]
     numbers = {name: values for name in table.column_names if isinstance(values := table[name], np.ndarray)}
     ends = ([name, *map(float, (v[0], v[-1], np.min(v), np.max(v)))] for name, v in numbers.items() if len(v))

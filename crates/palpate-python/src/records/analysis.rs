@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use std::sync::{Arc, OnceLock};
 
 use arrow_array::ArrayRef;
+use numpy::PyArray1;
 use palpate::analysis::{AnalysisOptions, Severity};
 use palpate::watch::{Progress, Watch};
 use palpate_jobs::input::Measurement;
@@ -18,10 +19,13 @@ use pyo3::prelude::*;
 use pyo3::types::PyType;
 use serde::{Deserialize, Serialize};
 
+use crate::arrays::array;
 use crate::errors::{OptionError, PalpateError, in_keywords, refused_plainly, unwritten, warn_of};
+use crate::fits::fit::PyFit;
 use crate::html::framed;
 use crate::listed::Listed;
 use crate::pickles::{Made, Piece, Pieces, made_again, unpickled};
+use crate::records::hold_fit::{Curve, curves, fit_of};
 use crate::records::kept::Kept;
 use crate::report_files::file_options;
 use crate::shown::shown;
@@ -89,6 +93,9 @@ impl PartialEq for Analysis {
         self.document == other.document
     }
 }
+
+/// Times (s) and force (N) of a record, and its laws.
+type Course<'py> = (Bound<'py, PyArray1<f64>>, Bound<'py, PyArray1<f64>>, Vec<Curve>);
 
 /// A record, and what was required of it.
 struct Requested {
@@ -258,6 +265,49 @@ shown! {
     /// The table of laws, for polars, pandas and pyarrow.
     fn to_arrow(&self) -> PyResult<Table> {
         self.fits()
+    }
+
+    /// The fit of a law to one hold, with its samples: strain where the body is known, and else force (N), on the clock of the record.
+    ///
+    /// Parameters
+    /// ----------
+    /// hold : int
+    ///     Number of the hold, from 1: ``index`` in `holds`.
+    /// law : str, optional
+    ///     One of the laws that were fitted to it, such as "latency:5"; if left out the recommended one, or without a comparison the latency
+    ///     law with the preferred exponent.
+    ///
+    /// Returns
+    /// -------
+    /// Fit
+    ///
+    /// Raises
+    /// ------
+    /// OptionError
+    ///     A hold that there is not, a law that was not fitted.
+    /// FitError
+    ///     A hold without a force that relaxes.
+    ///
+    /// Examples
+    /// --------
+    /// >>> import numpy as np, palpate
+    /// >>> t = np.linspace(0.0, 60.0, 1200)
+    /// >>> force = np.where(t < 10.0, 0.3 * t, 1 + 2 * np.exp(-(t - 10.0) / 8))
+    /// >>> record = palpate.Record.from_arrays(time_s=t, force_n=force, displacement_m=np.minimum(t, 10.0) * 1e-3)
+    /// >>> fit = record.analyze().fit(1, law="standard-linear-solid")
+    /// >>> round(fit.parameters["time_constant_s"], 3)
+    /// 8.0
+    #[pyo3(signature = (hold=1, *, law=None))]
+    fn fit(&self, py: Python<'_>, hold: usize, law: Option<&str>) -> PyResult<PyFit> {
+        fit_of(&self.done(py)?.result.analysis, hold, law)
+    }
+
+    /// Times and force of the record as it was analysed, and the law of every hold that has one, for figures.
+    fn _course<'py>(&self, py: Python<'py>) -> PyResult<Course<'py>> {
+        let done = self.done(py)?;
+        let analysis = &done.result.analysis;
+        let column = |values: &[f64]| array(py, values.iter().copied());
+        Ok((column(analysis.record.time())?, column(analysis.record.force())?, curves(analysis)))
     }
 
     /// Writes report.html, analysis.json, tables and figures into a folder, all or none.

@@ -7,7 +7,7 @@ use palpate::laws::Response;
 use palpate_jobs::input::Measurement;
 use palpate_jobs::{Compare, Results, no_share};
 use palpate_report::document::{ComparisonDocument, HoldComparisonDocument, VerdictDocument};
-use palpate_report::result::Quantity;
+use palpate_report::result::{Answer, Quantity};
 use pyo3::prelude::*;
 use serde::{Deserialize, Serialize};
 
@@ -178,11 +178,25 @@ impl RecordComparison {
             text: done.result.text(),
         })
     }
+
+    /// What is known of the record; none where no law could be fitted.
+    fn answer(&self) -> Option<&Answer> {
+        self.document.records.first().map(|record| &record.answer)
+    }
 }
 
 shown! {
     RecordComparison: self
     values {
+        /// The law to use for the record as a whole, as ``law=`` takes it; None where none could be fitted.
+        law: Option<&str> = self.answer().and_then(|answer| answer.law.as_deref()),
+        /// Which law to use, in a sentence; None where none could be fitted.
+        sentence: Option<&str> = self.answer().map(|answer| answer.sentence.as_str()),
+        /// The holds on which laws could be compared, a row each: ``hold``, ``fit_start_s``, the recommended ``law``, ``certainty``, ``probability``,
+        /// ``reservation`` and ``holdout_error``, the error of its forecasts over the change in the hold.
+        holds: PyResult<Table> = Table::of(columns!(self.answer().map_or(&[][..], |answer| &answer.holds), found =>
+            hold, fit_start_s, law, certainty, probability, reservation, holdout_error
+        )),
         /// The laws on every hold, best first, a row each: ``hold``, ``law``, ``effective_parameters``, ``rmse``, ``delta_aicc``, ``delta_bic``,
         /// ``forward_score``, ``termination``, ``error``.
         laws: PyResult<Table> = {
@@ -219,6 +233,7 @@ shown! {
 
     fn __repr__(&self) -> String {
         let holds = self.document.records.iter().map(|record| record.holds.len()).sum::<usize>();
-        format!("<palpate.RecordComparison of {holds} holds>")
+        let found = self.sentence().unwrap_or("no law could be fitted");
+        format!("<palpate.RecordComparison of {holds} holds: {found}>")
     }
 }

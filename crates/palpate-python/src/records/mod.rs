@@ -3,6 +3,7 @@
 pub(crate) mod analysis;
 pub(crate) mod compare;
 pub(crate) mod forecast;
+mod hold_fit;
 pub(crate) mod kept;
 pub(crate) mod read;
 pub(crate) mod record;
