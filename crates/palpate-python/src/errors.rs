@@ -121,12 +121,41 @@ fn keyword(name: &str, value: Option<&str>) -> String {
     }
 }
 
-/// What is wrong with the text that a mapping was made to: it has keys, and no lines that anybody wrote.
-pub(crate) fn of_mapping(mut error: DescriptionError) -> DescriptionError {
+/// What is wrong with the text that a mapping was made to: it has keys as Python indexes them, and no lines that anybody wrote.
+///
+/// The paths of numbers to sweep are those of a description, whose lists count from 1.
+pub(crate) fn of_mapping(error: DescriptionError) -> DescriptionError {
+    let mut error = of_paths(error);
+    if let DescriptionError::Key { place, problem } = &mut error
+        && !place.key.starts_with("sweep.")
+        && !matches!(problem, KeyProblem::UnknownParameter { .. })
+    {
+        place.key = indexed(&place.key);
+        if let KeyProblem::Both(other) = problem {
+            *other = indexed(other);
+        }
+    }
+    error
+}
+
+/// The same of paths of numbers that stand beside a mapping.
+pub(crate) fn of_paths(mut error: DescriptionError) -> DescriptionError {
     if let DescriptionError::Key { place, .. } = &mut error {
         place.line = None;
     }
     error
+}
+
+/// The path of a key with the entries of lists counted from 0: `step[1].hold` is the hold of the second step.
+fn indexed(key: &str) -> String {
+    let part = |part: &str| {
+        let (number, rest) = part.split_once(']')?;
+        let number: usize = number.parse().ok()?;
+        Some(format!("[{}]{rest}", number.checked_sub(1)?))
+    };
+    let (first, others) = key.split_once('[').map_or((key, None), |(first, others)| (first, Some(others)));
+    let others = others.into_iter().flat_map(|others| others.split('['));
+    others.fold(first.to_owned(), |path, found| path + &part(found).unwrap_or_else(|| format!("[{found}")))
 }
 
 /// What else would help where the value of a key of a mapping is a number without its unit: a key that says the unit.

@@ -243,7 +243,10 @@ impl Table {
 
     /// The same rows with a column before the others, which replaces one of its name.
     fn _labelled(&self, name: &str, labels: &Bound<'_, PyAny>) -> PyResult<Self> {
-        let column: ArrayRef = if let Ok(counts) = labels.extract::<Vec<Option<i64>>>() {
+        let truths = labels.extract::<Vec<bool>>().ok().filter(|truths| !truths.is_empty());
+        let column: ArrayRef = if let Some(truths) = truths {
+            Column::column(truths.into_iter())
+        } else if let Ok(counts) = labels.extract::<Vec<Option<i64>>>() {
             Arc::new(Int64Array::from(counts))
         } else if let Ok(numbers) = labels.extract::<Vec<f64>>() {
             Column::column(numbers.into_iter())

@@ -427,7 +427,7 @@ def test_a_material_file_that_is_none_has_the_words_of_the_command_line(material
     [
         ("none.toml", {}, FileNotFoundError, "none.toml: no such file"),
         ([], {}, palpate.OptionError, "step: missing"),
-        ([{"to": "80 mm", "rate": "10 mm/s"}], {}, palpate.OptionError, "step[1].to: expected a displacement below"),
+        ([{"to": "80 mm", "rate": "10 mm/s"}], {}, palpate.OptionError, "step[0].to: expected a displacement below"),
         ([{"to": 5, "rate": "10 mm/s"}], {}, palpate.OptionError, 'add the unit, such as to = "5 mm"'),
         (SQUEEZE, {"at_s": [99.0]}, palpate.ModelError, "sample times must rise from 0 s to 10.6 s at most, found 99 s"),
         (SQUEEZE, {"at_s": [5.0, 1.0]}, palpate.ModelError, "found 1 s at index 1"),

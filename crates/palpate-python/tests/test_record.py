@@ -249,6 +249,25 @@ def test_tables_become_records(of: Any) -> None:
         palpate.Record.from_arrow(of({"t": [0, 1, 2], "F": [0.0, 1.5, 1.0]}))
 
 
+def test_a_table_is_taken_in_place_of_arrays() -> None:
+    """A table was a TypeError, one positional argument too many; a mapping and a Dataset had no Arrow."""
+    columns = {"t": np.array([0.0, 1.0, 2.0]), "force_n": np.array([0.0, 1.5, 1.0])}
+    record = palpate.Record.from_arrays(time_s=columns["t"], force_n=columns["force_n"], title="one")
+    frame = pandas.DataFrame(columns)
+    for table in (frame, polars.DataFrame(columns), columns, frame.to_xarray(), {name: list(of) for name, of in columns.items()}):
+        found = palpate.Record.from_arrays(table, time_s="t", title="one")
+        assert found == record and found.title == "one" and found == palpate.Record.from_arrow(table, time_s="t")
+    dates = {**columns, "t": np.datetime64("2024-01-01", "ns") + np.array([0, 1, 2], dtype="timedelta64[s]")}
+    assert palpate.Record.from_arrays(dates, time_s="t") == record
+    assert palpate.Record.from_arrays({**columns, "displacement_m": [0.0, 1.0, 1.0]}, time_s="t").displacement_m is not None
+    with pytest.raises(palpate.RecordError, match="expected a table with a column 'time_s', found t, force_n"):
+        palpate.Record.from_arrays(columns)
+    with pytest.raises(palpate.OptionError, match="time_s: expected the name of a column beside a table, found ndarray"):
+        palpate.Record.from_arrays(frame, time_s=columns["t"])  # type: ignore[call-overload] # pyright: ignore
+    with pytest.raises(TypeError, match="needs the arguments time_s and force_n, or a table"):
+        palpate.Record.from_arrays(force_n=columns["force_n"])  # type: ignore[call-overload] # pyright: ignore
+
+
 def test_a_missing_number_in_a_table_is_named() -> None:
     table = pyarrow.table({"time_s": [0.0, 1.0, 2.0], "force_n": [0.0, None, 1.0]})
     with pytest.raises(palpate.RecordError, match="force_n: expected a number in every row, found none in row 1"):

@@ -12,7 +12,9 @@ from typing import Any, Literal
 
 import numpy as np
 import palpate
+import pandas
 import pint
+import polars
 import polars
 import pytest
 from conftest import ROOT
@@ -132,6 +134,10 @@ def test_a_mapping_sweeps_as_its_file_does(tmp_path: Path) -> None:
     sweep = {"specimen.radius_m": np.array([0.03, 0.035]), "step.1.hold": [5 * pint.UnitRegistry().second, "10 s"], "law.exponent": "linear 3..5, 3"}
     typed = palpate.Protocol(specimen=protocol["specimen"], law=protocol["law"], step=[palpate.Step(to=5e-3, rate=8e-3, hold=1)], sweep=sweep)
     assert palpate.sweep(typed, tmp_path / "typed.parquet") == (12, 0)
+    # Columns of any library are values; those without a unit were refused.
+    for exponents in (np.array([3, 5]), range(3, 6, 2), pandas.Series([3.0, 5.0]), polars.Series([3, 5])):
+        columns = {"law.exponent": exponents, "specimen.radius_m": pandas.Series([0.03, 0.035])}
+        assert palpate.sweep({**protocol, "sweep": columns}, tmp_path / "columns.parquet", restart=True) == (4, 0)
     assert polars.read_parquet(tmp_path / "typed.parquet")["specimen_radius_m"].unique().sort().to_list() == [0.03, 0.035]
 
 
@@ -141,7 +147,7 @@ def test_what_is_wrong_in_a_swept_mapping_is_named_by_its_path(tmp_path: Path) -
         ("sweep", {"law.exponents": [1]}, r"^protocol: sweep.law.exponents: unknown parameter"),
         ("sweep", {"specimen.radius": [0.03]}, r"^protocol: sweep.specimen.radius = .*unit"),
         ("sweep", {}, r"^protocol: sweep: missing"),
-        ("step", [{"to": "5 mm", "rate": "500 mm/min", "holds": "1 s"}], r"^protocol: step\[1\].holds: unknown key"),
+        ("step", [{"to": "5 mm", "rate": "500 mm/min", "holds": "1 s"}], r"^protocol: step\[0\].holds: unknown key"),
     ]
     for table, value, message in wrong:
         with pytest.raises(palpate.OptionError, match=message):

@@ -122,8 +122,8 @@ def test_a_wrong_key_of_a_mapping_is_named_by_its_path() -> None:
     ):
         with pytest.raises(palpate.OptionError) as caught:
             call()
-        assert str(caught.value).startswith("protocol: step[1].holds: unknown key") and "did you mean hold?" in str(caught.value)
-    with pytest.raises(palpate.OptionError, match=r"^protocol: step\[2\].hold = 10: expected a unit"):
+        assert str(caught.value).startswith("protocol: step[0].holds: unknown key") and "did you mean hold?" in str(caught.value)
+    with pytest.raises(palpate.OptionError, match=r"^protocol: step\[1\].hold = 10: expected a unit"):
         material.predict([step, {**step, "hold": 10}])
     with pytest.raises(palpate.OptionError, match=r"^test: specimen.radus: unknown key"):
         palpate.read(ROOT / "examples/records/ball.csv", test={"specimen": {"shape": "ball", "radus": "35 mm"}})
@@ -204,8 +204,8 @@ def test_a_mapping_is_the_text_that_it_says() -> None:
     wrong: Any
     for wrong, message in [
         ({"law": {"exponent": float("inf")}}, "law.exponent: expected a finite number, found inf"),
-        ({"step": [{}, {"hold": None}]}, r"step\[2\].hold: expected a text, a number, a list or a table, found NoneType"),
-        ({"step": [{"hold_s": True}]}, r"step\[1\].hold_s: expected a number in s, found True"),
+        ({"step": [{}, {"hold": None}]}, r"step\[1\].hold: expected a text, a number, a list or a table, found NoneType"),
+        ({"step": [{"hold_s": True}]}, r"step\[0\].hold_s: expected a number in s, found True"),
         (endless, "at most 64 deep"),
     ]:
         with pytest.raises(palpate.OptionError, match=message):

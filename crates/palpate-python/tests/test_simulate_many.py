@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import threading
 from typing import Any
 
@@ -132,6 +133,15 @@ def test_threads_share_the_work() -> None:
     for thread in threads:
         thread.join()
     assert all(np.array_equal(result, results[0]) for result in results)
+
+
+def test_a_path_may_state_the_unit() -> None:
+    """``specimen.radius_m``, which a mapping takes, was an unknown parameter."""
+    plain = palpate.simulate_many(PROTOCOL, {"specimen.radius": [0.03], "law.rate_coefficient": [1e4]})
+    assert plain == palpate.simulate_many(PROTOCOL, {"specimen.radius_m": [0.03], "law.rate_coefficient_per_s": [1e4]})
+    for path in ("specimen.radius_s", "law.exponent_m", "step[3].hold"):
+        with pytest.raises(palpate.OptionError, match=f"^protocol: {re.escape(path)}: unknown parameter"):
+            palpate.simulate_many(PROTOCOL, {path: [0.03]})
 
 
 def test_a_number_of_a_step_has_one_path_here_and_in_sweeps() -> None:

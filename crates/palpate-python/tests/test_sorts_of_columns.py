@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import datetime
+import pickle
 from typing import Any
 
 import numpy as np
@@ -57,11 +58,51 @@ def test_a_duration_is_a_time_wherever_one_is_taken() -> None:
     record = palpate.Record.from_arrays(time_s=DATES, force_n=Y)
     np.testing.assert_allclose(record.time_s, T, atol=1e-9)
     assert FIT.predict(np.timedelta64(20, "s")) == FIT.predict(20.0)
-    with pytest.raises(palpate.OptionError, match=r"predict\(time_s\): expected numbers in s, found dates\nhint: subtract the first date"):
+    with pytest.raises(palpate.OptionError, match=r"predict\(time_s\): expected numbers in s or durations, as the samples have, found dates\nhint:"):
         FIT.predict(DATES)
     with pytest.raises(palpate.OptionError, match="signal: expected numbers, found timedelta64"):
         palpate.fit_hold(T, NANOSECONDS)
     assert "NaN" in str(pytest.raises(palpate.FitError, palpate.fit_hold, np.where(T > 3, np.timedelta64("NaT", "ns"), NANOSECONDS), Y).value)
+
+
+def test_a_fit_of_dates_is_evaluated_at_dates() -> None:
+    """Dates were refused, and so was a single duration of pandas."""
+    fit, at = palpate.fit_hold(DATES, Y), DATES[100]
+    elapsed = float((at - DATES[0]) / np.timedelta64(1, "s"))
+    expected = fit.predict(elapsed)
+    moment: Any = pandas.Timestamp(at)
+    zone, duration = moment.tz_localize("UTC"), moment - pandas.Timestamp(DATES[0])
+    for one in (at, moment, zone, zone.tz_convert("Asia/Tokyo"), moment.to_pydatetime(warn=False), duration, duration.to_numpy()):
+        # Dates of `datetime` have whole microseconds.
+        assert fit.predict(one) == pytest.approx(expected, rel=1e-7) and isinstance(fit.predict(one), float)
+        assert fit.eval(one, **fit.parameters) == pytest.approx(expected, rel=1e-7)
+    for many in (DATES, pandas.DatetimeIndex(DATES), polars.Series(DATES), list(pandas.DatetimeIndex(DATES)), NANOSECONDS):
+        np.testing.assert_allclose(fit.predict(many), fit.best_fit, rtol=1e-9)
+    assert np.isnan(fit.predict(np.datetime64("NaT")))
+    assert pickle.loads(pickle.dumps(fit)).predict(at) == fit.predict(at)
+    assert FIT.predict(duration) == pytest.approx(expected, rel=1e-4)
+    with pytest.raises(palpate.OptionError, match="as the samples have, found dates"):
+        FIT.eval(moment, exponent=3.0)
+    with pytest.raises(palpate.OptionError, match=r"predict\(elapsed_s\): expected numbers in s or durations"):
+        fit.predict(elapsed_s=moment)
+
+
+def test_quantities_bound_and_hold_parameters() -> None:
+    """Quantities were refused as no numbers."""
+    law: Any = "standard-linear-solid"
+    held = palpate.fit_hold(T, Y, law=law, fixed={"time_constant_s": 3000 * UNITS.ms})
+    assert held.parameters["time_constant_s"] == pytest.approx(3.0)
+    bounded = palpate.fit_hold(T, Y * UNITS.kN, law=law, bounds={"time_constant_s": [0.1, 1] * UNITS.minute, "equilibrium": (None, 1 * UNITS.MN)})
+    assert bounded.bounds == {"time_constant_s": (6.0, 60.0), "equilibrium": (None, 1e6)}
+    assert palpate.fit_many(T, [Y * UNITS.N], law="latency", fixed={"exponent": 5 * UNITS.dimensionless})["exponent"].tolist() == [5.0]
+    for fixed, found in (
+        ({"time_constant_s": 3 * UNITS.mm}, r'fixed\["time_constant_s"\]: expected a quantity in s, found one in mm'),
+        ({"equilibrium": 3 * UNITS.mm}, r'fixed\["equilibrium"\]: expected a quantity in newton, the unit of the signal, found one in millimeter'),
+    ):
+        with pytest.raises(palpate.OptionError, match=found):
+            palpate.fit_hold(T, Y * UNITS.N, law=law, fixed=fixed)
+    with pytest.raises(palpate.OptionError, match=r'bounds\["equilibrium"\]: expected a number in the unit of the signal, which states none'):
+        palpate.fit_hold(T, Y, law=law, bounds={"equilibrium": (0 * UNITS.N, None)})
 
 
 def test_quantities_are_converted() -> None:
@@ -94,7 +135,7 @@ def test_a_protocol_takes_quantities() -> None:
     plain, quantities = palpate.simulate(PROTOCOL), palpate.simulate(described)
     assert quantities.force_n[-1] == pytest.approx(plain.force_n[-1], rel=1e-9)
     wrong = {**described, "step": [{"to": 5 * UNITS.mm, "rate": 1 * UNITS.mm / UNITS.s, "hold": 10 * UNITS.mm}]}
-    with pytest.raises(palpate.OptionError, match=r"step\[1\]\.hold"):
+    with pytest.raises(palpate.OptionError, match=r"step\[0\]\.hold"):
         palpate.simulate(wrong)
     wrong = {**described, "specimen": {"shape": "ball", "radius": 3 * UNITS.candela, "modulus": "28 kPa"}}
     with pytest.raises(palpate.OptionError, match=r"specimen\.radius: expected a quantity in one of .*, found one in candela"):
@@ -210,6 +251,25 @@ def test_what_is_no_long_table_is_stated() -> None:
     with pytest.raises(palpate.OptionError, match="time: expected by beside it"):
         palpate.fit_many(T, Y, time="t")  # type: ignore[call-overload] # pyright: ignore
     assert len(palpate.fit_many(frame.iloc[:0], by="run", time="t", signal="y")) == 0
+
+
+def test_labels_that_are_truths_stay_truths() -> None:
+    """Truths came back as 1 and 0."""
+    fits = palpate.fit_many(pandas.DataFrame(LONG).assign(run=np.array(LONG["specimen"]) == "a"), by="run", time="t", signal="y")
+    assert fits["run"] == [False, True] and fits.to_pandas()["run"].dtype == bool and palpate.fit_many([], [])["curve"].size == 0
+
+
+def test_groups_are_no_table() -> None:
+    """Groups of pandas were an inhomogeneous shape to NumPy."""
+    groups = pandas.DataFrame(LONG).groupby("specimen")
+    for call in (
+        lambda: palpate.fit_many(groups, by="specimen", time="t", signal="y"),
+        lambda: palpate.fit_many(groups),  # type: ignore[call-overload] # pyright: ignore
+        lambda: palpate.fit_many(groups["t"], groups["y"]),
+        lambda: palpate.fit_many(polars.DataFrame(LONG).group_by("specimen"), by="specimen", time="t", signal="y"),
+    ):
+        with pytest.raises(palpate.OptionError, match="expected a table or columns, found groups, a .*GroupBy\nhint: pass the table itself"):
+            call()
 
 
 def test_labels_do_not_replace_results() -> None:

@@ -69,9 +69,10 @@ def simulate(
     driver = _driver(drive, drive_by)
     if isinstance(protocol, Mapping):
         return _palpate.simulate(None, toml({**protocol, **replaced}), *driver)
+    path, text = described(protocol)
     if replaced:
         raise OptionError(f"{', '.join(replaced)}: tables replace those of a mapping, found the path of a protocol")
-    return _palpate.simulate(protocol, None, *driver)
+    return _palpate.simulate(path, text, *driver)
 
 
 def _driver(drive: Any, drive_by: str) -> tuple[Any, str]:
@@ -145,7 +146,8 @@ def simulate_many(
         Path of a protocol (TOML), or a mapping with its tables, as for `simulate`.
     numbers
         Arrays of one length by the path of the number they replace, in SI:
-        ``{"law.rate_coefficient": [1e3, 1e4], "specimen.radius": [0.035, 0.03], "step[1].hold": [10, 60]}``. Run i takes the
+        ``{"law.rate_coefficient": [1e3, 1e4], "specimen.radius": [0.035, 0.03], "step[1].hold": [10, 60]}``. A path may state the unit,
+        as ``"specimen.radius_m"`` does; entries of lists count from 1, as in protocols' files. Run i takes the
         value i of each. A number has to stand in the protocol to be replaced.
     times_s : array_like, shape (T,), optional
         Times at which the force is wanted, rising and inside the motion.

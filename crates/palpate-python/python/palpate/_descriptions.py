@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from typing import Any, Union
 
 from palpate import _units
-from palpate._palpate import Material, OptionError, mapping_text
+from palpate._palpate import Material, OptionError, Trajectory, mapping_text
 from palpate.protocols import Step
 
 Description = Union[str, os.PathLike[str], Mapping[str, Any], Material, None]
@@ -17,6 +17,11 @@ def described(test: Description) -> tuple[str | os.PathLike[str] | None, str | N
     """A description as a path or as the text of one; a mapping has the tables of the file."""
     if isinstance(test, Mapping):
         return None, toml(test)
+    if isinstance(test, Trajectory):
+        raise OptionError("expected a protocol or its path, found a Trajectory\nhint: pass the protocol that it was simulated from")
+    if isinstance(test, (list, tuple)):
+        hint = 'steps alone have no body: {"specimen": {...}, "law": {...}, "step": [...]}, or material.predict(steps)'
+        raise OptionError(f"expected a description or its path, found a {type(test).__name__}\nhint: {hint}")
     if isinstance(test, Material):
         return None, test.to_toml()
     return test, None

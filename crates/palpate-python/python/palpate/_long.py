@@ -42,6 +42,13 @@ def _without(table: Any, name: str, error: Exception) -> str:
     return f"{message}\nhint: did you mean {close[0]!r}?" if close else message
 
 
+def check_ungrouped(values: Any, name: str) -> None:
+    """Refuses what ``groupby`` of pandas, polars, pyarrow and xarray makes: it is no table and no column."""
+    if type(values).__name__.endswith("GroupBy"):
+        message = f"{name}: expected a table or columns, found groups, a {type(values).__name__}"
+        raise OptionError(f'{message}\nhint: pass the table itself: fit_many(table, by="specimen", time="t", signal="force")')
+
+
 def curves(table: Any, by: str | Sequence[str], columns: Sequence[str]) -> tuple[Labels, list[list[Any]]]:
     """The curves of a long table, in the order in which they first appear.
 

@@ -1,5 +1,6 @@
 """Types of the compiled part. Checked against it by mypy's stubtest."""
 
+import datetime
 import os
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import AbstractContextManager
@@ -94,6 +95,8 @@ class _Readable(Protocol):
 _File: TypeAlias = _Path | bytes | bytearray | memoryview | _Readable | AbstractContextManager[_Readable]
 _Described: TypeAlias = _Path | Mapping[str, Any] | Material
 _Columns: TypeAlias = str | Mapping[str, str]
+# One time: in s, a duration, or a date.
+_Time: TypeAlias = float | datetime.datetime | datetime.timedelta | np.datetime64 | np.timedelta64
 # Numbers are arrays, texts and truths are lists; which of them only the name of the column tells.
 _Cells: TypeAlias = Any
 
@@ -219,6 +222,7 @@ class Record(_Series):
     >>> len(record), float(record.force_n.max())
     (4, 3.0)
     """
+    @overload
     @classmethod
     def from_arrays(
         cls,
@@ -232,6 +236,8 @@ class Record(_Series):
 
         Parameters
         ----------
+        table : optional
+            A table in place of arrays, as for `from_arrow`; the others are then names of its columns.
         time_s : array_like, shape (N,)
             Times in s, rising; at least two.
         force_n : array_like, shape (N,)
@@ -249,6 +255,18 @@ class Record(_Series):
             Columns that are no numbers.
         """
         ...
+    @overload
+    @classmethod
+    def from_arrays(
+        cls,
+        table: Any,
+        /,
+        *,
+        time_s: str | None = None,
+        force_n: str | None = None,
+        displacement_m: str | None = None,
+        title: str = "record",
+    ) -> Self: ...
     @classmethod
     def from_arrow(
         cls,
@@ -264,7 +282,7 @@ class Record(_Series):
         Parameters
         ----------
         table
-            Of polars, pandas, pyarrow, or anything else with ``__arrow_c_stream__``.
+            Of polars, pandas, pyarrow, or anything else with ``__arrow_c_stream__``; a mapping or a Dataset of xarray, by the names of its columns.
         time_s, force_n, displacement_m : str
             Names of the columns. A displacement is looked for under its own name if none is given, and may be missing.
         title : str
@@ -648,6 +666,60 @@ class Analysis(_Summed, _Reported):
     """Which law to use, in a sentence."""
     findings: Final[list[Finding]]
     """What to know besides the estimates."""
+    def fit(self, hold: int = 1, *, law: LawName | None = None) -> Fit:
+        """The fit of a law to one hold, with its samples: strain where the body is known, and else force (N), on the clock of the record.
+
+        Parameters
+        ----------
+        hold : int
+            Number of the hold, from 1: ``index`` in `holds`.
+        law : str, optional
+            One of the laws that were fitted to it, such as "latency:5"; if left out the recommended one, or without a comparison the latency
+            law with the preferred exponent.
+
+        Returns
+        -------
+        Fit
+
+        Raises
+        ------
+        OptionError
+            A hold that there is not, a law that was not fitted.
+        FitError
+            A hold without a force that relaxes.
+
+        Examples
+        --------
+        >>> import numpy as np, palpate
+        >>> t = np.linspace(0.0, 60.0, 1200)
+        >>> force = np.where(t < 10.0, 0.3 * t, 1 + 2 * np.exp(-(t - 10.0) / 8))
+        >>> record = palpate.Record.from_arrays(time_s=t, force_n=force, displacement_m=np.minimum(t, 10.0) * 1e-3)
+        >>> fit = record.analyze().fit(1, law="standard-linear-solid")
+        >>> round(fit.parameters["time_constant_s"], 3)
+        8.0
+        """
+        ...
+    def _course(self) -> tuple[_Doubles, _Doubles, list[tuple[int, str, list[float], list[float]]]]: ...
+    def plot(self, ax: Axes | None = None, **line: Any) -> Axes:
+        """Draw the force over time, and in each hold the law that `Analysis.fit` gives.
+
+        Parameters
+        ----------
+        ax : matplotlib.axes.Axes, optional
+            Axes to draw on; those of a new figure if left out.
+        line
+            Options of ``Axes.plot`` for the laws.
+
+        Returns
+        -------
+        matplotlib.axes.Axes
+
+        Raises
+        ------
+        ImportError
+            Without matplotlib.
+        """
+        ...
     def report(
         self,
         folder: _Path,
@@ -1442,6 +1514,7 @@ class Estimate(_Value):
     unit: Final[str]
     """Unit in words: "signal", "s", "1/s", "signal/s", "1", "signal^(1-n)/s", "signal/s^alpha"; "m", "N" or "Pa" of a material."""
     def __float__(self) -> float: ...
+    def __format__(self, format: str, /) -> str: ...
 
 @final
 class Fit(_Series):
@@ -1511,15 +1584,15 @@ class Fit(_Series):
     """Whether it ended at an optimum inside the range that was searched."""
     @overload
     def predict(  # pyright: ignore[reportOverlappingOverload]
-        self, time_s: float, *, interval: None = None, of: Literal["curve", "sample"] = "curve"
+        self, time_s: _Time, *, interval: None = None, of: Literal["curve", "sample"] = "curve"
     ) -> float:
         """The signal at times of the record; with `interval`, also its confidence band.
 
         Parameters
         ----------
         time_s : float or array_like, shape (N,), optional
-            Time on the clock of the samples that were fitted, s; before the first of them the signal is that at the start, at NaN
-            it is NaN. Without any, the times of the samples.
+            Time on the clock of the samples that were fitted, s, or a duration on it; dates where the samples had dates. Before the first
+            sample the signal is that at the start, at inf it is the limit of the law, at NaN it is NaN. Without any, the times of the samples.
         elapsed_s : float or array_like, shape (N,), optional
             Instead of `time_s`: time since the first sample, s.
         interval : float, optional
@@ -1536,25 +1609,26 @@ class Fit(_Series):
         Raises
         ------
         OptionError
-            A coverage outside 0 to 1, another word, or both of `time_s` and `elapsed_s`.
+            A coverage outside 0 to 1, another word, both of `time_s` and `elapsed_s`; dates where the samples had none; an infinite time of a law
+            without a limit.
         """
         ...
     @overload
-    def predict(
-        self, *, elapsed_s: float, interval: None = None, of: Literal["curve", "sample"] = "curve"
+    def predict(  # pyright: ignore[reportOverlappingOverload]
+        self, *, elapsed_s: float | datetime.timedelta, interval: None = None, of: Literal["curve", "sample"] = "curve"
     ) -> float: ...
     @overload
     def predict(  # pyright: ignore[reportOverlappingOverload]
-        self, time_s: float, *, interval: float, of: Literal["curve", "sample"] = "curve"
+        self, time_s: _Time, *, interval: float, of: Literal["curve", "sample"] = "curve"
     ) -> tuple[float, float, float]: ...
     @overload
-    def predict(
-        self, *, elapsed_s: float, interval: float, of: Literal["curve", "sample"] = "curve"
+    def predict(  # pyright: ignore[reportOverlappingOverload]
+        self, *, elapsed_s: float | datetime.timedelta, interval: float, of: Literal["curve", "sample"] = "curve"
     ) -> tuple[float, float, float]: ...
     @overload
     def predict(
         self,
-        time_s: ArrayLike | None = None,
+        time_s: ArrayLike | Sequence[_Time] | None = None,
         *,
         elapsed_s: ArrayLike | None = None,
         interval: None = None,
@@ -1563,12 +1637,15 @@ class Fit(_Series):
     @overload
     def predict(
         self,
-        time_s: ArrayLike | None = None,
+        time_s: ArrayLike | Sequence[_Time] | None = None,
         *,
         elapsed_s: ArrayLike | None = None,
         interval: float,
         of: Literal["curve", "sample"] = "curve",
     ) -> tuple[_Doubles, _Doubles, _Doubles]: ...
+    bounds: Final[dict[str, tuple[float | None, float | None]]]
+    """Bounds of parameters as they were given, by name: lower and upper end, None where it is open."""
+    _first_date_ns: Final[int | None]
     def report(self) -> str:
         """The fit as text, in the manner of lmfit."""
         ...
@@ -1576,13 +1653,13 @@ class Fit(_Series):
         """Everything about the fit but its samples as plain objects."""
         ...
     @overload
-    def eval(self, time_s: float, **parameters: float) -> float:  # pyright: ignore[reportOverlappingOverload]
+    def eval(self, time_s: _Time, **parameters: float) -> float:  # pyright: ignore[reportOverlappingOverload]
         """The law at times of the record, with some of the parameters replaced, in relaxation or creep as it was fitted.
 
         Parameters
         ----------
         time_s : float or array_like, shape (N,), optional
-            Time on the clock of the samples, s; the times of the samples if left out.
+            Time on the clock of the samples, s, a duration or, where the samples had dates, a date; the times of the samples if left out.
         parameters
             Values in place of those that were found: ``fit.eval(exponent=3)``.
 
@@ -1598,14 +1675,15 @@ class Fit(_Series):
         """
         ...
     @overload
-    def eval(self, time_s: ArrayLike | None = None, **parameters: float) -> _Doubles: ...
+    def eval(self, time_s: ArrayLike | Sequence[_Time] | None = None, **parameters: float) -> _Doubles: ...
     def sample(self, n: int = 1000, *, seed: int | None = None) -> dict[str, _Doubles]:
         """Draw sets of parameters from the distribution that the fit leaves for them.
 
         A multivariate normal distribution in the scales of `searched`, with `covariance`: rates and times, whose logarithms were
         searched, are log-normal. It is what the curvature at the optimum says; where `interval_method` is another one, the true
         distribution is not normal and its tails are those of the intervals. `covariance` is the mean over the models of the noise that are likely:
-        where one of little probability has a long memory, the draws spread wider than the intervals.
+        where one of little probability has a long memory, the draws spread wider than the intervals. Where the fit had `bounds`, sets
+        outside of them are drawn again.
 
         Parameters
         ----------
@@ -1622,7 +1700,7 @@ class Fit(_Series):
         Raises
         ------
         FitError
-            The data leave a parameter open: there is no covariance.
+            The data leave a parameter open: there is no covariance. Bounds so narrow that hardly a set lies inside of them.
         OptionError
             Fewer than one set; a seed that is no whole number, or below 0.
 
@@ -1741,6 +1819,37 @@ class RecordComparison(_Summed, _Reported):
 
     Made by `Record.compare`. ``print(comparison)`` shows what ``palpate compare`` does.
     """
+    law: Final[str | None]
+    """The law to use for the record as a whole, as ``law=`` takes it; None where none could be fitted."""
+    sentence: Final[str | None]
+    """Which law to use, in a sentence; None where none could be fitted."""
+    holds: Final[Table]
+    """The holds on which laws could be compared, a row each: ``hold``, ``fit_start_s``, the recommended ``law``, ``certainty``, ``probability``,
+    ``reservation`` and ``holdout_error``, the error of its forecasts over the change in the hold.
+    """
+    def plot(self, ax: Axes | None = None, **bars: Any) -> Axes:
+        """Draw how well each law predicts what follows: the median over the holds of the error of its forecasts as a bar, that of each as a point.
+
+        Errors are root mean squares over the change in the hold.
+
+        Parameters
+        ----------
+        ax : matplotlib.axes.Axes, optional
+            Axes to draw on; those of a new figure if left out.
+        bars
+            Options of ``Axes.barh``.
+
+        Returns
+        -------
+        matplotlib.axes.Axes
+
+        Raises
+        ------
+        ImportError
+            Without matplotlib.
+        """
+        ...
+    def _repr_html_(self) -> str: ...
     laws: Final[Table]
     """The laws on every hold, best first, a row each: ``hold``, ``law``, ``effective_parameters``, ``rmse``, ``delta_aicc``, ``delta_bic``,
     ``forward_score``, ``termination``, ``error``.
@@ -2136,7 +2245,7 @@ def _card(
     terms_per_decade: float,
 ) -> str: ...
 def fit_hold(
-    time_s: ArrayLike, signal: ArrayLike, weights: ArrayLike | None, keywords: Mapping[str, Any]
+    time_s: ArrayLike, signal: ArrayLike, weights: ArrayLike | None, keywords: Mapping[str, Any], first_date_ns: int | None
 ) -> Fit: ...
 def fit_many(
     time_s: Any,
@@ -2234,7 +2343,7 @@ def compare(
 def forecast(
     time_s: ArrayLike,
     signal: ArrayLike,
-    at_s: float | ArrayLike,
+    at_s: _Time | ArrayLike | Sequence[_Time],
     *,
     laws: Sequence[LawName] | None = None,
     weights: ArrayLike | None = None,
@@ -2249,7 +2358,8 @@ def forecast(
     time_s, signal, weights : array_like, shape (N,)
         As for `fit_hold`.
     at_s : float or array_like
-        Times to predict, on the clock of ``time_s``, none before its last: the hold itself is what was fitted.
+        Times to predict, on the clock of ``time_s``, none before its last: the hold itself is what was fitted. Durations are times on that
+        clock too, and so are dates where ``time_s`` has dates.
     laws
         Names of laws; if left out, all that suit.
     quantity

@@ -39,7 +39,7 @@ pub(crate) fn simulate_many(
     let numbers: Vec<(String, Vec<f64>)> = numbers.collect::<PyResult<_>>()?;
     let times = times_s.map(|times| doubles(times, "times_s")).transpose()?;
     let run = move |heard: Heard| {
-        let sweep = protocol.parsed(|text, path| parse_runs(text, path, &numbers))?;
+        let sweep = protocol.parsed_with(&numbers, |text, path| parse_runs(text, path, &numbers))?;
         simulated(&sweep, &protocol.path, times.as_deref(), &heard)
     };
     at_length_reported(py, progress.as_ref(), run)?

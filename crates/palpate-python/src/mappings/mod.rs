@@ -6,7 +6,7 @@ use std::fmt;
 
 use numpy::PyUntypedArray;
 use pyo3::prelude::*;
-use pyo3::types::{PyBool, PyDict, PyFloat, PyInt, PyList, PyMapping, PyString, PyTuple};
+use pyo3::types::{PyBool, PyDict, PyFloat, PyInt, PyList, PyMapping, PyRange, PyString, PyTuple};
 
 use crate::errors::{OptionError, refused, refused_plainly};
 
@@ -65,7 +65,7 @@ impl Key {
     }
 }
 
-/// Where something stands in a mapping, for messages: `step[1].hold`.
+/// Where something stands in a mapping, for messages: `step[1].hold` of the second step, as Python counts.
 struct Place<'a> {
     above: Option<&'a Place<'a>>,
     part: Part<'a>,
@@ -150,6 +150,8 @@ fn write_value(text: &mut String, value: &Bound<'_, PyAny>, place: &Place<'_>) -
     } else if is_with_unit(value)? {
         let stated = units(value)?.call_method1("stated", (value, place.to_string()))?;
         write_value(text, &stated, place)?;
+    } else if let Some(list) = listed(value)? {
+        write_list(text, &list, place, |text, entry, place| write_value(text, entry, place))?;
     } else {
         let found = value.get_type().name()?;
         let message = format!("{place}: expected a text, a number, a list or a table, found {found}");
@@ -174,6 +176,12 @@ fn write_quantity(
         return write_quantity(text, &in_si, unit, (bare, place));
     }
     let number = if value.is_instance_of::<PyBool>() { None } else { real(value)? };
+    if number.is_none()
+        && place.depth < DEEPEST
+        && let Some(list) = listed(value)?
+    {
+        return write_quantity(text, &list, unit, (bare, place));
+    }
     let Some(number) = number else {
         let message = format!("{place}: expected a number in {unit}, found {}", value.repr()?);
         return Err(refused::<OptionError>(
@@ -194,7 +202,7 @@ fn write_list<'py>(
     text.push('[');
     for (index, entry) in list.try_iter()?.enumerate() {
         text.push_str(if index > 0 { ", " } else { "" });
-        write(text, &entry?, &Place::new(Some(place), Part::Entry(index + 1)))?;
+        write(text, &entry?, &Place::new(Some(place), Part::Entry(index)))?;
     }
     text.push(']');
     Ok(())
@@ -211,6 +219,16 @@ fn write_string(text: &mut String, string: &str) {
         }
     }
     text.push('"');
+}
+
+/// A column of NumPy, pandas, polars, pyarrow or xarray, or a range, as a list; none of what is not a column.
+fn listed<'py>(value: &Bound<'py, PyAny>) -> PyResult<Option<Bound<'py, PyAny>>> {
+    if !(value.hasattr("__array__")? || value.is_instance_of::<PyRange>()) {
+        return Ok(None);
+    }
+    let array = value.py().import("numpy")?.call_method1("asarray", (value,))?;
+    let is_column = array.getattr("ndim")?.eq(1)?;
+    is_column.then(|| array.call_method0("tolist")).transpose()
 }
 
 /// A real number that is no truth value.

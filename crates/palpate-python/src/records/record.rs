@@ -103,6 +103,20 @@ fn column(table: &PyTable, name: &str) -> PyResult<Vec<f64>> {
     Ok(values)
 }
 
+/// Whether a table is read by the names of its columns: it has them, and is none to Arrow.
+fn is_by_names(table: &Bound<'_, PyAny>) -> PyResult<bool> {
+    let is_of_numpy = table.py().import("palpate._arrays")?.call_method1("is_of_numpy", (table,))?.extract()?;
+    Ok(table.hasattr("keys")? && (is_of_numpy || !table.hasattr("__arrow_c_stream__")?))
+}
+
+fn column_of<'py>(table: &Bound<'py, PyAny>, name: &str) -> PyResult<Bound<'py, PyAny>> {
+    let found = table.py().import("palpate._long")?.call_method1("column", (table, name));
+    found.map_err(|error| match error.is_instance_of::<OptionError>(table.py()) {
+        true => refused_plainly::<RecordError>(error.value(table.py())),
+        false => error,
+    })
+}
+
 /// Samples that are checked and digested in a few milliseconds.
 const BRIEF: usize = 100_000;
 
@@ -207,6 +221,8 @@ shown! {
     ///
     /// Parameters
     /// ----------
+    /// table : optional
+    ///     A table in place of arrays, as for `from_arrow`; the others are then names of its columns.
     /// time_s : array_like, shape (N,)
     ///     Times in s, rising; at least two.
     /// force_n : array_like, shape (N,)
@@ -223,14 +239,33 @@ shown! {
     /// OptionError
     ///     Columns that are no numbers.
     #[classmethod]
-    #[pyo3(signature = (*, time_s, force_n, displacement_m=None, title="record"))]
+    #[pyo3(signature = (table=None, /, *, time_s=None, force_n=None, displacement_m=None, title="record"))]
     fn from_arrays(
         class: &Bound<'_, PyType>,
-        time_s: &Bound<'_, PyAny>,
-        force_n: &Bound<'_, PyAny>,
+        table: Option<&Bound<'_, PyAny>>,
+        time_s: Option<&Bound<'_, PyAny>>,
+        force_n: Option<&Bound<'_, PyAny>>,
         displacement_m: Option<&Bound<'_, PyAny>>,
         title: &str,
     ) -> PyResult<Self> {
+        if let Some(table) = table {
+            let name = |argument: &str, given: Option<&Bound<'_, PyAny>>| -> PyResult<Option<String>> {
+                let wrong = |found: &Bound<'_, PyAny>| {
+                    let kind = found.get_type().name().map_or_else(|_| String::new(), |name| name.to_string());
+                    let message = format!("{argument}: expected the name of a column beside a table, found {kind}");
+                    refused::<OptionError>(message, Some("pass either a table or arrays"))
+                };
+                given.map(|given| given.extract().map_err(|_| wrong(given))).transpose()
+            };
+            let (time, force) = (name("time_s", time_s)?, name("force_n", force_n)?);
+            let displacement = name("displacement_m", displacement_m)?;
+            let (time, force) = (time.as_deref().unwrap_or("time_s"), force.as_deref().unwrap_or("force_n"));
+            return Self::from_arrow(class, table, time, force, displacement.as_deref(), title);
+        }
+        let (Some(time_s), Some(force_n)) = (time_s, force_n) else {
+            let message = "Record.from_arrays() needs the arguments time_s and force_n, or a table";
+            return Err(PyTypeError::new_err(message));
+        };
         let displacement = displacement_m.map(|values| doubles(values, "displacement_m")).transpose()?;
         Self::checked(class.py(), (doubles(time_s, "time_s")?, displacement, doubles(force_n, "force_n")?), title)
     }
@@ -240,7 +275,7 @@ shown! {
     /// Parameters
     /// ----------
     /// table
-    ///     Of polars, pandas, pyarrow, or anything else with ``__arrow_c_stream__``.
+    ///     Of polars, pandas, pyarrow, or anything else with ``__arrow_c_stream__``; a mapping or a Dataset of xarray, by the names of its columns.
     /// time_s, force_n, displacement_m : str
     ///     Names of the columns. A displacement is looked for under its own name if none is given, and may be missing.
     /// title : str
@@ -260,6 +295,15 @@ shown! {
         displacement_m: Option<&str>,
         title: &str,
     ) -> PyResult<Self> {
+        if is_by_names(table)? {
+            let column = |argument: &str, name: &str| doubles(&column_of(table, name)?, argument);
+            let displacement = match displacement_m {
+                None if !table.contains("displacement_m")? => None,
+                name => Some(column("displacement_m", name.unwrap_or("displacement_m"))?),
+            };
+            let (time, force) = (column("time_s", time_s)?, column("force_n", force_n)?);
+            return Self::checked(class.py(), (time, displacement, force), title);
+        }
         let table: PyTable = table.extract()?;
         let known = |name: &str| table.batches().first().is_none_or(|batch| batch.column_by_name(name).is_some());
         let usual = Some("displacement_m").filter(|name| known(name));

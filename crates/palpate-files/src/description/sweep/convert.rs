@@ -87,11 +87,8 @@ impl SweptParameter {
     fn new(path: String, dimension: Option<Dimension>, values: Values) -> Self {
         let unit = si_unit(dimension);
         let plain: String = path.replace(']', "").replace(['[', '.'], "_");
-        // The unit of a column's name: `_m_per_s` for m/s.
-        let words = unit.to_lowercase().replace('/', " per ").replace('²', "2");
-        let suffix: String = words.split_whitespace().map(|word| format!("_{word}")).collect();
         Self {
-            column: plain + &suffix,
+            column: plain + &suffix(dimension),
             path,
             unit,
             spacing: match &values {
@@ -123,6 +120,12 @@ impl SweptParameter {
 /// Symbol of the SI unit of a dimension, none of a dimensionless number.
 fn si_unit(dimension: Option<Dimension>) -> &'static str {
     dimension.map_or("", |dimension| dimension.units()[0].0)
+}
+
+/// The unit at the end of a name: `_m_per_s` for m/s.
+fn suffix(dimension: Option<Dimension>) -> String {
+    let words = si_unit(dimension).to_lowercase().replace('/', " per ").replace('²', "2");
+    words.split_whitespace().map(|word| format!("_{word}")).collect()
 }
 
 impl Sweep {
@@ -212,8 +215,8 @@ pub fn parse_sweep(text: &str, path: &Path) -> Result<Sweep, DescriptionError> {
 
 /// A sweep whose numbers come as columns of one length instead of a table `[sweep]`: run i takes the value i of each.
 ///
-/// Numbers are named by their paths as in a sweep, such as `specimen.radius` or `step[2].rate`, which `step.2.rate` stands for too, and
-/// given in SI. A table `[sweep]` in the text is
+/// Numbers are named by their paths as in a sweep, such as `specimen.radius` or `step[2].rate`, which `step.2.rate` stands for too, also
+/// with their unit at the end, `specimen.radius_m`, and given in SI. A table `[sweep]` in the text is
 /// left aside.
 ///
 /// ```
@@ -224,7 +227,7 @@ pub fn parse_sweep(text: &str, path: &Path) -> Result<Sweep, DescriptionError> {
 ///     law = { name = "latency", exponent = 5, rate_coefficient = "2e4 /s" }
 ///     step = [{ to = "5 mm", rate = "500 mm/min", hold = "10 s" }]
 /// "#;
-/// let columns = [("law.exponent", vec![5.0, 3.0]), ("specimen.radius", vec![0.03, 0.04])];
+/// let columns = [("law.exponent", vec![5.0, 3.0]), ("specimen.radius_m", vec![0.03, 0.04])];
 /// let runs = parse_runs(text, Path::new("squeeze.toml"), &columns)?;
 /// assert_eq!((runs.runs, runs.run(1).0), (2, vec![3.0, 0.04]));
 /// # Ok::<(), palpate_files::description::DescriptionError>(())
@@ -241,9 +244,12 @@ pub fn parse_runs<N: AsRef<str>>(
         let runs = columns.first().map_or(0, |(_, values)| values.len());
         let number = |(name, values): &(N, Vec<f64>)| {
             let name = name.as_ref();
-            let path = &table::path(&[name.to_owned()]);
-            let Some((_, dimension)) = known.iter().find(|(known, _)| known == path) else {
-                return Err(unknown(source, name, path, known));
+            let named = &table::path(&[name.to_owned()]);
+            let is_named = |(path, dimension): &&(String, Option<Dimension>)| {
+                path == named || named.strip_prefix(path.as_str()) == Some(suffix(*dimension).as_str())
+            };
+            let Some((path, dimension)) = known.iter().find(is_named) else {
+                return Err(unknown(source, name, named, known));
             };
             if values.len() != runs {
                 let expected = format!("{runs} values, as the other parameters have");
