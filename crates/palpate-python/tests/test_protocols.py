@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import csv
+import inspect
 import pickle
 import subprocess
 import sys
-from dataclasses import replace
+from dataclasses import fields, replace
 from pathlib import Path
 from typing import Any, get_args
 
@@ -57,17 +58,34 @@ def test_a_typed_body_stands_wherever_a_mapping_does(root: Path) -> None:
 @pytest.mark.parametrize(
     ("step", "reported"),
     [
-        (Step(to=0.005, rate=0.01, hold=-1), r"step\[2\]\.hold: expected a time of 0 s or more"),
-        (Step(to=0.005, rate=0.01, hold="10 mm"), r"step\[2\]\.hold = \"10 mm\": \"mm\" is not a unit of time"),
-        (Step(to=0.005, rate=0.01, hold=3 * UNITS.N), r"step\[2\]\.hold = \"3.0 N\": \"N\" is not a unit of time"),
-        (Step(to=float("nan"), rate=0.01), r"step\[2\]\.to_m: expected a finite number, found nan"),
-        (Step(to=0.005), r"step\[2\]"),
-        ({"to": "5 mm", "rate": "1 mm/s", "holdd": "1 s"}, r"step\[2\]\.holdd: unknown key"),
+        (Step(to=0.005, rate=0.01, hold=-1), r"step\[1\]\.hold: expected a time of 0 s or more"),
+        (Step(to=0.005, rate=0.01, hold="10 mm"), r"step\[1\]\.hold = \"10 mm\": \"mm\" is not a unit of time"),
+        (Step(to=0.005, rate=0.01, hold=3 * UNITS.N), r"step\[1\]\.hold = \"3.0 N\": \"N\" is not a unit of time"),
+        (Step(to=float("nan"), rate=0.01), r"step\[1\]\.to_m: expected a finite number, found nan"),
+        (Step(to=0.005), r"step\[1\]"),
+        ({"to": "5 mm", "rate": "1 mm/s", "holdd": "1 s"}, r"step\[1\]\.holdd: unknown key"),
     ],
 )
 def test_errors_name_the_key(step: Any, reported: str) -> None:
     with pytest.raises(palpate.OptionError, match=reported):
         palpate.simulate(replace(SQUEEZE, step=[*SQUEEZE.step, step]))
+
+
+def test_the_help_of_a_protocol_explains_every_field() -> None:
+    """Fields had comments in the source alone."""
+    for kind in (Law, Protocol, Specimen, Step):
+        text = inspect.getdoc(kind) or ""
+        assert [one.name for one in fields(kind) if f"\n{one.name} : " not in text] == []
+
+
+def test_what_is_no_protocol_says_what_is() -> None:
+    """A list and a trajectory were TypeErrors that expected str, bytes or os.PathLike."""
+    calls: list[Any] = [palpate.simulate, palpate.energy]
+    for call in (*calls, lambda steps: palpate.simulate_many(steps, {"law.exponent": [3.0]})):
+        with pytest.raises(palpate.OptionError, match="expected a description or its path, found a list\nhint: steps alone have no body"):
+            call(list(SQUEEZE.step))
+        with pytest.raises(palpate.OptionError, match="found a Trajectory\nhint: pass the protocol that it was simulated from"):
+            call(palpate.simulate(SQUEEZE))
 
 
 def test_steps_are_a_list() -> None:

@@ -92,34 +92,62 @@ def _stated(value: Any, unit: str) -> Any:
 
 @dataclass(frozen=True)
 class Specimen(_Table):
-    """The body: its shape with the sizes of that shape, and its stiffness; the keys of ``[specimen]``."""
+    """The body: its shape with the sizes of that shape, and its stiffness; the keys of ``[specimen]``.
+
+    Lengths, areas and the modulus are above 0. A shape takes its own sizes alone.
+
+    Parameters
+    ----------
+    shape : str
+        "ball", "pad", "strip", "dumbbell", "cylinder", "cone and plate", "block", "profile", a tip on a flat sample ("spherical tip",
+        "conical tip", "pyramidal tip", "flat punch"), or "none".
+    radius : quantity
+        Radius of a ball, a spherical tip or a flat punch; outer radius of a pad, m.
+    modulus : quantity
+        Young's modulus, Pa.
+    diameter : quantity
+        Diameter of a cylinder, or of a cone and plate, m.
+    width : quantity
+        Width of the section of a strip, m.
+    thickness : quantity
+        Thickness of a strip, a dumbbell, the soft layer of a pad, or the sample under a tip, m.
+    length : quantity
+        Free length along the force of a strip, a cylinder or a block, m.
+    area : quantity
+        Section of a block, m^2.
+    depth : quantity
+        Depth of a profile, m.
+    cone_angle : quantity
+        Angle between a cone and its plate, rad; above 0 and below pi/4.
+    half_angle : quantity
+        Half angle of a conical or pyramidal tip, rad; above 0 and below pi/2.
+    widths : rows
+        Widths of a dumbbell: rows of place, m, rising, and width, m.
+    areas : rows
+        Contact area of a profile: rows of displacement, m, rising, and area, m^2.
+    equilibrium_forces : rows
+        Measured equilibrium force in place of a modulus: rows of displacement, m, rising, and force, N.
+    equilibrium : str
+        Law of the force once relaxation is over: "uniform strain" (if left out) or "hertz".
+    poisson_ratio : float
+        Poisson's ratio of "hertz" and of tips, from 0 to 0.5; 0.5 is incompressible.
+    base : str
+        How a sample lies on what is below it, under a tip: "bonded" (if left out) or "sliding".
+    """
 
     shape: Shape
-    #: Radius of a ball, a spherical tip or a flat punch; outer radius of a pad, m.
     radius: Quantity = _in("m")
-    #: Young's modulus, Pa.
     modulus: Quantity = _in("Pa")
-    #: Diameter of a cylinder, or of a cone and plate, m.
     diameter: Quantity = _in("m")
-    #: Width of the section of a strip, m.
     width: Quantity = _in("m")
-    #: Thickness of a strip, a dumbbell, the soft layer of a pad, or the sample under a tip, m.
     thickness: Quantity = _in("m")
-    #: Free length along the force, m.
     length: Quantity = _in("m")
-    #: Section of a block, m^2.
     area: Quantity = _in("m^2")
-    #: Depth of a profile, m.
     depth: Quantity = _in("m")
-    #: Angle between a cone and its plate, rad.
     cone_angle: Quantity = _in("rad")
-    #: Half angle of a conical or pyramidal tip, rad.
     half_angle: Quantity = _in("rad")
-    #: Widths of a dumbbell: rows of place and width, m.
     widths: Rows | None = _in("m", "m")
-    #: Contact area of a profile: rows of displacement, m, and area, m^2.
     areas: Rows | None = _in("m", "m^2")
-    #: Measured equilibrium force in place of a modulus: rows of displacement, m, and force, N.
     equilibrium_forces: Rows | None = _in("m", "N")
     equilibrium: Literal["uniform strain", "hertz"] | None = None
     poisson_ratio: float | None = None
@@ -128,46 +156,101 @@ class Specimen(_Table):
 
 @dataclass(frozen=True)
 class Law(_Table):
-    """The law of the strain with its parameters; the keys of ``[law]``."""
+    """The law of the strain with its parameters; the keys of ``[law]``. All numbers are above 0.
+
+    Parameters
+    ----------
+    name : str
+        "latency" (takes `exponent`, `rate_coefficient` and one of the factors), "standard-linear-solid" (`overshoot`, `time`), "prony"
+        (`terms`), "fung" (`shares`) or "fractional-zener" (`overshoot`, `time`, `order`).
+    exponent : float
+        Exponent n of the latency law, strain rate = -v (e - e_e)^n; 1 is an exponential.
+    rate_coefficient : quantity
+        Rate coefficient v of the latency law, 1/s.
+    strain_factor : float
+        Factor of v for every 0.1 of equilibrium strain; 1 if left out.
+    unloading_factor : float
+        Factor of v while the strain rises to its equilibrium, after unloading; 1 if left out.
+    overshoot : float
+        Force at the start of a hold over that at its end, less 1.
+    time : quantity
+        Relaxation time, s.
+    order : float
+        Order alpha of the power t^alpha, from 0.05 to below 1.
+    terms : list
+        Terms of a Prony series, each with ``overshoot`` and ``time`` or ``time_s``.
+    shares : list
+        Terms of Fung's function, each with ``share`` of the force at the start and ``rate`` or ``rate_per_s``; their sum is below 1.
+    memory : str
+        What a linear law remembers: the "strain", with the contact area at the time, or the "force".
+    """
 
     name: Literal["latency", "standard-linear-solid", "prony", "fung", "fractional-zener"]
     exponent: float | None = None
-    #: Rate coefficient of the latency law, 1/s.
     rate_coefficient: Quantity = _in("/s")
     strain_factor: float | None = None
     unloading_factor: float | None = None
     overshoot: float | None = None
-    #: Relaxation time, s.
     time: Quantity = _in("s")
     order: float | None = None
-    #: Terms of a Prony series, each with ``overshoot`` and ``time`` or ``time_s``.
     terms: Sequence[Mapping[str, Any]] | None = None
-    #: Terms of Fung's function, each with ``share`` and ``rate`` or ``rate_per_s``.
     shares: Sequence[Mapping[str, Any]] | None = None
     memory: Literal["strain", "force"] | None = None
 
 
 @dataclass(frozen=True, kw_only=True)
 class Step(_Table):
-    """A move of the jaw to a displacement or a force, and a hold; either may be left out. The keys of ``[[step]]``."""
+    """A move of the jaw to a displacement or a force, and a hold; either may be left out. The keys of ``[[step]]``.
 
-    #: Displacement since first touch at the end of the move, m.
+    A step has `to` with `rate`, or `to_force` with `force_rate`, and one of `hold` and `hold_force`.
+
+    Parameters
+    ----------
+    to : quantity
+        Displacement since first touch at the end of the move, m; below 0 the jaw has left the body.
+    rate : quantity
+        Speed of the jaw, m/s; above 0 in both directions.
+    to_force : quantity
+        Force at the end of the move, N.
+    force_rate : quantity
+        Rate of the force, N/s; above 0 in both directions.
+    hold : quantity
+        How long the position is held after the move, s; 0 or more.
+    hold_force : quantity
+        How long the force is held after the move, s; 0 or more.
+    """
+
     to: Quantity = _in("m")
-    #: Speed of the jaw, m/s.
     rate: Quantity = _in("m/s")
-    #: Force at the end of the move, N.
     to_force: Quantity = _in("N")
-    #: Rate of the force, N/s.
     force_rate: Quantity = _in("N/s")
-    #: How long the position is held, s.
     hold: Quantity = _in("s")
-    #: How long the force is held, s.
     hold_force: Quantity = _in("s")
 
 
 @dataclass(frozen=True, kw_only=True)
 class Protocol(_Table):
-    """A body, its law, and the steps of the jaw; or a material, which is both, in place of the first two."""
+    """A body, its law, and the steps of the jaw; or a material, which is both, in place of the first two.
+
+    Parameters
+    ----------
+    step : list
+        Moves and holds, in order: a `Step` or a mapping with its keys each, one or more.
+    specimen : Specimen or mapping
+        The body.
+    law : Law or mapping
+        The law of its strain.
+    contact : mapping
+        How the jaw meets the body: ``layers`` or ``layer_thickness``, ``squeezed_from`` and ``separation``.
+    output : mapping
+        Times of the samples: ``sample_rate`` or ``times``.
+    material : Material or str
+        A calibrated body, or the path of its file, in place of `specimen`, `law` and `contact`.
+    sweep : mapping
+        Values by the path of the parameter that they replace, for `palpate.sweep`.
+    title : str
+        For reports.
+    """
 
     step: Sequence[Step | Mapping[str, Any]]
     specimen: Specimen | Mapping[str, Any] | None = None
@@ -175,7 +258,6 @@ class Protocol(_Table):
     contact: Mapping[str, Any] | None = None
     output: Mapping[str, Any] | None = None
     material: Material | str | None = None
-    #: Values by the path of the parameter that they replace, for `palpate.sweep`.
     sweep: Mapping[str, Any] | None = None
     title: str | None = None
 
