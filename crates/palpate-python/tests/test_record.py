@@ -257,11 +257,17 @@ def test_a_table_is_taken_in_place_of_arrays() -> None:
     for table in (frame, polars.DataFrame(columns), columns, frame.to_xarray(), {name: list(of) for name, of in columns.items()}):
         found = palpate.Record.from_arrays(table, time_s="t", title="one")
         assert found == record and found.title == "one" and found == palpate.Record.from_arrow(table, time_s="t")
-    dates = {**columns, "t": np.datetime64("2024-01-01", "ns") + np.array([0, 1, 2], dtype="timedelta64[s]")}
-    assert palpate.Record.from_arrays(dates, time_s="t") == record
+    for start in (np.datetime64("2024-01-01", "ns"), np.timedelta64(0, "ns")):
+        dates = {**columns, "t": start + np.array([0, 1000, 2000], dtype="timedelta64[ms]")}
+        for table in (dates, pandas.DataFrame(dates), polars.DataFrame(dates), pyarrow.table(dates)):
+            assert palpate.Record.from_arrays(table, time_s="t") == record
     assert palpate.Record.from_arrays({**columns, "displacement_m": [0.0, 1.0, 1.0]}, time_s="t").displacement_m is not None
     with pytest.raises(palpate.RecordError, match="expected a table with a column 'time_s', found t, force_n"):
         palpate.Record.from_arrays(columns)
+    with pytest.raises(palpate.RecordError, match="t: expected a column of doubles, found one of Timestamp"):
+        palpate.Record.from_arrays(pandas.DataFrame({**dates, "t": np.datetime64("2024-01-01", "ns") + np.arange(3)}), time_s="force_n", force_n="t")
+    with pytest.raises(palpate.RecordError, match='expected a column called "time_s", found t, force_n\nhint: name the columns: time_s="..."'):
+        palpate.Record.from_arrays(frame)
     with pytest.raises(palpate.OptionError, match="time_s: expected the name of a column beside a table, found ndarray"):
         palpate.Record.from_arrays(frame, time_s=columns["t"])  # type: ignore[call-overload] # pyright: ignore
     with pytest.raises(TypeError, match="needs the arguments time_s and force_n, or a table"):

@@ -284,7 +284,8 @@ class Record(_Series):
         table
             Of polars, pandas, pyarrow, or anything else with ``__arrow_c_stream__``; a mapping or a Dataset of xarray, by the names of its columns.
         time_s, force_n, displacement_m : str
-            Names of the columns. A displacement is looked for under its own name if none is given, and may be missing.
+            Names of the columns. Times may be durations, or dates, which are seconds since the first. A displacement is looked for under its
+            own name if none is given, and may be missing.
         title : str
             For reports.
 

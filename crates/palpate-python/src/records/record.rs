@@ -2,9 +2,9 @@
 
 use arrow_array::Array;
 use arrow_array::cast::AsArray;
-use arrow_array::types::Float64Type;
+use arrow_array::types::{Float64Type, Int64Type};
 use arrow_cast::cast;
-use arrow_schema::DataType;
+use arrow_schema::{DataType, TimeUnit};
 use numpy::PyArray1;
 use palpate::analysis::corrected_watched;
 use palpate::calibrate::CalibrateError;
@@ -74,15 +74,18 @@ impl PartialEq for Record {
     }
 }
 
-/// A column of numbers by its name, none missing.
-fn column(table: &PyTable, name: &str) -> PyResult<Vec<f64>> {
-    let mut values = Vec::new();
+/// What helps where a column has another name.
+const NAMED: &str = "name the columns: time_s=\"...\", force_n=\"...\", displacement_m=\"...\"";
+
+/// A column of numbers by its name, none missing; one of times may have durations, in s, and dates, in s since the first.
+fn column(table: &PyTable, name: &str, is_of_times: bool) -> PyResult<Vec<f64>> {
+    let (mut values, mut first) = (Vec::new(), None);
     for batch in table.batches() {
         let Some(column) = batch.column_by_name(name) else {
             let schema = batch.schema();
             let names: Vec<&str> = schema.fields().iter().map(|field| field.name().as_str()).collect();
             let message = format!("expected a column called {name:?}, found {}", names.join(", "));
-            return Err(refused_plainly::<RecordError>(message));
+            return Err(refused::<RecordError>(message, Some(NAMED)));
         };
         if column.null_count() > 0 {
             let row = (0..column.len()).find(|row| column.is_null(*row)).unwrap_or(0);
@@ -90,9 +93,22 @@ fn column(table: &PyTable, name: &str) -> PyResult<Vec<f64>> {
             return Err(refused_plainly::<RecordError>(message));
         }
         match column.data_type() {
-            DataType::Float64 | DataType::Float32 | DataType::Int64 | DataType::Int32 => {
+            kind if kind.is_numeric() => {
                 let doubles = cast(column, &DataType::Float64).map_err(refused_plainly::<RecordError>)?;
                 values.extend_from_slice(doubles.as_primitive::<Float64Type>().values());
+            }
+            DataType::Timestamp(unit, _) | DataType::Duration(unit) if is_of_times => {
+                let counts = cast(column, &DataType::Int64).map_err(refused_plainly::<RecordError>)?;
+                let counts = counts.as_primitive::<Int64Type>().values();
+                let is_date = matches!(column.data_type(), DataType::Timestamp(..));
+                let first = *first.get_or_insert(if is_date { counts.first().copied().unwrap_or(0) } else { 0 });
+                let per_second = match unit {
+                    TimeUnit::Second => 1.0,
+                    TimeUnit::Millisecond => 1e3,
+                    TimeUnit::Microsecond => 1e6,
+                    TimeUnit::Nanosecond => 1e9,
+                };
+                values.extend(counts.iter().map(|count| (count - first) as f64 / per_second));
             }
             other => {
                 let message = format!("{name}: expected a column of doubles, found one of {other}");
@@ -277,7 +293,8 @@ shown! {
     /// table
     ///     Of polars, pandas, pyarrow, or anything else with ``__arrow_c_stream__``; a mapping or a Dataset of xarray, by the names of its columns.
     /// time_s, force_n, displacement_m : str
-    ///     Names of the columns. A displacement is looked for under its own name if none is given, and may be missing.
+    ///     Names of the columns. Times may be durations, or dates, which are seconds since the first. A displacement is looked for under its
+    ///     own name if none is given, and may be missing.
     /// title : str
     ///     For reports.
     ///
@@ -307,8 +324,9 @@ shown! {
         let table: PyTable = table.extract()?;
         let known = |name: &str| table.batches().first().is_none_or(|batch| batch.column_by_name(name).is_some());
         let usual = Some("displacement_m").filter(|name| known(name));
-        let displacement = displacement_m.or(usual).map(|name| column(&table, name)).transpose()?;
-        Self::checked(class.py(), (column(&table, time_s)?, displacement, column(&table, force_n)?), title)
+        let displacement = displacement_m.or(usual).map(|name| column(&table, name, false)).transpose()?;
+        let (time, force) = (column(&table, time_s, true)?, column(&table, force_n, false)?);
+        Self::checked(class.py(), (time, displacement, force), title)
     }
 
     #[classmethod]
