@@ -422,7 +422,7 @@ shown! {
 ///
 /// Examples
 /// --------
-/// >>> import tempfile
+/// >>> import palpate, tempfile
 /// >>> with tempfile.TemporaryDirectory() as folder:
 /// ...     study = palpate.reproduce(folder, seeds=4, sample_rate_hz=10.0)
 /// >>> first = study["claims"][0]

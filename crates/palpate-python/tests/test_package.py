@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+import doctest
 import tomllib
+from collections.abc import Iterator
 from importlib.metadata import distribution
 from pathlib import Path
 from typing import Any, get_args
 
 import palpate
 import pytest
+from palpate import _palpate
 from palpate._options import Intervals, LawName, Loss, Missing, Noise, Response
 
 LICENCES = {
@@ -31,6 +34,22 @@ def test_the_package_says_what_it_offers() -> None:
     offered = {name for name in dir(palpate) if not name.startswith("_")}
     assert offered == set(palpate.__all__)
     assert all(hasattr(palpate, name) for name in dir(palpate))
+
+
+def compiled_examples() -> Iterator[Any]:
+    for name, found in vars(_palpate).items():
+        members = vars(found).items() if isinstance(found, type) else ()
+        for place, one in [(name, found), *((f"{name}.{member}", one) for member, one in members)]:
+            if ">>>" in (text := getattr(one, "__doc__", None) or ""):
+                yield pytest.param(place, text, id=place)
+
+
+@pytest.mark.filterwarnings("ignore::palpate.PalpateWarning")
+@pytest.mark.parametrize(("place", "text"), list(compiled_examples()))
+def test_examples_of_the_compiled_part_are_true(place: str, text: str) -> None:
+    """No tool finds them there: one had lost its import, another its number."""
+    example = doctest.DocTestParser().get_doctest(text, {}, place, None, 0)
+    assert doctest.DocTestRunner().run(example).failed == 0
 
 
 def test_the_oldest_versions_that_are_declared_are_tested(root: Path) -> None:

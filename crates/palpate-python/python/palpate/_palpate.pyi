@@ -2397,7 +2397,7 @@ def forecast(
     >>> before = (t, 2 + 4 / (1 + 0.5 * t))
     >>> table = palpate.forecast(t[:20], force[:20], at_s=[10.0], others=[before])
     >>> round(float(table["value"][0]), 2), round(float(force[-1]), 2)
-    (1.33, 1.33)
+    (1.29, 1.33)
     """
     ...
 def mapping_text(table: Mapping[str, Any]) -> str:
@@ -2735,7 +2735,7 @@ def reproduce(
 
     Examples
     --------
-    >>> import tempfile
+    >>> import palpate, tempfile
     >>> with tempfile.TemporaryDirectory() as folder:
     ...     study = palpate.reproduce(folder, seeds=4, sample_rate_hz=10.0)
     >>> first = study["claims"][0]
