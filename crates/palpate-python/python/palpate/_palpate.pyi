@@ -2394,10 +2394,10 @@ def forecast(
     >>> table = palpate.forecast(t, force, at_s=[20.0, 30.0])
     >>> [round(float(value), 2) for value in table["value"]]
     [1.18, 1.12]
-    >>> before = (t, 2 + 4 / (1 + 0.5 * t))
-    >>> table = palpate.forecast(t[:20], force[:20], at_s=[10.0], others=[before])
+    >>> before = [(t, 2 + 4 / (1 + 0.5 * t)), (t, 3 + 5 / (1 + 0.5 * t))]
+    >>> table = palpate.forecast(t[:20], force[:20], at_s=[10.0], others=before)
     >>> round(float(table["value"][0]), 2), round(float(force[-1]), 2)
-    (1.29, 1.33)
+    (1.33, 1.33)
     """
     ...
 def mapping_text(table: Mapping[str, Any]) -> str:

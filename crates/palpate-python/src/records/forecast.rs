@@ -58,10 +58,10 @@ const SOME: usize = 1 << 14;
 /// >>> table = palpate.forecast(t, force, at_s=[20.0, 30.0])
 /// >>> [round(float(value), 2) for value in table["value"]]
 /// [1.18, 1.12]
-/// >>> before = (t, 2 + 4 / (1 + 0.5 * t))
-/// >>> table = palpate.forecast(t[:20], force[:20], at_s=[10.0], others=[before])
+/// >>> before = [(t, 2 + 4 / (1 + 0.5 * t)), (t, 3 + 5 / (1 + 0.5 * t))]
+/// >>> table = palpate.forecast(t[:20], force[:20], at_s=[10.0], others=before)
 /// >>> round(float(table["value"][0]), 2), round(float(force[-1]), 2)
-/// (1.29, 1.33)
+/// (1.33, 1.33)
 #[pyfunction]
 #[pyo3(signature = (time_s, signal, at_s, *, laws=None, weights=None, quantity="force", others=None, confidence=0.95))]
 #[expect(

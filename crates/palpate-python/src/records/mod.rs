@@ -1,6 +1,7 @@
 //! Measured records, what they are analysed to, and the laws compared on their holds.
 
 pub(crate) mod analysis;
+mod columns;
 pub(crate) mod compare;
 pub(crate) mod forecast;
 mod hold_fit;

@@ -1,10 +1,5 @@
 //! A measured record.
 
-use arrow_array::Array;
-use arrow_array::cast::AsArray;
-use arrow_array::types::{Float64Type, Int64Type};
-use arrow_cast::cast;
-use arrow_schema::{DataType, TimeUnit};
 use numpy::PyArray1;
 use palpate::analysis::corrected_watched;
 use palpate::calibrate::CalibrateError;
@@ -20,7 +15,6 @@ use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
 use pyo3::pybacked::PyBackedStr;
 use pyo3::types::PyType;
-use pyo3_arrow::PyTable;
 use serde::{Deserialize, Serialize};
 
 use crate::arrays::{array, doubles};
@@ -34,6 +28,7 @@ use crate::materials::material::{Material, rising_times};
 use crate::materials::prediction::Prediction;
 use crate::pickles::{Made, Piece, Pieces, made_again, unpickled};
 use crate::records::analysis::Analysis;
+use crate::records::columns::{column_name, of_table};
 use crate::records::compare::RecordComparison;
 use crate::records::kept::Kept;
 use crate::shown::shown;
@@ -72,65 +67,6 @@ impl PartialEq for Record {
     fn eq(&self, other: &Self) -> bool {
         self.record == other.record
     }
-}
-
-/// What helps where a column has another name.
-const NAMED: &str = "name the columns: time_s=\"...\", force_n=\"...\", displacement_m=\"...\"";
-
-/// A column of numbers by its name, none missing; one of times may have durations, in s, and dates, in s since the first.
-fn column(table: &PyTable, name: &str, is_of_times: bool) -> PyResult<Vec<f64>> {
-    let (mut values, mut first) = (Vec::new(), None);
-    for batch in table.batches() {
-        let Some(column) = batch.column_by_name(name) else {
-            let schema = batch.schema();
-            let names: Vec<&str> = schema.fields().iter().map(|field| field.name().as_str()).collect();
-            let message = format!("expected a column called {name:?}, found {}", names.join(", "));
-            return Err(refused::<RecordError>(message, Some(NAMED)));
-        };
-        if column.null_count() > 0 {
-            let row = (0..column.len()).find(|row| column.is_null(*row)).unwrap_or(0);
-            let message = format!("{name}: expected a number in every row, found none in row {}", values.len() + row);
-            return Err(refused_plainly::<RecordError>(message));
-        }
-        match column.data_type() {
-            kind if kind.is_numeric() => {
-                let doubles = cast(column, &DataType::Float64).map_err(refused_plainly::<RecordError>)?;
-                values.extend_from_slice(doubles.as_primitive::<Float64Type>().values());
-            }
-            DataType::Timestamp(unit, _) | DataType::Duration(unit) if is_of_times => {
-                let counts = cast(column, &DataType::Int64).map_err(refused_plainly::<RecordError>)?;
-                let counts = counts.as_primitive::<Int64Type>().values();
-                let is_date = matches!(column.data_type(), DataType::Timestamp(..));
-                let first = *first.get_or_insert(if is_date { counts.first().copied().unwrap_or(0) } else { 0 });
-                let per_second = match unit {
-                    TimeUnit::Second => 1.0,
-                    TimeUnit::Millisecond => 1e3,
-                    TimeUnit::Microsecond => 1e6,
-                    TimeUnit::Nanosecond => 1e9,
-                };
-                values.extend(counts.iter().map(|count| (count - first) as f64 / per_second));
-            }
-            other => {
-                let message = format!("{name}: expected a column of doubles, found one of {other}");
-                return Err(refused_plainly::<RecordError>(message));
-            }
-        }
-    }
-    Ok(values)
-}
-
-/// Whether a table is read by the names of its columns: it has them, and is none to Arrow.
-fn is_by_names(table: &Bound<'_, PyAny>) -> PyResult<bool> {
-    let is_of_numpy = table.py().import("palpate._arrays")?.call_method1("is_of_numpy", (table,))?.extract()?;
-    Ok(table.hasattr("keys")? && (is_of_numpy || !table.hasattr("__arrow_c_stream__")?))
-}
-
-fn column_of<'py>(table: &Bound<'py, PyAny>, name: &str) -> PyResult<Bound<'py, PyAny>> {
-    let found = table.py().import("palpate._long")?.call_method1("column", (table, name));
-    found.map_err(|error| match error.is_instance_of::<OptionError>(table.py()) {
-        true => refused_plainly::<RecordError>(error.value(table.py())),
-        false => error,
-    })
 }
 
 /// Samples that are checked and digested in a few milliseconds.
@@ -265,16 +201,8 @@ shown! {
         title: &str,
     ) -> PyResult<Self> {
         if let Some(table) = table {
-            let name = |argument: &str, given: Option<&Bound<'_, PyAny>>| -> PyResult<Option<String>> {
-                let wrong = |found: &Bound<'_, PyAny>| {
-                    let kind = found.get_type().name().map_or_else(|_| String::new(), |name| name.to_string());
-                    let message = format!("{argument}: expected the name of a column beside a table, found {kind}");
-                    refused::<OptionError>(message, Some("pass either a table or arrays"))
-                };
-                given.map(|given| given.extract().map_err(|_| wrong(given))).transpose()
-            };
-            let (time, force) = (name("time_s", time_s)?, name("force_n", force_n)?);
-            let displacement = name("displacement_m", displacement_m)?;
+            let (time, force) = (column_name("time_s", time_s)?, column_name("force_n", force_n)?);
+            let displacement = column_name("displacement_m", displacement_m)?;
             let (time, force) = (time.as_deref().unwrap_or("time_s"), force.as_deref().unwrap_or("force_n"));
             return Self::from_arrow(class, table, time, force, displacement.as_deref(), title);
         }
@@ -312,21 +240,7 @@ shown! {
         displacement_m: Option<&str>,
         title: &str,
     ) -> PyResult<Self> {
-        if is_by_names(table)? {
-            let column = |argument: &str, name: &str| doubles(&column_of(table, name)?, argument);
-            let displacement = match displacement_m {
-                None if !table.contains("displacement_m")? => None,
-                name => Some(column("displacement_m", name.unwrap_or("displacement_m"))?),
-            };
-            let (time, force) = (column("time_s", time_s)?, column("force_n", force_n)?);
-            return Self::checked(class.py(), (time, displacement, force), title);
-        }
-        let table: PyTable = table.extract()?;
-        let known = |name: &str| table.batches().first().is_none_or(|batch| batch.column_by_name(name).is_some());
-        let usual = Some("displacement_m").filter(|name| known(name));
-        let displacement = displacement_m.or(usual).map(|name| column(&table, name, false)).transpose()?;
-        let (time, force) = (column(&table, time_s, true)?, column(&table, force_n, false)?);
-        Self::checked(class.py(), (time, displacement, force), title)
+        Self::checked(class.py(), of_table(table, time_s, force_n, displacement_m)?, title)
     }
 
     #[classmethod]

@@ -8,8 +8,8 @@ use crate::vector::add_multiple;
 impl Fit {
     /// The curve a time `elapsed` (s) after the first sample, also beyond the last, with its confidence interval.
     ///
-    /// The interval is that of the curve, not of a sample; after an infinite time it is that of the limit: g ± t √(gᵀ C g) with g the derivatives of the curve by the searched
-    /// parameters and C their covariance for noise that correlates as the residuals do. It knows of no other law: far beyond the
+    /// The interval is that of the curve, not of a sample: g ± t √(gᵀ C g) with g the derivatives of the curve by the searched parameters and C
+    /// their covariance for noise that correlates as the residuals do; after an infinite time it is that of the limit. It knows of no other law: far beyond the
     /// hold it is as good as the law is. Where the intervals of the parameters are those of profiles, the band also contains the curves at their
     /// ends ([`profile`](Self::profile)), scaled to its coverage. Of an end that the data leave open the band is open from when more than half of the
     /// way from the last sample to the limit of such a curve lies behind.
