@@ -131,6 +131,20 @@ pub fn exact(value: f64) -> String {
     }
 }
 
+/// The shortest decimal text of `value` rounded to `digits` significant digits, as machines read it.
+///
+/// ```
+/// use palpate::number::shortest;
+/// assert_eq!(shortest(1e3 * 1e-10, 10), "1e-07");
+/// assert_eq!(shortest(100.0 / 3.0, 6), "33.3333");
+/// assert_eq!(shortest(250.0, 6), "250");
+/// ```
+#[must_use]
+pub fn shortest(value: f64, digits: usize) -> String {
+    let rounded = format!("{value:.*e}", digits.clamp(1, MOST_DIGITS) - 1).parse();
+    exact(rounded.unwrap_or(value))
+}
+
 /// An integer exponent as Unicode superscript characters.
 #[must_use]
 pub fn superscript(exponent: i32) -> String {

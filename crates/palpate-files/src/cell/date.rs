@@ -12,15 +12,32 @@ pub(crate) fn parse(cell: &[u8]) -> Option<f64> {
     if let Some((seconds, fraction, [])) = time_of_day(cell) {
         return Some(seconds as f64 + fraction);
     }
-    let ((year, month, day), rest) = year_first(cell).or_else(|| year_last(cell))?;
+    let (date, rest) = year_first(cell).or_else(|| year_last(cell))?;
     let (of_day, fraction, rest) = time_of_day(behind(rest, b"T t")?)?;
-    let days = days_since_1970(year, month, day);
-    let sound = (1..=12).contains(&month) && day > 0 && days < days_since_1970(year, month + 1, 1);
-    sound.then_some((days * 86_400 + of_day - zone(rest)?) as f64 + fraction)
+    Some((days(date)? * 86_400 + of_day - zone(rest)?) as f64 + fraction)
+}
+
+/// Seconds from 1970 to the beginning of a day, of a date without a time of day.
+pub(crate) fn day(cell: &[u8]) -> Option<f64> {
+    match year_first(cell).or_else(|| year_last(cell))? {
+        (date, []) => Some((days(date)? * 86_400) as f64),
+        _ => None,
+    }
+}
+
+/// Whether a cell is a time of day without a date.
+pub(crate) fn is_time_of_day(cell: &[u8]) -> bool {
+    matches!(time_of_day(cell), Some((.., [])))
 }
 
 /// Year, month and day.
 type Date = (i64, i64, i64);
+
+/// Days from 1970 to a date that the calendar has.
+fn days((year, month, day): Date) -> Option<i64> {
+    let days = days_since_1970(year, month, day);
+    ((1..=12).contains(&month) && day > 0 && days < days_since_1970(year, month + 1, 1)).then_some(days)
+}
 
 fn year_first(cell: &[u8]) -> Option<(Date, &[u8])> {
     let (year, rest) = digits(cell, 4)?;

@@ -44,11 +44,59 @@ fn options(decimal: DecimalMark) -> &'static ParseFloatOptions {
     }
 }
 
-/// The number in a cell, if it holds a finite one written with this decimal mark.
+/// The number in a cell, if it holds a finite one written with this decimal mark. Marks between thousands are passed over where they can be
+/// nothing else: `1.185,1`, `1.234.567`, `1'185`.
 #[inline]
 pub(crate) fn parse(cell: &[u8], decimal: DecimalMark) -> Option<f64> {
+    ungrouped(cell, decimal).or_else(|| grouped(cell, decimal, false))
+}
+
+#[inline]
+fn ungrouped(cell: &[u8], decimal: DecimalMark) -> Option<f64> {
     let value: f64 = lexical_core::parse_with_options::<_, STANDARD>(cell, options(decimal)).ok()?;
     value.is_finite().then_some(value)
+}
+
+/// What sets off thousands besides the other of point and comma: blanks and apostrophes, in UTF-8 and in Latin-1.
+const GAPS: [&[u8]; 8] = [
+    b" ",
+    b"'",
+    "\u{a0}".as_bytes(),
+    "\u{202f}".as_bytes(),
+    "\u{2009}".as_bytes(),
+    "\u{2019}".as_bytes(),
+    b"\xa0",
+    b"\x92",
+];
+
+/// The number in a cell with marks between its thousands. One point or comma alone may as well mark decimals: `1.185` is 1185 only `by_column`.
+#[cold]
+pub(crate) fn grouped(cell: &[u8], decimal: DecimalMark, by_column: bool) -> Option<f64> {
+    let other: &[u8] = if decimal == DecimalMark::Point { b"," } else { b"." };
+    let bare = cell.strip_prefix(b"-").or_else(|| cell.strip_prefix(b"+")).unwrap_or(cell);
+    let end = bare.iter().position(|byte| *byte == decimal.byte()).unwrap_or(bare.len());
+    let (whole, fraction) = bare.split_at(end);
+    let digits = |part: &[u8]| part.iter().all(u8::is_ascii_digit);
+    let mark = [other].into_iter().chain(GAPS).find(|mark| memchr::memmem::find(whole, mark).is_some())?;
+    let mut plain = cell[..cell.len() - bare.len()].to_vec();
+    let (mut rest, mut marks) = (whole, 0);
+    while let Some(at) = memchr::memmem::find(rest, mark) {
+        let group = &rest[..at];
+        let fits = if marks == 0 { (1..=3).contains(&at) && group[0] != b'0' } else { at == 3 };
+        if !fits || !digits(group) {
+            return None;
+        }
+        plain.extend_from_slice(group);
+        rest = &rest[at + mark.len()..];
+        marks += 1;
+    }
+    let is_clear = by_column || mark != other || marks > 1 || !fraction.is_empty();
+    if rest.len() != 3 || !digits(rest) || !is_clear {
+        return None;
+    }
+    plain.extend_from_slice(rest);
+    plain.extend_from_slice(fraction);
+    ungrouped(&plain, decimal)
 }
 
 /// The finite number that some bytes begin with, and where it ends; `None` is no verdict.
@@ -214,6 +262,30 @@ mod tests {
         for word in [&b"NaN"[..], b"-inf", b"Infinity", b"#N/A", b"1.#QNAN", b"-1.#IND", b"1e999"] {
             assert_eq!(classify(word), Cell::NotFinite);
         }
+    }
+
+    /// `1.185,1` was a text.
+    #[test]
+    fn thousands_are_read_where_their_marks_can_be_nothing_else() {
+        for (cell, mark, value) in [
+            ("1.185,1", DecimalMark::Comma, 1185.1),
+            ("-1.234.567", DecimalMark::Comma, -1_234_567.0),
+            ("1,185.1", DecimalMark::Point, 1185.1),
+            ("1'185.1", DecimalMark::Point, 1185.1),
+            ("1 185,1", DecimalMark::Comma, 1185.1),
+            ("1\u{202f}185,1", DecimalMark::Comma, 1185.1),
+            ("12\u{2019}345", DecimalMark::Point, 12_345.0),
+        ] {
+            assert_eq!(parse(cell.as_bytes(), mark), Some(value), "{cell}");
+        }
+        assert_eq!(parse(b"1\xa0185,1", DecimalMark::Comma), Some(1185.1));
+        for cell in ["1.185", "0.185,1", "1.18,1", "1.1855,1", "1.185 200,1", "1.,5", ".185,1"] {
+            assert_eq!(parse(cell.as_bytes(), DecimalMark::Comma), None, "{cell}");
+        }
+        assert_eq!(grouped(b"1.185", DecimalMark::Comma, true), Some(1185.0));
+        assert_eq!(classify(b"1.185,1"), Cell::Comma);
+        assert_eq!(classify(b"1,185.1"), Cell::Point);
+        assert_eq!(classify(b"1'185"), Cell::Whole);
     }
 
     #[test]

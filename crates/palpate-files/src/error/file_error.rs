@@ -32,6 +32,11 @@ impl fmt::Display for CellPosition {
     }
 }
 
+/// Numbers in a sentence.
+fn listed(numbers: &[usize]) -> String {
+    numbers.iter().map(ToString::to_string).collect::<Vec<_>>().join(", ")
+}
+
 /// Why it is uncertain which character marks decimals.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, thiserror::Error)]
 pub enum DecimalDoubt {
@@ -215,6 +220,18 @@ pub enum FileProblem {
     /// This cell in a column of numbers holds nothing.
     #[error(", {0}: expected a number, found an empty cell")]
     EmptyCell(CellPosition),
+    /// More than a few cells of a column hold no number.
+    #[error(", {place}: expected a number in every row, found none in {lacking} of {rows} (first lines: {})", listed(.lines))]
+    ManyLacking {
+        /// The first such cell of the column with the most of them.
+        place: CellPosition,
+        /// How many there are.
+        lacking: usize,
+        /// Rows of data.
+        rows: usize,
+        /// The first of their lines, from 1.
+        lines: Vec<usize>,
+    },
     /// A row ends early, or has cells beyond the last column.
     #[error(", line {line}: expected {expected} cells, found {found}")]
     CellCount {
@@ -308,6 +325,12 @@ impl FileError {
             FileProblem::TextInNumbers { place, .. }
             | FileProblem::NotFinite { place, .. }
             | FileProblem::EmptyCell(place) => place.line += lines,
+            FileProblem::ManyLacking {
+                place, lines: found, ..
+            } => {
+                place.line += lines;
+                found.iter_mut().for_each(|line| *line += lines);
+            }
             FileProblem::Interrupted {
                 line, resumes, source, ..
             } => {

@@ -55,6 +55,7 @@ impl FileError {
             FileProblem::NoSuchColumn { .. } => "columns count from 1 at the left",
             FileProblem::TextInNumbers { found, decimal, .. } => hint_of_text(found, *decimal),
             FileProblem::NotFinite { .. } | FileProblem::EmptyCell(_) => "remove the row, or choose another column",
+            FileProblem::ManyLacking { .. } => "fill the cells or remove their rows, or choose another column",
             FileProblem::CellCount { expected, found, .. } if found < expected => {
                 "the row is cut off or lacks a cell: complete it or remove it"
             }

@@ -1,6 +1,6 @@
 //! The units of the columns that were chosen: from the description, else from the header.
 
-use palpate::units::Dimension;
+use palpate::{number::shortest, units::Dimension};
 
 use super::{
     chooser::{Chooser, Found},
@@ -12,7 +12,7 @@ use crate::{
     cell::unit,
     description::contradicts,
     naming::{Quantity, topic_and_field, unit_factor},
-    table::{ColumnInfo, ColumnKind, epoch, recognise},
+    table::{ColumnInfo, ColumnKind, EXACT_DIGITS, epoch, recognise},
 };
 
 impl Found<'_> {
@@ -25,13 +25,13 @@ impl Chooser<'_> {
     /// A column whose unit is none that a header could give: a travel stated for each unit of it, or a time since 1970.
     fn without_plain_unit(&self, found: &Found<'_>) -> Result<Option<ColumnUse>, ColumnError> {
         if let Some(travel) = found.choice.and_then(|choice| choice.travel_per_unit) {
-            return Ok(Some(found.used(format!("{} mm each", travel * 1e3), travel)));
+            return Ok(Some(found.used(format!("{} mm each", shortest(travel * 1e3, EXACT_DIGITS)), travel)));
         }
         if found.quantity() != Quantity::Time {
             return Ok(None);
         }
         if let Some(rate) = found.rate {
-            return Ok(Some(found.used(format!("{SAMPLES}{rate} Hz"), 1.0 / rate)));
+            return Ok(Some(found.used(format!("{SAMPLES}{} Hz", shortest(rate, EXACT_DIGITS)), 1.0 / rate)));
         }
         if found.column.kind == ColumnKind::DateTime {
             // A time of day is not counted from 1970; from one o'clock on it is no time since the start of a test either.

@@ -3,6 +3,8 @@
 use std::fmt::Write as _;
 
 use palpate::{
+    analysis::{Finding, suspicious_signs},
+    number::shortest,
     segment::{HoldMode, Phase, Segmentation},
     units::Dimension,
 };
@@ -17,7 +19,7 @@ use crate::{
     error::few,
     naming::{Quantity, unit_factor},
     open::Contents,
-    table::{ColumnInfo, ColumnKind, EPOCH, Part, epoch, recognise},
+    table::{ColumnInfo, ColumnKind, EPOCH, EXACT_DIGITS, Part, epoch, recognise},
 };
 
 /// Most candidates that are named.
@@ -30,7 +32,7 @@ const ASK: &str = "?";
 ///
 /// With `file`, the record as it was read, the description reproduces the record. Without it, because the file
 /// lacks information, missing fields are `"?"`, so that reading fails until a person has completed them. The
-/// detected phases are added as comments.
+/// detected phases are added as comments, and the sign of a column that they show to be reversed.
 #[must_use]
 pub fn describe(
     contents: &Contents,
@@ -50,7 +52,10 @@ pub fn describe(
     write_machines(&mut out, about);
     write_file(&mut out, contents, about);
     match file {
-        Some(file) => write_columns(&mut out, about, file),
+        Some(file) => {
+            let signs = found.map(|(file, _)| suspicious_signs(&file.record)).unwrap_or_default();
+            write_columns(&mut out, about, file, &signs.into_iter().filter_map(column_of).collect::<Vec<_>>());
+        }
         None => write_questions(&mut out, about),
     }
     write_body(&mut out, about);
@@ -92,7 +97,7 @@ pub fn describe_all(contents: &Contents, parts: &[usize], file: Option<&RecordFi
     let _ = writeln!(out, "[about]\ntitle = {}\n", quoted(&title));
     write_machines(&mut out, about);
     match file {
-        Some(file) => write_columns(&mut out, about, file),
+        Some(file) => write_columns(&mut out, about, file, &[]),
         None => write_questions(&mut out, about),
     }
     write_body(&mut out, about);
@@ -150,7 +155,15 @@ fn reference(part: &Part, column: &ColumnInfo) -> String {
     by_name.map_or_else(|| column.number.to_string(), quoted)
 }
 
-fn write_columns(out: &mut String, part: &Part, file: &RecordFile) {
+/// The column whose sign may be reversed.
+fn column_of(finding: Finding) -> Option<String> {
+    match finding {
+        Finding::SignSuspicious { column, .. } => Some(column),
+        _ => None,
+    }
+}
+
+fn write_columns(out: &mut String, part: &Part, file: &RecordFile, suspicious: &[String]) {
     let columns = &file.columns;
     if let Some(rate) = file.rate {
         let _ = writeln!(out, "[columns.time]\nrate = \"{rate} Hz\"    # from the file: there is no column of time\n");
@@ -168,17 +181,20 @@ fn write_columns(out: &mut String, part: &Part, file: &RecordFile) {
         let info = &part.columns[column.number - 1];
         let _ = writeln!(out, "[columns.{table}]");
         let why = if info.name.is_some() { "guessed from its name" } else { "as described" };
-        let _ = writeln!(out, "column = {}    # {why}; starts with {}", reference(part, info), info.sample.trim());
+        let _ = writeln!(out, "column = {}    # {why}; starts with {}", reference(part, info), info.first_value());
         write_unit(out, column, info);
         if column.offset != 0.0 {
             let _ = writeln!(out, "offset = \"{} {}\"", column.offset, quantity.dimension().units()[0].0);
         }
-        if column.sign < 0.0 {
-            let _ = writeln!(out, "sign = -1");
+        let is_suspicious = suspicious.contains(&quantity.to_string());
+        match (column.sign < 0.0, is_suspicious) {
+            (false, true) => out.push_str("sign = -1    # guessed: it falls first, and loading is positive\n"),
+            (true, false) => out.push_str("sign = -1\n"),
+            _ => {}
         }
         let spring_constant = columns.iter().find_map(|other| other.spring_constant);
         if let Some(spring_constant) = spring_constant.filter(|_| column.role == Role::Deflection) {
-            let _ = writeln!(out, "spring_constant = \"{spring_constant} N/m\"");
+            let _ = writeln!(out, "spring_constant = \"{} N/m\"", shortest(spring_constant, EXACT_DIGITS));
         }
         let added = columns.iter().find(|other| other.role == Role::Added(quantity));
         if let Some(added) = added.filter(|_| column.role == Role::Values(quantity)) {
@@ -207,8 +223,10 @@ fn write_unit(out: &mut String, column: &ColumnUse, info: &ColumnInfo) {
         _ if column.role.measured() == Quantity::Time && column.unit.starts_with(SAMPLES) => {
             format!("rate = \"{} Hz\"    # {source}\n", column.unit.trim_start_matches(SAMPLES).trim_end_matches(" Hz"))
         }
-        (None, Some(volts)) => format!("{}scale = \"{} {symbol}/V\"\n", unit(&column.unit), factor / volts),
-        (None, None) => format!("travel_per_unit = \"{factor} {symbol}\"\n"),
+        (None, Some(volts)) => {
+            format!("{}scale = \"{} {symbol}/V\"\n", unit(&column.unit), shortest(factor / volts, EXACT_DIGITS))
+        }
+        (None, None) => format!("travel_per_unit = \"{} {symbol}\"\n", shortest(factor, EXACT_DIGITS)),
     };
 }
 
@@ -217,7 +235,7 @@ fn write_questions(out: &mut String, part: &Part) {
     for column in &part.columns {
         let name = column.name.as_deref().unwrap_or("(no name)");
         let unit = column.unit.as_deref().map_or(String::new(), |unit| format!(" in {unit}"));
-        let sample = column.sample.trim();
+        let sample = column.first_value();
         let _ = writeln!(out, "#   {}: {}{unit}, starts with {sample}", column.number, name.trim());
     }
     out.push('\n');

@@ -14,13 +14,13 @@ use super::{
     error::{ColumnError, Counted, ReadError},
     flow,
     named::NamedColumn,
-    parts,
+    parts, snippet,
 };
 use crate::{
     FileError,
     description::TestDescription,
     input::Packing,
-    naming::Quantity,
+    naming::{Quantity, unit_factor},
     open::{Contents, Format},
     table::{Columns, Heard, IgnoredLines, Part, epoch, recognise},
 };
@@ -96,6 +96,22 @@ pub fn read_record(
             path: path.to_owned(),
             parts: several.iter().map(|part| contents.parts[*part].title().to_owned()).collect(),
         }),
+    }
+}
+
+impl RecordFile {
+    /// The option that gives the column of a quantity (`force`, `displacement`) the opposite sign: `--columns "force=Kraft:-N"`. None where its
+    /// unit cannot stand in an option.
+    #[must_use]
+    pub fn with_other_sign(&self, quantity: &str) -> Option<String> {
+        let is_meant = |used: &&ColumnUse| matches!(used.role, Role::Values(own) if own.to_string() == quantity);
+        let used = self.columns.iter().find(is_meant)?;
+        let (quantity, info) = (used.role.measured(), self.part.columns.get(used.number - 1)?);
+        unit_factor(&used.unit, quantity.dimension())?;
+        let sign = if used.sign < 0.0 { "" } else { "-" };
+        let has_no_twin = info.name.as_deref().is_some_and(|name| self.part.column_named(name).is_some());
+        let unit = format!("{sign}{}", used.unit);
+        Some(snippet::option([snippet::entry(quantity, &info.into(), Some(&unit), has_no_twin)]))
     }
 }
 

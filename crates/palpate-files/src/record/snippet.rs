@@ -21,7 +21,7 @@ pub(super) fn described(columns: &[ColumnInfo]) -> String {
     let what = if named { "no name for it" } else { "no names of columns" };
     let mut text = format!("{what} in {} columns", columns.len());
     for column in columns.iter().take(MOST) {
-        let sample = if column.sample.is_empty() { "empty" } else { &column.sample };
+        let sample = if column.sample.is_empty() { "empty" } else { &column.first_value() };
         let kind = if column.kind == ColumnKind::Text { " (text)" } else { "" };
         text.push_str(&format!("\n  {}: {sample}{kind}", NamedColumn::from(column)));
     }
@@ -147,7 +147,7 @@ fn line_of(Proposed { quantity, column, unit }: &Proposed<'_>) -> String {
     let number = column.number;
     format!(
         "{quantity} = {{ column = {number}, unit = \"{unit}\"{scale} }}  # check: {name}starts with {}{optional}",
-        column.sample
+        column.first_value()
     )
 }
 

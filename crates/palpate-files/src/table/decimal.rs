@@ -4,7 +4,7 @@ use std::collections::HashSet;
 
 use super::{block::Block, part::ColumnKind};
 use crate::{
-    cell::{Cell, DecimalMark, Delimiter, cells},
+    cell::{Cell, DecimalMark, Delimiter, cells, number},
     error::DecimalDoubt,
 };
 
@@ -58,7 +58,7 @@ pub(crate) fn falls_to_a_thousandth(values: &[f64]) -> Option<usize> {
 }
 
 fn weigh(lines: &[&str], block: &Block) -> Result<DecimalMark, Doubt> {
-    let texts = |wanted| -> Vec<(usize, &str)> {
+    let texts = |wanted, passed: &[bool]| -> Vec<(usize, &str)> {
         let mut split = (usize::MAX, Vec::new());
         let text = |(line, column): (usize, usize)| {
             // All cells of a line come one behind the other.
@@ -67,15 +67,65 @@ fn weigh(lines: &[&str], block: &Block) -> Result<DecimalMark, Doubt> {
             }
             (line, split.1.get(column).copied().unwrap_or_default())
         };
-        places(block, wanted).into_iter().map(text).collect()
+        places(block, wanted)
+            .into_iter()
+            .filter(|(_, column)| passed.get(*column) != Some(&true))
+            .map(text)
+            .collect()
     };
-    let (points, commas) = (texts(Cell::Point), texts(Cell::Comma));
+    let (points, commas) = (texts(Cell::Point, &[]), texts(Cell::Comma, &[]));
+    // Where one mark sets off thousands, the other one marks decimals.
+    if !points.is_empty() && !commas.is_empty() {
+        let other_points = texts(Cell::Point, &thousands(lines, block, DecimalMark::Comma));
+        let other_commas = texts(Cell::Comma, &thousands(lines, block, DecimalMark::Point));
+        match (other_points.is_empty(), other_commas.is_empty()) {
+            (true, false) => return weigh_texts(&[], &other_commas),
+            (false, true) => return weigh_texts(&other_points, &[]),
+            _ => {}
+        }
+    }
     match points.first() {
         Some(&first) if commas.is_empty() && points_set_off_thousands(block, &points) => {
             Err(Doubt::of(first, DecimalDoubt::PointThousands))
         }
         _ => weigh_texts(&points, &commas),
     }
+}
+
+/// Columns in which the other mark than that of decimals sets off thousands: beside `1.185`, which alone says nothing, stands `1.185,5` or
+/// `1.234.567`; or all others are whole numbers up to 999, and another column has decimals.
+pub(crate) fn thousands(lines: &[&str], block: &Block, mark: DecimalMark) -> Vec<bool> {
+    /// What the cells of a column are.
+    #[derive(Clone, Copy, Default)]
+    struct Found {
+        clear: bool,
+        unclear: bool,
+        hundreds: bool,
+        other: bool,
+        contrary: bool,
+    }
+    let decimals = if mark == DecimalMark::Comma { Cell::Comma } else { Cell::Point };
+    let mut found = vec![Found::default(); block.kinds.len()];
+    for (line, row) in block.rows() {
+        let texts = cells(lines[line], block.delimiter);
+        for ((column, text), cell) in found.iter_mut().zip(texts).zip(row).filter(|(_, cell)| cell.is_numeric()) {
+            let bytes = text.as_bytes();
+            let digits = bytes.iter().filter(|byte| byte.is_ascii_digit()).count();
+            match *cell {
+                _ if number::grouped(bytes, mark, false).is_some() => column.clear = true,
+                _ if number::grouped(bytes, mark, true).is_some() => column.unclear = true,
+                Cell::Whole if digits <= 3 => column.hundreds |= digits == 3,
+                kind if kind == decimals || kind == Cell::NotFinite => column.other |= kind == decimals,
+                _ => column.contrary = true,
+            }
+        }
+    }
+    let has_decimals = !places(block, decimals).is_empty();
+    let sets_off = |found: Found| {
+        let by_whole = found.unclear && found.hundreds && !found.other && has_decimals;
+        !found.contrary && (found.clear || by_whole)
+    };
+    found.into_iter().map(sets_off).collect()
 }
 
 /// Whether every point of a file without decimal commas could set off thousands, and something speaks for it.
@@ -218,6 +268,19 @@ mod tests {
         assert_eq!(falls_to_a_thousandth(&[980.0, 989.0, 996.0, 997.5, 1000.25]), None);
         assert_eq!(falls_to_a_thousandth(&[0.0, 0.0, 1.003]), None);
         assert_eq!(falls_to_a_thousandth(&[100.0, 200.0, 300.0]), None);
+    }
+
+    /// `1.185` beside `1.185,5`, or beside 999 in a file with decimal commas, was refused.
+    #[test]
+    fn a_column_shows_that_a_mark_sets_off_thousands() {
+        let comma = Ok(DecimalMark::Comma);
+        assert_eq!(decided(&["0,1;998,5", "0,2;1.185", "0,3;1.185,5"], None), comma);
+        assert_eq!(decided(&["0,1;997", "0,2;1.001", "0,3;1.005"], None), comma);
+        assert_eq!(decided(&["0.1;997", "0.2;1,001", "0.3;1,005"], None), Ok(DecimalMark::Point));
+        assert_eq!(decided(&["0,1;1.001", "0,2;1.005"], None), Err(DecimalDoubt::Mixed));
+        assert_eq!(decided(&["0,1;997", "0,2;1.001", "0,3;1.05"], None), Err(DecimalDoubt::Mixed));
+        assert_eq!(decided(&["0,1;9970", "0,2;1.001", "0,3;1.005"], None), Err(DecimalDoubt::Mixed));
+        assert_eq!(decided(&["1;997;1,001", "2;1.001;997", "3;1.005;997"], None), Err(DecimalDoubt::Mixed));
     }
 
     #[test]

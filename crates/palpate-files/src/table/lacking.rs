@@ -1,5 +1,7 @@
 //! Rows in which a cell holds no number: left out where they are few.
 
+use std::collections::BTreeMap;
+
 use super::columns::{Columns, LackingRows};
 use crate::error::FileError;
 
@@ -15,11 +17,25 @@ pub(crate) struct Lacking {
     /// How many of them hold nothing at all in the chosen columns: points without a measurement, of which no number is lost.
     bare: usize,
     error: Option<FileError>,
+    /// Of each column, by index, its cells without a number.
+    columns: BTreeMap<usize, LackingRows>,
 }
 
 impl Lacking {
-    /// Leaves out the row on a line.
-    pub(crate) fn leave_out(&mut self, line: usize, error: impl FnOnce() -> FileError) {
+    /// Leaves out the row on a line, in which the cells of these columns hold no number.
+    pub(crate) fn leave_out(
+        &mut self,
+        line: usize,
+        cells: impl Iterator<Item = usize>,
+        error: impl FnOnce() -> FileError,
+    ) {
+        for column in cells {
+            let found = self.columns.entry(column).or_default();
+            found.rows += 1;
+            if found.lines.len() < NAMED {
+                found.lines.push(line);
+            }
+        }
         self.found.rows += 1;
         if self.found.lines.len() < NAMED {
             self.found.lines.push(line);
@@ -36,10 +52,22 @@ impl Lacking {
         }
     }
 
-    /// Notes them in the columns, or refuses the file where they are more than a few.
-    pub(crate) fn noted(mut self, mut read: Columns) -> Result<Columns, FileError> {
+    /// Notes them in the columns, or refuses the file where they are more than a few: for `many` cells of a column, by its index, of so many
+    /// rows.
+    pub(crate) fn noted(
+        mut self,
+        mut read: Columns,
+        many: impl FnOnce(usize, LackingRows, usize) -> FileError,
+    ) -> Result<Columns, FileError> {
         match self.error.take() {
-            Some(error) if self.is_much(read.rows()) => Err(error),
+            Some(error) if self.is_much(read.rows()) => {
+                let rows = self.found.rows + read.rows();
+                // The first of several alike.
+                let worst = self.columns.into_iter().rev().max_by_key(|(_, found)| found.rows);
+                Err(worst
+                    .filter(|(_, found)| found.rows > 1)
+                    .map_or(error, |(column, found)| many(column, found, rows)))
+            }
             _ => {
                 read.ignored.lacking = self.found;
                 Ok(read)

@@ -35,14 +35,30 @@ pub struct Layout {
     /// No number observed so far had a mark, and nobody stated which it is: a point further down could set off thousands.
     #[serde(skip)]
     pub undecided: bool,
+    /// For each column, whether marks between thousands were observed in it.
+    #[serde(skip)]
+    pub thousands: Vec<bool>,
+    /// A column of dates beside one of times of day, which count from there.
+    #[serde(skip)]
+    pub day: Option<Day>,
+}
+
+/// Date and time of day in two columns, by their numbers.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Day {
+    /// The column of the dates.
+    pub date: usize,
+    /// The column of the times of day.
+    pub time: usize,
 }
 
 impl fmt::Display for Layout {
     /// One line for people: `utf-8 encoding, fields separated by comma, decimal point, data from line 3`.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let thousands = if self.thousands.contains(&true) { ", thousands set off" } else { "" };
         write!(
             f,
-            "{} encoding, fields separated by {}, decimal {}, data from line {}",
+            "{} encoding, fields separated by {}, decimal {}{thousands}, data from line {}",
             self.encoding, self.delimiter, self.decimal, self.first_data_line
         )
     }

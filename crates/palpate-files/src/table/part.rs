@@ -1,5 +1,8 @@
 //! One test in a file: its columns and what stands beside them.
 
+use std::borrow::Cow;
+
+use palpate::number::shortest;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -9,6 +12,9 @@ use crate::{
     error::{is_plain, plain},
     naming::topic_and_field,
 };
+
+/// Significant digits of a product or quotient of numbers that were written: all but those of its rounding.
+pub(crate) const EXACT_DIGITS: usize = 15;
 
 /// A part of a file that holds one test: all of a text, one sheet of a workbook, one curve, one value of `test_id`.
 #[derive(Debug, Clone, Default, PartialEq, Eq, Serialize, JsonSchema)]
@@ -173,4 +179,51 @@ pub struct ColumnInfo {
     pub kind: ColumnKind,
     /// Its first cell that is not empty, shortened.
     pub sample: String,
+}
+
+impl ColumnInfo {
+    /// Its first cell for people: a number of more digits than anybody reads has ten.
+    #[must_use]
+    pub fn first_value(&self) -> Cow<'_, str> {
+        /// Letters up to which nothing is rounded.
+        const LONG: usize = 12;
+        /// Significant digits of a longer number.
+        const DIGITS: usize = 10;
+        let cell = self.sample.trim();
+        match cell.parse() {
+            Ok(number) if cell.len() > LONG => Cow::Owned(shortest(number, DIGITS)),
+            _ => Cow::Borrowed(cell),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The first value of a workbook was shown as 0.00000010000000000000001.
+    #[test]
+    fn first_values_have_no_more_digits_than_people_read() {
+        let shown = |sample: &str| {
+            let column = ColumnInfo {
+                number: 1,
+                name: None,
+                unit: None,
+                kind: ColumnKind::Number,
+                sample: sample.to_owned(),
+            };
+            column.first_value().into_owned()
+        };
+        for (sample, expected) in [
+            ("0.00000010000000000000001", "1e-07"),
+            ("-0.0001459966197489494", "-0.0001459966197"),
+            ("1724504945.1984644", "1724504945"),
+            ("2.513400000000E+00", "2.5134"),
+            ("1724504945,1984644", "1724504945,1984644"),
+            (" 0.012207031", "0.012207031"),
+            ("2024-08-24T21:09:40", "2024-08-24T21:09:40"),
+        ] {
+            assert_eq!(shown(sample), expected, "{sample}");
+        }
+    }
 }

@@ -211,3 +211,14 @@ fn a_real_gripper() {
     assert_eq!((file.start, file.record.time()[0], file.rows), (Some(1_724_504_945.198_464_4), 0.0, 3552));
     assert_eq!(file.columns[0].unit, "s since 1970");
 }
+
+/// Past midnight the time of day went back to zero.
+#[test]
+fn date_and_time_of_day_in_two_columns_are_one_time() {
+    let text = "Datum;Uhrzeit;Kraft (N)\n24.11.2026;23:59:59,5;1\n25.11.2026;00:00:00,0;2\n25.11.2026;00:00:00,5;3\n";
+    let input = Input::from_bytes("press.csv", text.as_bytes()).expect("bytes");
+    let contents = Contents::of(input, &ReadOptions::default()).expect("a file");
+    let file = read_part(&contents, 0, None, &mut |_, _| Ok(())).unwrap_or_else(|error| panic!("{error}"));
+    assert_eq!(file.record.time(), [0.0, 0.5, 1.0]);
+    assert_eq!(file.start, Some(1_795_564_799.5));
+}

@@ -88,7 +88,7 @@ pub fn read_columns(
                 idle.pass(line.len(), number, read.rows())?;
             }
             Err(fault) if suspect.is_none() && plan.lacks_numbers(line) => {
-                lacking.leave_out(number, || plan.error(fault, line, number));
+                lacking.leave_out(number, plan.without_number(line), || plan.error(fault, line, number));
                 idle.pass(line.len(), number, read.rows())?;
             }
             Err(_) if suspect.is_none() && plan.holds_nothing(line) => {
@@ -112,7 +112,7 @@ pub fn read_columns(
             header_line: None,
         })
     });
-    let mut read = lacking.noted(read?)?;
+    let mut read = lacking.noted(read?, |column, lacking, rows| plan.many_lacking(column, lacking, rows))?;
     if layout.undecided && layout.decimal == DecimalMark::Point && read.averaged == 1 {
         refuse_thousands(input, &read)?;
     }

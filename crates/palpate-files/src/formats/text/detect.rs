@@ -6,8 +6,8 @@ use crate::{
     error::{FileError, FileProblem, shorten},
     input::{Encoding, Input},
     table::{
-        Block, ColumnInfo, ColumnKind, Header, Layout, MOST_RESULTS, Metadata, ReadOptions, RowKind, block, decimal,
-        header, metadata, names_time,
+        Block, ColumnInfo, ColumnKind, Day, Header, Layout, MOST_RESULTS, Metadata, ReadOptions, RowKind, block,
+        decimal, epoch, header, metadata, names_time,
     },
 };
 
@@ -74,7 +74,7 @@ fn layout_of(
     })?;
     let undecided = options.decimal.is_none() && decimal::is_unseen(&block);
     let header = header::find(lines, skip, &mut block, options.header);
-    let columns = columns(lines, &block, &header);
+    let (columns, day) = columns(lines, &block, &header);
     Ok(Layout {
         encoding,
         delimiter: block.delimiter,
@@ -83,7 +83,9 @@ fn layout_of(
         units_line: header.units_line.map(|index| index + 1),
         first_data_line: block.first + 1,
         metadata: named_values(lines, skip, &block, &header),
+        thousands: decimal::thousands(lines, &block, decimal),
         columns,
+        day,
         undecided,
     })
 }
@@ -127,7 +129,7 @@ fn without_numbers(lines: &[&str], skip: usize) -> FileProblem {
     }
 }
 
-fn columns(lines: &[&str], block: &Block, header: &Header) -> Vec<ColumnInfo> {
+fn columns(lines: &[&str], block: &Block, header: &Header) -> (Vec<ColumnInfo>, Option<Day>) {
     let rows: Vec<SplitRow<'_>> = block.rows().map(|(line, row)| (cells(lines[line], block.delimiter), row)).collect();
     let mut columns: Vec<ColumnInfo> = header
         .labels
@@ -149,7 +151,27 @@ fn columns(lines: &[&str], block: &Block, header: &Header) -> Vec<ColumnInfo> {
     while columns.last().is_some_and(|last| last.kind == ColumnKind::Empty && last.name.is_none()) {
         columns.pop();
     }
-    columns
+    let day = day(&rows, &columns);
+    if let Some(day) = day {
+        let time = &mut columns[day.time - 1];
+        time.sample = format!("{} {}", held(&rows, day.date - 1).next().map_or("", |(cell, _)| cell), time.sample);
+    }
+    (columns, day)
+}
+
+/// The one column of times of day and the one of dates, where there is one of each.
+fn day(rows: &[SplitRow<'_>], columns: &[ColumnInfo]) -> Option<Day> {
+    let only = |kind: ColumnKind, holds: &dyn Fn(&[u8]) -> bool| {
+        let all = |column: &&ColumnInfo| {
+            column.kind == kind && held(rows, column.number - 1).all(|(cell, _)| holds(cell.as_bytes()))
+        };
+        let mut found = columns.iter().filter(all);
+        found.next().filter(|_| found.next().is_none()).map(|column| column.number)
+    };
+    let date = only(ColumnKind::Text, &|cell| date::day(cell).is_some())?;
+    let time = only(ColumnKind::DateTime, &date::is_time_of_day)?;
+    // Before one o'clock it is the time since the start of a test.
+    epoch::is_late(&columns[time - 1].sample).then_some(Day { date, time })
 }
 
 /// Whether a cell is a date with a time of day.

@@ -1,7 +1,8 @@
 //! Delimited text, as test machines and scripts write it.
 //!
 //! Channels in volts are scaled where a table above them says how (`channels.rs`).
-//! A text holds one test, which is streamed, or several, one below the other (`sections.rs`, `runs.rs`).
+//! A text holds one test, which is streamed, or several, one below the other (`sections.rs`, `runs.rs`) or side by
+//! side (`beside.rs`).
 //!
 //! Reading goes in two steps. [`detect`] looks at the beginning of a file and says what it found:
 //! encoding, delimiter, decimal mark, names, units, the line the data starts on. Someone (a person or a
@@ -30,6 +31,7 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+mod beside;
 mod channels;
 mod columns;
 mod detect;

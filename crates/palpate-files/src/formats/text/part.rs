@@ -1,6 +1,7 @@
 //! A file of delimited text as a file that holds one test, or several.
 
 use super::{
+    beside,
     channels::{self, Scale},
     columns::read_columns,
     detect, runs,
@@ -31,6 +32,9 @@ pub(crate) fn look_into(input: &Input, options: &ReadOptions) -> Result<Found, F
     }
     let mut layout =
         detect::of_rows(&lines, block, sample.encoding, options).map_err(|problem| input.wrong(problem))?;
+    if let Some(found) = beside::look_into(input, (&lines, &layout), options)? {
+        return Ok(found);
+    }
     if let Some(found) = runs::look_into(input, (&lines, &layout), options)? {
         return Ok(found);
     }

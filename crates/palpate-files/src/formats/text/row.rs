@@ -5,7 +5,7 @@ use std::path::Path;
 use crate::{
     cell::{Cell, Fields, date, number},
     error::{CellPosition, FileError, FileProblem, shorten},
-    table::{ColumnKind, Layout, block},
+    table::{ColumnKind, LackingRows, Layout, block},
 };
 
 /// How to read the rows of one file.
@@ -30,8 +30,10 @@ enum Task {
     Check,
     /// Read it into this place of the output.
     Read(usize),
-    /// Read a date with its time of day into this place.
+    /// Read a date with its time of day, or a time of day alone, into this place.
     ReadDate(usize),
+    /// Add a date to the time of day in this place.
+    AddDay(usize),
 }
 
 /// What is wrong with a row.
@@ -63,9 +65,15 @@ impl<'a> RowPlan<'a> {
             let is_date = kinds.get(column - 1) == Some(&ColumnKind::DateTime);
             *task = if is_date { Task::ReadDate(place) } else { Task::Read(place) };
         }
+        let dated = layout.day.and_then(|day| Some((day, columns.iter().position(|column| *column == day.time)?)));
+        if let Some((day, place)) = dated
+            && let Some(task) = tasks.get_mut(day.date - 1)
+        {
+            *task = Task::AddDay(place);
+        }
         // Remarks at the end of a row may be left out; numbers may not.
         let last_number = kinds.iter().rposition(|&kind| kind == ColumnKind::Number);
-        let last_read = columns.iter().copied().max().unwrap_or(0);
+        let last_read = columns.iter().copied().chain(dated.map(|(day, _)| day.date)).max().unwrap_or(0);
         Ok(Self {
             path,
             layout,
@@ -78,7 +86,7 @@ impl<'a> RowPlan<'a> {
 
     /// Whether rows can be rows of plain numbers.
     pub(super) fn may_be_plain(&self) -> bool {
-        self.plain.is_some() && !self.tasks.iter().any(|task| matches!(task, Task::ReadDate(_)))
+        self.plain.is_some() && !self.tasks.iter().any(|task| matches!(task, Task::ReadDate(_) | Task::AddDay(_)))
     }
 
     /// Reads the row of plain numbers that some bytes begin with in one pass over it, up to its LF or to their end. How many
@@ -124,10 +132,14 @@ impl<'a> RowPlan<'a> {
     }
 
     fn read_any(&self, line: &[u8], row: &mut [f64]) -> Result<(), Fault> {
-        let mut count = 0;
+        let (mut count, mut day) = (0, None);
         for cell in Fields::of(line, self.layout.delimiter) {
             match self.tasks.get(count) {
-                Some(&Task::Read(place)) => match number::parse(cell, self.layout.decimal) {
+                Some(&Task::AddDay(place)) => match date::day(cell) {
+                    Some(seconds) => day = Some((place, seconds)),
+                    None => return Err(Fault::Cell(count)),
+                },
+                Some(&Task::Read(place)) => match self.number(cell, count) {
                     Some(value) => row[place] = value,
                     None => return Err(Fault::Cell(count)),
                 },
@@ -150,7 +162,17 @@ impl<'a> RowPlan<'a> {
         if count < self.fewest {
             return Err(Fault::TooFew(count));
         }
+        if let Some((place, seconds)) = day {
+            row[place] += seconds;
+        }
         Ok(())
+    }
+
+    /// The number in a cell of the column with an index.
+    fn number(&self, cell: &[u8], column: usize) -> Option<f64> {
+        let decimal = self.layout.decimal;
+        let has_thousands = self.layout.thousands.get(column) == Some(&true);
+        number::parse(cell, decimal).or_else(|| has_thousands.then(|| number::grouped(cell, decimal, true))?)
     }
 
     /// Whether a faulty line is a row of data all the same: by its cell in the leading column of numbers, or where most of its cells are
@@ -171,8 +193,9 @@ impl<'a> RowPlan<'a> {
         let (mut count, mut held) = (0, 0);
         for cell in Fields::of(line, self.layout.delimiter) {
             let holds = match self.tasks.get(count) {
-                Some(Task::Read(_)) => number::parse(cell, self.layout.decimal).is_some(),
+                Some(Task::Read(_)) => self.number(cell, count).is_some(),
                 Some(Task::ReadDate(_)) => date::parse(cell).is_some(),
+                Some(Task::AddDay(_)) => date::day(cell).is_some(),
                 Some(Task::Check) => number::classify(cell).is_numeric(),
                 Some(Task::Pass) => {
                     count += 1;
@@ -187,6 +210,44 @@ impl<'a> RowPlan<'a> {
             count += 1;
         }
         held > 0 && count >= self.fewest
+    }
+
+    /// Indices of the cells of a line that are to be read and hold no number.
+    pub(crate) fn without_number<'l>(&'l self, line: &'l [u8]) -> impl Iterator<Item = usize> + 'l {
+        let lacks = |(index, cell): (usize, &[u8])| match self.tasks.get(index) {
+            Some(Task::Read(_)) => self.number(cell, index).is_none(),
+            Some(Task::ReadDate(_)) => date::parse(cell).is_none(),
+            Some(Task::AddDay(_)) => date::day(cell).is_none(),
+            _ => false,
+        };
+        Fields::of(line, self.layout.delimiter)
+            .enumerate()
+            .filter(move |cell| lacks(*cell))
+            .map(|(index, _)| index)
+    }
+
+    /// The error for many cells of a column, by its index, without a number, of so many rows.
+    #[cold]
+    pub(crate) fn many_lacking(&self, column: usize, lacking: LackingRows, rows: usize) -> FileError {
+        let place = self.place(column, lacking.lines.first().copied().unwrap_or_default());
+        let (lacking, lines) = (lacking.rows, lacking.lines);
+        FileError::of(
+            self.path,
+            FileProblem::ManyLacking {
+                place,
+                lacking,
+                rows,
+                lines,
+            },
+        )
+    }
+
+    fn place(&self, index: usize, line: usize) -> CellPosition {
+        CellPosition {
+            line,
+            column: index + 1,
+            name: self.layout.columns.get(index).and_then(|column| column.name.clone()),
+        }
     }
 
     /// Whether a faulty line is a full row whose chosen cells are all empty.
@@ -222,18 +283,16 @@ impl<'a> RowPlan<'a> {
     }
 
     fn bad_cell(&self, index: usize, line: &[u8], number: usize) -> FileProblem {
-        let place = CellPosition {
-            line: number,
-            column: index + 1,
-            name: self.layout.columns.get(index).and_then(|column| column.name.clone()),
-        };
+        let place = self.place(index, number);
         let cell = Fields::of(line, self.layout.delimiter).nth(index);
         let cell = cell.unwrap_or_default();
         let found = self.text(cell);
         let kind = self.layout.columns.get(index).map(|column| column.kind);
-        if kind == Some(ColumnKind::DateTime) && !cell.is_empty() {
+        let is_day = matches!(self.tasks.get(index), Some(Task::AddDay(_)));
+        if (is_day || kind == Some(ColumnKind::DateTime)) && !cell.is_empty() {
             let place = format!("line {number}, column {}", index + 1);
-            let expected = "a date and time such as 2024-08-24T21:09:40.123";
+            let expected =
+                if is_day { "a date such as 2024-08-24" } else { "a date and time such as 2024-08-24T21:09:40.123" };
             return FileProblem::damaged(place, expected, format!("`{found}`"));
         }
         match number::classify(cell) {
@@ -318,6 +377,8 @@ mod tests {
                 };
                 let layout = Layout {
                     undecided: false,
+                    thousands: Vec::new(),
+                    day: None,
                     encoding: Encoding::Utf8,
                     delimiter,
                     decimal: mark,

@@ -4,12 +4,13 @@ use std::collections::HashSet;
 
 use super::{
     row::RowPlan,
+    sample::MOST_LINES,
     sections::{self, Line, Place},
 };
 use crate::{
     cell::cells,
     error::FileError,
-    input::Input,
+    input::{Input, LONGEST_LINE, LineReader, Packing},
     naming::Quantity,
     table::{ColumnKind, Found, Layout, ReadOptions, candidates},
 };
@@ -56,11 +57,14 @@ pub(super) fn look_into(
         return Ok(None);
     };
     let named = named(layout);
-    let begins_again = || {
-        clock(input, layout)
-            .is_some_and(|plan| restarts(first.iter().copied(), &plan).is_some_and(|found| !found.is_empty()))
+    let begins_again = || match clock(input, layout) {
+        Some(plan) => match restarts(first.iter().copied(), &plan) {
+            Some(found) if found.is_empty() => begins_again_later(input, layout, (sampled.len(), &plan)),
+            found => Ok(found.is_some()),
+        },
+        None => Ok(false),
     };
-    if options.header.is_some() || named.is_none() && !begins_again() {
+    if options.header.is_some() || named.is_none() && !begins_again()? {
         return Ok(None);
     }
     let text = sections::whole(input, layout.encoding)?;
@@ -117,6 +121,27 @@ fn clock<'l>(input: &'l Input, layout: &'l Layout) -> Option<RowPlan<'l>> {
     let times = candidates(&layout.columns, Quantity::Time);
     let time = times.iter().find(|column| column.kind == ColumnKind::Number)?;
     RowPlan::new(&input.name, layout, &[time.number]).ok()
+}
+
+/// Whether the clock steps back behind the lines looked at so far.
+fn begins_again_later(input: &Input, layout: &Layout, (from, plan): (usize, &RowPlan<'_>)) -> Result<bool, FileError> {
+    /// Largest file that is gone through for this alone (16 MiB).
+    const MOST: u64 = 16 << 20;
+    let was_whole = from < MOST_LINES && input.size <= LONGEST_LINE as u64;
+    if was_whole || input.size > MOST || input.packing != Packing::None {
+        return Ok(false);
+    }
+    let mut reader = LineReader::open(input, layout.encoding)?;
+    let (mut read, mut last) = ([0.0], f64::NEG_INFINITY);
+    while let Some(line) = reader.next_line()? {
+        if plan.read(line, &mut read).is_ok() {
+            if read[0] < last {
+                return Ok(reader.line() > from);
+            }
+            last = read[0];
+        }
+    }
+    Ok(false)
 }
 
 /// The cell of a column.

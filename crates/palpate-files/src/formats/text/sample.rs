@@ -8,7 +8,7 @@ use crate::{
 };
 
 /// Most lines looked at; what they do not show of a layout, more would not either.
-const MOST_LINES: usize = 4000;
+pub(super) const MOST_LINES: usize = 4000;
 
 /// The beginning of a file, decoded.
 pub(crate) struct Sample {

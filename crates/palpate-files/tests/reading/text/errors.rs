@@ -134,7 +134,7 @@ fn hints_at_decimal_marks() {
         }
     ));
     assert!(error.hint().is_some_and(|hint| hint.contains("comma")));
-    let error = read("0;0.5\n1;0.5\n2;1'234.5\n", &[2]).expect_err("thousands");
+    let error = read("0;0.5\n1;0.5\n2;1'2345.5\n", &[2]).expect_err("thousands");
     assert!(error.hint().is_some_and(|hint| hint.contains("thousands")));
 }
 
@@ -251,4 +251,19 @@ fn file_gone_between_looking_and_reading() {
             ..
         })
     ));
+}
+
+/// Only the first line was named, of however many.
+#[test]
+fn many_cells_without_a_number_are_counted_in_the_worst_column() {
+    let row = |row: usize| {
+        let force = if row % 5 == 4 { "" } else { "1.5" };
+        let travel = if row == 2 { "n/a" } else { "0.5" };
+        format!("{row},{travel},{force}\n")
+    };
+    let text = format!("t,d,F\n{}", (0..100).map(row).collect::<String>());
+    let error = read(text, &[1, 2, 3]).expect_err("a fifth").to_string();
+    let expected =
+        "line 6, column 3 (F): expected a number in every row, found none in 20 of 100 (first lines: 6, 11, 16)";
+    assert!(error.ends_with(expected), "{error}");
 }

@@ -334,3 +334,24 @@ fn odd_lines_in_a_long_file_are_observed_as_in_any() {
         }
     }
 }
+
+/// Numbers above 999 of a German, an English and a Swiss machine were refused.
+#[test]
+fn thousands_are_read_where_the_column_shows_them() {
+    for text in [
+        "t;F\n0,0;998,5\n0,1;1.185,1\n0,2;-1.001\n0,3;12.345,5\n",
+        "t;F\n0.0;998.5\n0.1;1,185.1\n0.2;-1,001\n0.3;12,345.5\n",
+        "t;F\n0.0;998.5\n0.1;1'185.1\n0.2;-1'001\n0.3;12'345.5\n",
+        "t;F\n0,0;998,5\n0,1;1 185,1\n0,2;-1 001\n0,3;12 345,5\n",
+        "t,F\n0.0,998.5\n0.1,\"1,185.1\"\n0.2,\"-1,001\"\n0.3,\"12,345.5\"\n",
+    ] {
+        let found = read(text, &[1, 2]).unwrap_or_else(|error| panic!("{text}: {error}"));
+        assert_eq!(found.values, [vec![0.0, 0.1, 0.2, 0.3], vec![998.5, 1185.1, -1001.0, 12_345.5]], "{text}");
+        assert!(layout(text).to_string().contains("thousands set off"), "{text}");
+    }
+    // Latin-1 has the blank that breaks no line in one byte.
+    let latin = read(b"t;F (\xb5N)\n0,0;998,5\n0,1;1\xa0185,1\n".to_vec(), &[2]).expect("Latin-1");
+    assert_eq!(latin.values, [vec![998.5, 1185.1]]);
+    // Three decimals of one column beside decimal commas of another.
+    assert!(read("t;F\n0,1;1.185\n0,2;1.190\n", &[1, 2]).is_err());
+}

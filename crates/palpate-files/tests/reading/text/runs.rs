@@ -91,3 +91,45 @@ fn what_is_one_test_stays_one() {
     one(format!("Test;Time (s);Force (N)\n{}", rows(2, part, |test| 10 * test)));
     one(format!("Specimen;Time (s);Force (N)\n{}", rows(1, |_| "K".to_owned(), |_| 0)));
 }
+
+/// Of a text of several specimens whose first has more lines than a layout is found out from, all was one test.
+#[test]
+fn a_clock_that_begins_again_far_below_begins_a_test() {
+    let rows = |load: usize| (0..4200).map(|at| format!("{at},{}\n", load * at)).collect::<String>();
+    let contents = open(&format!("Time (s),Force (N)\n{}{}", rows(1), rows(2)));
+    assert_eq!(titles(&contents), ["run 1", "run 2"]);
+}
+
+/// Groups of columns side by side: only the last was read, and a short specimen was refused.
+#[test]
+fn columns_side_by_side_are_tests() {
+    let row = |at: usize| {
+        let force = |test: usize| at as f64 / 10.0 + test as f64;
+        let short = if at < 10 { format!("{at},{},0", force(3)) } else { ",,".to_owned() };
+        format!("{at},{},0,,{at},{},0,,{short}\n", force(1), force(2))
+    };
+    let names = "Time,Force,Disp,,Time,Force,Disp,,Time,Force,Disp\ns,N,mm,,s,N,mm,,s,N,mm\n";
+    let rows: String = (0..12).map(row).collect();
+    let contents = open(&format!("Operator,XY\nPad 1,,,,Pad 2,,,,Pad 3,,\n{names}{rows}"));
+    assert_eq!(titles(&contents), ["Pad 1", "Pad 2", "Pad 3"]);
+    assert_eq!(contents.parts.iter().map(|part| part.metadata.len()).collect::<Vec<_>>(), [1, 1, 1]);
+    assert_eq!(forces(&contents, 2), (0..10).map(|at| f64::from(at) / 10.0 + 3.0).collect::<Vec<_>>());
+    let first = read_part(&contents, 0, None, &mut |_, _| Ok(())).unwrap_or_else(|error| panic!("{error}"));
+    assert_eq!((first.rows, first.record.force()[11], first.ignored.lacking.rows), (12, 2.1, 0));
+    // Rows that end with the last specimen that goes on; numbers behind the names.
+    let text = "Time 1 (s),Force 1 (N),Time 2 (s),Force 2 (N)\n".to_owned()
+        + &(0..12)
+            .map(|at| if at < 10 { format!("{at},1.5,{at},{at}.5\n") } else { format!("{at},1.5\n") })
+            .collect::<String>();
+    let contents = open(&text);
+    assert_eq!(titles(&contents), ["columns 1–2", "columns 3–4"]);
+    assert_eq!(forces(&contents, 1)[3], 3.5);
+    // What cannot be read has the line that it has in the file.
+    let error: FileError =
+        open(&text.replace("7,1.5,7,7.5", "7,1.5,7,x")).read(1, &[1, 2], &mut |_, _| Ok(())).unwrap_err();
+    assert!(error.to_string().contains("line 9, column 2 (Force 2)"), "{error}");
+    // Two clocks of one test, and one clock of two fingers.
+    for names in ["Time,Force,Time,Disp", "Time,Force 1,Force 2,Disp"] {
+        assert_eq!(open(&format!("{names}\n0,1.5,2,3\n1,2.5,3,4\n")).parts.len(), 1, "{names}");
+    }
+}
