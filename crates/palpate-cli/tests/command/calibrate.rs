@@ -343,3 +343,22 @@ fn what_is_no_batch_is_refused_before_or_after_reading() {
     assert!(String::from_utf8(output.stdout).unwrap().contains("which needs 3 records or more"));
     assert!(!folder.join("third.toml").exists());
 }
+
+/// A displacement of the other sign gave a range of calibration of 2e-6 nm, or an error about a covariance.
+#[test]
+fn a_displacement_against_the_direction_of_loading_is_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    let mut record = String::from("Time (s),Displacement (mm),Force (N)\n");
+    for i in 0..600 {
+        let t = 0.1 * f64::from(i);
+        let relaxing = if t < 2.0 { 1.0 } else { 0.5 + 0.5 * (-(t - 2.0) / 5.0).exp() };
+        let place = (t / 2.0).min(1.0);
+        record.push_str(&format!("{t:.1},{:.4},{:.4}\n", -5.0 * place, -20.0 * place * relaxing));
+    }
+    let record = file(folder, "pull.csv", record);
+    let test = file(folder, "block.toml", "[specimen]\nshape = \"block\"\nlength = \"20 mm\"\narea = \"100 mm2\"\n");
+    let reported = refused(folder, &["calibrate", &record, "--test", &test]);
+    assert!(reported.contains("expected a displacement that rises from first touch, found one that falls to −5.00 mm"));
+    assert!(reported.contains("sign = -1 in [columns.displacement]"), "{reported}");
+}

@@ -8,6 +8,7 @@ use palpate::number::significant;
 use palpate::units::quantity;
 
 use super::input::Input;
+use super::parameters::parameter_title;
 use crate::number::counted;
 use crate::word::word;
 
@@ -153,12 +154,12 @@ fn remarks_of(made: &Calibration) -> Vec<String> {
         .find(|parameter| parameter.estimate.interval.is_none_or(|(low, high)| high > 100.0 * low))
         && made.material.uncertainty().is_some()
     {
-        let name = &open.name;
+        let name = parameter_title(&open.name);
         let how = match open.estimate.interval {
             Some(_) => "hardly determines {}: its interval spans more than two decades",
             None => "does not determine {}",
         };
-        let how = how.replace("{}", name);
+        let how = how.replace("{}", &name);
         remarks.push(format!("The record {how}. Holds of different excess strain would determine it."));
     }
     if are_systematic(made.noise, made.relative) {

@@ -36,6 +36,15 @@ const WIDE: f64 = 0.3;
 /// Share of the deepest squeeze by which two levels differ at least.
 const APART: f64 = 0.02;
 
+/// Refuses a displacement that goes against the direction of loading alone: above first touch there is noise.
+fn never_pressed(displacement: &[f64]) -> Result<(), CalibrateError> {
+    /// Share of the way back up to which a way forward is noise.
+    const NOISE: f64 = 0.02;
+    let (lowest, highest) =
+        displacement.iter().fold((0.0, 0.0), |(low, high): (f64, f64), d| (low.min(*d), high.max(*d)));
+    if highest < -NOISE * lowest { Err(CalibrateError::NeverPressed { lowest }) } else { Ok(()) }
+}
+
 impl CalibrationData {
     /// Forces (N) at rising `times` (s) inside `motion`, whose first knot is at first touch of a relaxed body. `held` are the displacements
     /// of the jaw (m) at which it was held; a table of equilibrium forces has its rows there.
@@ -118,6 +127,7 @@ impl CalibrationData {
         let measured = measured_motion(&record, &segmentation, &body, options.separation)
             .ok_or(CalibrateError::NoDisplacement)??;
         let displacement = record.displacement().unwrap_or_default();
+        never_pressed(displacement)?;
         let held: Vec<f64> = segmentation
             .holds()
             .map(|hold| crate::statistics::median(&mut displacement[hold.start..hold.end].to_vec()))

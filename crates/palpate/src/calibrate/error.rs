@@ -3,6 +3,7 @@
 use crate::analysis::AnalysisError;
 use crate::contact::{EquilibriumError, SpecimenError};
 use crate::laws::Law;
+use crate::number::significant;
 use crate::simulate::{MotionError, SimulateError};
 use crate::watch::Cancelled;
 
@@ -95,6 +96,12 @@ pub enum CalibrateError {
     /// No body.
     #[error("a calibration needs the geometry of the body, which is not described")]
     NoGeometry,
+    /// A motion against the direction of loading alone.
+    #[error("expected a displacement that rises from first touch, found one that falls to {} mm", significant(1e3 * lowest, 3))]
+    NeverPressed {
+        /// The lowest displacement, m.
+        lowest: f64,
+    },
     /// No motion.
     #[error("a calibration needs the displacement of the jaw, which the record does not have")]
     NoDisplacement,
@@ -162,6 +169,7 @@ impl CalibrateError {
             Self::NoDisplacement => {
                 "name the displacement column in [columns]; without it palpate can only fit single holds".to_owned()
             }
+            Self::NeverPressed { .. } => "loading is positive: set sign = -1 in [columns.displacement] of the test description, or give the unit of the column a minus sign".to_owned(),
             Self::NotALaw { .. } => {
                 "the laws of a whole contact are latency, latency:N, standard-linear-solid, prony:K and fung:K"
                     .to_owned()
