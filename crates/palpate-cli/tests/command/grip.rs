@@ -36,6 +36,12 @@ fn the_verdict_is_the_exit_code() {
     // The ball was simulated with n = 5 and 2e4 /s, with which the closed form says 0.611 s.
     assert!((time - 0.611).abs() < 0.03, "{time}");
     assert!(number(&found["squeeze"]["interval"][0], "seconds") < time);
+    // It was a yes, to a hold of half a second.
+    let verdict = found["verdict"].as_str().unwrap();
+    assert!(
+        verdict.starts_with("Not for long: a squeeze of 5.000 mm") && verdict.contains("holds for 0."),
+        "{verdict}"
+    );
     let (code, found) = json(&["--squeeze", "5 mm", "--hold", "10 s"]);
     assert_eq!((code, found["holds"].as_bool()), (Some(1), Some(false)));
     let (code, found) = json(&["--hold", "10 s"]);

@@ -2,7 +2,8 @@
 
 use palpate::contact::{Shape, Sides};
 use palpate::grip::{
-    BackOff, Control, ForceHold, Grasp, GripError, Objective, PlanKind, PositionHold, Regrip, Schedule, TimeToSlip,
+    BackOff, Control, ForceHold, Grasp, GripError, Objective, PlanKind, PositionHold, Question, Regrip, Schedule,
+    TimeToSlip,
 };
 use palpate::number::significant;
 
@@ -54,6 +55,7 @@ impl GrippedBody<'_> {
         };
         let verdict = match (holds, self.is_unknown()) {
             (_, true) => "Not known",
+            (true, _) if self.is_short() => "Not for long",
             (true, _) if answer.question.confidence.is_none_or(|level| level <= 0.5) => "Yes (best estimate)",
             (true, _) => "Yes",
             (false, _) => "No",
@@ -64,6 +66,18 @@ impl GrippedBody<'_> {
     /// Whether a probability is required and the calibration has none to give.
     fn is_unknown(&self) -> bool {
         self.answer.question.confidence.is_some_and(|level| level > 0.5) && self.grip.material().uncertainty().is_none()
+    }
+
+    /// Whether no time was requested, and the squeeze slips before the time that is otherwise requested.
+    fn is_short(&self) -> bool {
+        let question = &self.answer.question;
+        let lasts = |found: &PositionHold| {
+            found.assured.filter(|_| question.confidence.is_some()).unwrap_or(found.time_to_slip)
+        };
+        let is_short = |found: &PositionHold| !lasts(found).covers(Question::USUAL_DURATION);
+        question.control == Control::Position
+            && question.wanted().is_none()
+            && self.answer.squeeze.as_ref().is_ok_and(|squeeze| is_short(&squeeze.found))
     }
 
     /// What the probability of a verdict rests on beyond the test; empty where it does not.

@@ -63,10 +63,13 @@ impl Question {
     /// Probability with which a verdict has to hold by default.
     pub const CONFIDENCE: f64 = 0.95;
 
+    /// How long a position is to be held where neither a time nor a squeeze is requested, s.
+    pub const USUAL_DURATION: f64 = 60.0;
+
     /// How long the position is to be held, s; `None` where the question is how long it does.
     #[must_use]
     pub fn wanted(&self) -> Option<f64> {
-        self.duration.or(self.squeeze.is_none().then_some(MINUTE))
+        self.duration.or(self.squeeze.is_none().then_some(Self::USUAL_DURATION))
     }
 }
 
@@ -103,9 +106,6 @@ pub struct Answer {
     /// Squeezes that keep the force in the band, if one was requested.
     pub schedule: Option<Result<WithPrediction<Schedule>, GripError>>,
 }
-
-/// How long the least squeeze holds if nothing is stated, s.
-const MINUTE: f64 = 60.0;
 
 /// Samples of a course, a step.
 const SAMPLES: usize = 200;
@@ -152,7 +152,7 @@ impl Grip<'_> {
 
     fn answered(&self, question: &Question) -> Result<Answer, GripError> {
         self.enter(0.3)?;
-        let wanted = question.duration.unwrap_or(MINUTE);
+        let wanted = question.duration.unwrap_or(Question::USUAL_DURATION);
         check_duration(wanted)?;
         let squeeze = match question.squeeze {
             Some(displacement) => {
@@ -271,7 +271,7 @@ fn shown(question: &Question, squeeze: Option<&PositionHold>) -> f64 {
     match (question.duration, squeeze.map(|found| found.time_to_slip)) {
         (Some(wanted), _) if wanted.is_finite() => wanted,
         (None, Some(TimeToSlip::After(time))) if question.squeeze.is_some() => (1.5 * time).max(1.0),
-        (None, _) if question.squeeze.is_none() => MINUTE,
+        (None, _) if question.squeeze.is_none() => Question::USUAL_DURATION,
         _ => HOUR,
     }
 }
