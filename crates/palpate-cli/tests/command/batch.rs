@@ -217,7 +217,11 @@ fn a_record_of_creep_has_a_row_for_each_hold() {
         text.push_str(&format!("{t:.2},{:.5},{force:.4}\n", 0.2 * force + creep));
     }
     file(folder, "creep.csv", text);
-    done(folder, &["batch", "creep.csv", "--out", "holds.csv"]);
+    let answer = done(folder, &["batch", "creep.csv", "--out", "holds.csv"]).replace('\n', " ");
+    // Nothing stated why no law was fitted, and which command fits one.
+    let why =
+        "In 1 hold the machine held the force, and the body creeps: `palpate compare --creep` fits the displacement.";
+    assert!(answer.contains(why), "{answer}");
     let table = lines(folder, "holds.csv");
     assert_eq!(
         (table.len(), column(&table, "law"), column(&table, "mode")),

@@ -6,6 +6,7 @@ use palpate::number::{counted, significant};
 use palpate_files::parquet_table::Field;
 use palpate_report::page::Block;
 use palpate_report::result::parameter_title;
+use palpate_report::spelling::flag;
 use palpate_report::table::{Cell, Table};
 use palpate_report::wrapped;
 use serde::{Deserialize, Serialize};
@@ -16,11 +17,16 @@ use super::{Entry, parameters, rows};
 /// Findings that the answer states.
 const MOST_FINDINGS: usize = 2;
 
+/// The finding of a hold in which the machine held the force.
+const FORCE_HELD: &str = "feedback_controlled";
+
 /// What is counted of the holds of a batch while its table is written.
 pub(super) struct Tally {
     holds: usize,
     /// Holds without a fitted law.
     unfitted: usize,
+    /// Those of them in which the machine held the force.
+    creeping: usize,
     /// Tests without a hold.
     without_hold: usize,
     /// The modulus of the first loading ramp of each test that has one, Pa.
@@ -44,6 +50,9 @@ pub struct BatchAnswer {
     pub holds: usize,
     /// Holds without a fitted law.
     pub unfitted: usize,
+    /// Those of them in which the machine held the force: the displacement creeps.
+    #[serde(default)]
+    pub creeping: usize,
     /// Tests without a hold.
     pub without_hold: usize,
     /// Young's modulus of the first loading ramp over the tests that have one, Pa.
@@ -88,6 +97,7 @@ impl Tally {
         Self {
             holds: 0,
             unfitted: 0,
+            creeping: 0,
             without_hold: 0,
             moduli: Vec::new(),
             laws: HashMap::new(),
@@ -118,7 +128,10 @@ impl Tally {
                     self.without_hold += 1;
                 } else {
                     self.holds += 1;
-                    self.unfitted += usize::from(text(row, law).is_empty());
+                    let is_unfitted = text(row, law).is_empty();
+                    let creeps = text(row, findings).split_whitespace().any(|code| code == FORCE_HELD);
+                    self.unfitted += usize::from(is_unfitted);
+                    self.creeping += usize::from(is_unfitted && creeps);
                 }
                 for code in text(row, findings).split_whitespace() {
                     *self.findings.entry(code.to_owned()).or_default() += 1;
@@ -145,6 +158,7 @@ impl Tally {
             compared,
             holds: self.holds,
             unfitted: self.unfitted,
+            creeping: self.creeping,
             laws,
             parameters: parameters.into_iter().map(|((name, unit), values)| Spread::of(&name, &unit, values)).collect(),
             without_hold: self.without_hold,
@@ -224,8 +238,9 @@ impl BatchAnswer {
     /// Which laws were recommended.
     fn of_laws(&self) -> Option<String> {
         let Some((law, count)) = self.laws.first() else {
-            return (self.holds > 0)
-                .then(|| format!("No law could be fitted to any of {}.", counted(self.holds, "hold")));
+            return (self.holds > 0).then(|| {
+                format!("No law could be fitted to any of {}.{}", counted(self.holds, "hold"), self.of_creep())
+            });
         };
         let mut text = format!("Law recommended most often: {law}, on {count} of {}.", counted(self.holds, "hold"));
         if !self.compared {
@@ -236,9 +251,18 @@ impl BatchAnswer {
             text.push_str(&format!(" Others: {}.", others.join(", ")));
         }
         if self.unfitted > 0 {
-            text.push_str(&format!(" No law was fitted to {}.", counted(self.unfitted, "hold")));
+            text.push_str(&format!(" No law was fitted to {}.{}", counted(self.unfitted, "hold"), self.of_creep()));
         }
         Some(text)
+    }
+
+    /// Why holds have no law that can be fitted otherwise.
+    fn of_creep(&self) -> String {
+        if self.creeping == 0 {
+            return String::new();
+        }
+        let (creeping, creep) = (counted(self.creeping, "hold"), flag("compare/creep", None));
+        format!(" In {creeping} the machine held the force, and the body creeps: `{creep}` fits the displacement.")
     }
 
     /// The parameters of the law that was recommended most often.
