@@ -152,6 +152,7 @@ impl Analyze {
             mut record,
             mut input,
             options,
+            turned,
             ..
         } = measured;
         if let Some(air) = air {
@@ -164,7 +165,8 @@ impl Analyze {
         watch.report(Progress::open(&format!("fitting {}", input.called()), 0))?;
         let analysis =
             analyze_watched(&record, &options, watch).map_err(|error| JobError::analysis(&error, &input.called()))?;
-        Ok(Outcome::of(Analyzed { analysis, input }))
+        let notes = analysis.findings.iter().filter_map(|found| Measurement::sign_note(&turned, found)).collect();
+        Ok(Outcome::of(Analyzed { analysis, input }).noted(notes))
     }
 }
 
@@ -178,6 +180,17 @@ impl Analyzed {
     }
 }
 
+impl Analyzed {
+    /// Its text with a row for each of many holds.
+    #[must_use]
+    pub fn brief_text(&self) -> String {
+        let (text, is_brief) = analysis_text(&self.analysis, &self.input, false);
+        let rest =
+            "--details prints the formula, the forecast and every fit of each hold, and the uncertainty budget.\n";
+        if is_brief { text + rest } else { text }
+    }
+}
+
 impl Results for Analyzed {
     type Document = AnalysisDocument;
 
@@ -186,6 +199,6 @@ impl Results for Analyzed {
     }
 
     fn text(&self) -> String {
-        analysis_text(&self.analysis, &self.input)
+        analysis_text(&self.analysis, &self.input, true).0
     }
 }

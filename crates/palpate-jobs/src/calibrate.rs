@@ -137,6 +137,7 @@ impl Calibrate {
             record: measured,
             mut input,
             options,
+            turned,
             ..
         } = measured;
         input.depends_on_sha256 = Some(Dependencies::new("calibrate", &(self, &options)).record(&input).sha256()?);
@@ -170,7 +171,11 @@ impl Calibrate {
         let as_recorded = options.touch == ContactChoice::AsRecorded;
         let shifted = as_recorded.then(|| wrong_zero(&measured)).flatten();
         let doubts = suspicious_signs(&measured).into_iter().chain(shifted);
-        let doubts = doubts.map(|found| format!("{}: {}; {}", found.observation(), found.meaning(), found.remedy()));
+        let doubts = doubts.flat_map(|found| {
+            let doubt = format!("{}: {}; {}", found.observation(), found.meaning(), found.remedy());
+            [Some(doubt), Measurement::sign_note(&turned, &found)]
+        });
+        let doubts = doubts.flatten();
         let notes = doubts.chain(few).collect();
         Ok(Outcome::of(Calibrated { record, confidence }).noted(notes))
     }

@@ -142,6 +142,9 @@ pub(crate) struct AnalyzeArguments {
     /// Format of standard output
     #[arg(long, value_enum, default_value_t = Format::Text)]
     pub(crate) format: Format,
+    /// Print formula, forecast and every fit of each hold, also of more than three holds
+    #[arg(long)]
+    pub(crate) details: bool,
     #[command(flatten)]
     pub(crate) job: jobs::Analyze,
     /// Record of the same motion without a body; its force is subtracted

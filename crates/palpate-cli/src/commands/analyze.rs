@@ -72,13 +72,18 @@ fn one(
     notes(&measured.notes);
     let mut bars = Bars::default();
     let outcome = job.run(measured, air, &mut bars)?;
+    notes(&outcome.notes);
     if let Some(folder) = folder {
         write_bundle(folder, &outcome.result.bundle(options, &mut bars)?)?;
     }
     drop(bars);
     print(&match arguments.format {
         Format::Json => outcome.result.json()?,
-        Format::Text => format!("{}\n\n{}", outcome.result.input.title, outcome.result.text()),
+        Format::Text => {
+            let analyzed = &outcome.result;
+            let text = if arguments.details { analyzed.text() } else { analyzed.brief_text() };
+            format!("{}\n\n{text}", analyzed.input.title)
+        }
     })?;
     folder.into_iter().for_each(note_report);
     Ok(outcome.result)

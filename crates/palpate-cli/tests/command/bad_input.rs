@@ -84,7 +84,7 @@ fn a_cell_without_a_number_costs_its_row_alone() {
         5 => format!("{},n/a\n", row.rsplit_once(',').unwrap().0),
         _ => format!("{row}\n"),
     });
-    refuses(bad.collect::<String>(), &["line 6", "n/a"]);
+    refuses(bad.collect::<String>(), &["line 6, column 3 (force)", "none in 6 of 121 (first lines: 6, 26, 46)"]);
 }
 
 #[test]

@@ -570,3 +570,28 @@ fn stress_without_a_section_is_reported() {
     done(folder, &["convert", "press.csv", "--out", "plain.csv"]);
     assert!(std::fs::read_to_string(folder.join("plain.csv")).unwrap().contains("stress_as_force"));
 }
+
+/// Of 24 holds the text had 1,208 lines.
+#[test]
+fn many_holds_have_a_row_each_unless_details_are_requested() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    let mut record = String::from("time_s,displacement_mm,force_n\n");
+    for i in 0..1600 {
+        let (t, step) = (0.05 * f64::from(i), f64::from(i / 400 + 1));
+        let since = t - 20.0 * (step - 1.0);
+        let place = step - 1.0 + since.min(1.0);
+        let relaxing = if since < 1.0 { since } else { (-(since - 1.0) / 4.0).exp() };
+        record.push_str(&format!("{t:.2},{place:.4},{:.5}\n", 5.0 * place + 2.0 * relaxing));
+    }
+    let record = file(folder, "steps.csv", record);
+    let brief = done(folder, &["analyze", &record]);
+    let full = done(folder, &["analyze", &record, "--details"]);
+    assert!(
+        brief.contains("Law to use for each hold") && !brief.contains("Every law fitted to every hold"),
+        "{brief}"
+    );
+    assert!(brief.contains("--details prints") && brief.contains("Common exponent of all holds"), "{brief}");
+    assert!(full.contains("Every law fitted to every hold") && full.contains("Hold 4, after loading"), "{full}");
+    assert!(2 * brief.lines().count() < full.lines().count());
+}

@@ -15,6 +15,11 @@ fn phases(folder: &Path, arguments: &[&str]) -> String {
     table[..end].to_owned()
 }
 
+/// What an inspection reports, in one line.
+fn inspected(folder: &Path, arguments: &[&str]) -> String {
+    done(folder, &[&["inspect"], arguments].concat()).replace('\n', " ")
+}
+
 /// What stands on standard error where inspection failed, but showed what is in the file.
 fn failed_but_reported(folder: &Path, arguments: &[&str]) -> String {
     let output = palpate(folder, arguments);
@@ -287,12 +292,12 @@ fn a_test_goes_on_in_a_second_file() {
     file(folder, "hold.csv", format!("{header}{}", hold(0.0)));
     file(folder, "later.csv", format!("{header}{}", hold(12.0)));
     assert!(done(folder, &["inspect", "ramp.csv"]).contains("no hold found"));
-    let reported = done(folder, &["inspect", "ramp.csv", "--then", "hold.csv"]);
+    let reported = inspected(folder, &["ramp.csv", "--then", "hold.csv"]);
     assert!(
         reported.contains("700 rows over 69.9") && reported.contains("10.0000 s were added to its times"),
         "{reported}"
     );
-    let reported = done(folder, &["inspect", "ramp.csv", "--then", "later.csv"]);
+    let reported = inspected(folder, &["ramp.csv", "--then", "later.csv"]);
     assert!(reported.contains("on the same clock and unchanged"), "{reported}");
     let document = done(folder, &["analyze", "ramp.csv", "--then", "hold.csv", "--no-compare", "--format", "json"]);
     assert!(document.contains("\"then_sha256\": \"") && document.contains("\"fit_start_rule\": \"extreme\""));
@@ -317,7 +322,7 @@ fn clocks_that_differ_are_reported_in_the_terminal() {
     let clocks = "[columns.displacement]\ncolumn = 2\nclock = { column = 1, unit = \"s\" }\n\
                   [columns.force]\ncolumn = 4\nclock = { column = 3, unit = \"s\" }\n";
     file(folder, "two.toml", clocks);
-    let reported = done(folder, &["inspect", &record, "--test", "two.toml"]);
+    let reported = inspected(folder, &[&record, "--test", "two.toml"]);
     assert!(reported.contains("ms later than the displacement; set skew = \"auto\" in [clock]"), "{reported}");
     file(folder, "auto.toml", format!("{clocks}[clock]\nskew = \"auto\"\n"));
     let reported = done(folder, &["inspect", &record, "--test", "auto.toml"]);
@@ -408,7 +413,7 @@ fn clocks_that_differ_are_no_saturation_and_signs_are_reported() {
     let clocks = "[columns.displacement]\ncolumn = 2\nclock = { column = 1, unit = \"s\" }\n\
                   [columns.force]\ncolumn = 4\nclock = { column = 3, unit = \"s\" }\n";
     file(folder, "two.toml", clocks);
-    let reported = done(folder, &["inspect", "press.csv", "--test", "two.toml"]);
+    let reported = inspected(folder, &["press.csv", "--test", "two.toml"]);
     assert!(reported.contains("later than the displacement") && !reported.contains("clipped"), "{reported}");
     let document = done(folder, &["analyze", "press.csv", "--test", "two.toml", "--no-compare", "--format", "json"]);
     assert!(document.contains("clocks_skewed") && !document.contains("\"saturated\""));
@@ -419,4 +424,41 @@ fn clocks_that_differ_are_no_saturation_and_signs_are_reported() {
     file(folder, "turned.csv", turned.collect::<String>());
     let reported = done(folder, &["inspect", "turned.csv", "--test", "two.toml"]);
     assert!(reported.contains("sign"), "{reported}");
+}
+
+/// The message named a column `Load`, whatever the file has, and the draft description left the sign as it was.
+#[test]
+fn a_reversed_sign_is_turned_by_the_option_and_by_the_draft() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    let turned = ramp_and_hold(7.0, 20.0).lines().skip(1).fold(
+        "Zeit (s),Weg (mm),Standardkraft (N)\n".to_owned(),
+        |text, line| {
+            let (before, force) = line.rsplit_once(',').unwrap();
+            format!("{text}{before},{}\n", -force.parse::<f64>().unwrap())
+        },
+    );
+    let record = file(folder, "press.csv", turned);
+    let option = "--columns \"force=Standardkraft:-N\"";
+    let reported = inspected(folder, &[&record, "--write-test", "press.toml"]);
+    assert!(
+        reported.contains("the sign of the force may be reversed") && reported.contains(option),
+        "{reported}"
+    );
+    assert!(fs::read_to_string(folder.join("press.toml")).unwrap().contains("sign = -1"));
+    let described = inspected(folder, &[&record, "--test", "press.toml"]);
+    assert!(!described.contains("may be reversed"), "{described}");
+    let noted = palpate(folder, &["analyze", &record, "--no-compare"]);
+    assert!(String::from_utf8_lossy(&noted.stderr).contains(option), "{noted:?}");
+}
+
+/// Rules for first touch ran over 190 columns.
+#[test]
+fn lines_of_an_inspection_fit_a_terminal() {
+    let Some(record) = data("tendon/fresh_1.csv") else {
+        return;
+    };
+    let reported = done(Path::new("."), &["inspect", record.to_str().unwrap()]);
+    let widest = reported.lines().skip(1).map(|line| line.chars().count()).max();
+    assert!(widest.is_some_and(|widest| widest <= 100), "{reported}");
 }

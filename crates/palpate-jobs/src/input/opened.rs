@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use palpate::analysis::AnalysisOptions;
+use palpate::analysis::{AnalysisOptions, Finding};
 use palpate::record::Record;
 use palpate::watch::{Cancelled, Progress, Watch};
 use palpate_files::open::Contents;
@@ -27,6 +27,8 @@ pub struct Measurement {
     pub options: AnalysisOptions,
     /// What to know of its reading, a sentence each.
     pub notes: Vec<String>,
+    /// Quantities whose column has a sign, each with the option that turns it.
+    pub turned: Vec<(String, String)>,
 }
 
 /// A file of records that was looked into.
@@ -159,6 +161,7 @@ impl<'d> OpenedFile<'d> {
             input: self.input(&file, self.name(part), watch)?,
             options: self.described.options(),
             notes: averaged(&file).into_iter().collect(),
+            turned: turned(&file),
             record: file.record,
         })
     }
@@ -193,6 +196,23 @@ impl<'d> OpenedFile<'d> {
             test: self.described.shown(),
             title: part.map_or_else(|| title.clone(), |part| format!("{title} · {part}")),
         })
+    }
+}
+
+/// What would give the displacement or the force the opposite sign.
+fn turned(file: &RecordFile) -> Vec<(String, String)> {
+    let option = |quantity: &str| Some((quantity.to_owned(), file.with_other_sign(quantity)?));
+    ["displacement", "force"].into_iter().filter_map(option).collect()
+}
+
+impl Measurement {
+    /// The option that turns the sign of the column that a finding doubts, in a sentence.
+    pub(crate) fn sign_note(turned: &[(String, String)], finding: &Finding) -> Option<String> {
+        let Finding::SignSuspicious { column, .. } = finding else {
+            return None;
+        };
+        let (_, option) = turned.iter().find(|(quantity, _)| quantity == column)?;
+        Some(format!("the other sign of the {column}: {option}"))
     }
 }
 

@@ -7,12 +7,15 @@ use palpate::record::{Record, SignalReport};
 use palpate::segment::{Phase, SegmentError, Segmentation, TouchEstimate, find_contact_of};
 use palpate::watch::Watch;
 use palpate_files::description::TestDescription;
+use palpate_files::record::RecordFile;
 use palpate_report::figure::Figure;
 use palpate_report::number::significant;
 use palpate_report::result::mode_word;
 use palpate_report::sparkline::{sparkline, strip};
+use palpate_report::spelling::with_flags;
 use palpate_report::study::cut_figure;
 use palpate_report::table::{Cell, Table};
+use palpate_report::wrapped;
 
 /// Characters of a sparkline: what fits into a narrow terminal beside its label.
 const WIDTH: usize = 64;
@@ -77,7 +80,7 @@ impl Cut {
     }
 
     /// Sparklines, phases and first touch as text.
-    pub(super) fn reported(&self, test: Option<&TestDescription>) -> String {
+    pub(super) fn reported(&self, test: Option<&TestDescription>, file: &RecordFile) -> String {
         let mut out = self.sparklines();
         match &self.found {
             Ok(found) => {
@@ -90,7 +93,14 @@ impl Cut {
             }
         }
         for found in self.findings() {
-            let _ = writeln!(out, "{}; {}", found.observation(), found.remedy());
+            let turned = match &found {
+                Finding::SignSuspicious { column, .. } => file.with_other_sign(column).map(|option| {
+                    format!("if so, add {option}, or set sign = -1 in [columns.{column}] of the test description")
+                }),
+                _ => None,
+            };
+            let remedy = turned.unwrap_or_else(|| with_flags(found.remedy()));
+            out.push_str(&wrapped(&format!("{}; {remedy}", found.observation())));
         }
         out
     }
@@ -151,9 +161,7 @@ impl Cut {
         if !done.is_empty() {
             out.push('\n');
         }
-        for done in done {
-            let _ = writeln!(out, "done: {done}");
-        }
+        done.iter().for_each(|done| out.push_str(&wrapped(&format!("done: {done}"))));
         out
     }
 
@@ -178,12 +186,11 @@ impl Cut {
             let rule =
                 |rule: &TouchEstimate| format!("{} {} mm", rule.method.name(), significant(1e3 * rule.displacement, 4));
             let rules: Vec<String> = contact.estimates.iter().map(rule).collect();
-            let _ = writeln!(
-                out,
+            out.push_str(&wrapped(&format!(
                 "the rules for first touch scatter by {} mm (robust standard deviation): {}",
                 significant(1e3 * spread, 2),
                 rules.join(", ")
-            );
+            )));
         }
         out
     }

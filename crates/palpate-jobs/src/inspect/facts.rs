@@ -8,12 +8,13 @@ use palpate_files::record::{RecordFile, Role};
 use palpate_files::table::{ColumnInfo, ColumnKind, Part};
 use palpate_report::number::significant;
 use palpate_report::table::{Cell, Table};
+use palpate_report::wrapped;
 
 /// Most named values that are shown: force curves of an AFM have hundreds.
 const MOST_METADATA: usize = 16;
 
 /// Most letters of a name in a table.
-const MOST_LETTERS: usize = 120;
+const MOST_LETTERS: usize = 48;
 
 /// How one test is written, what stands beside its data, and what the file labels.
 pub(super) fn part_facts(part: &Part, format: Format) -> String {
@@ -45,7 +46,7 @@ pub(super) fn columns_table(part: &Part, file: Option<&RecordFile>) -> Table {
         .column("Column", "number", "", |column| Cell::Integer(column.number as i64))
         .column("Name", "name", "", |column| Cell::text(short(column.name.as_deref())))
         .column("Unit", "unit", "", |column| Cell::text(short(column.unit.as_deref())))
-        .column("First value", "sample", "", |column| Cell::text(column.sample.as_str()))
+        .column("First value", "sample", "", |column| Cell::text(column.first_value()))
         .column("Used as", "used_as", "", |column| Cell::text(roles(column, file)))
         .table()
 }
@@ -116,9 +117,7 @@ pub(super) fn signal_facts(file: &RecordFile, aligned: Option<&SignalReport>) ->
         value_facts(&mut out, "displacement", displacement, (1e3, "mm"));
     }
     value_facts(&mut out, "force", &values.force, (1.0, "N"));
-    for done in record.corrections() {
-        let _ = writeln!(out, "done: {done}");
-    }
+    record.corrections().iter().for_each(|done| out.push_str(&wrapped(&format!("done: {done}"))));
     if let Some(footer) = &file.ignored.footer {
         let _ = writeln!(out, "{} lines after the data were skipped, from line {}", footer.lines, footer.first_line);
     }

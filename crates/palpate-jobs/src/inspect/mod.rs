@@ -133,7 +133,7 @@ impl Inspected {
         let place = file.path.display().to_string();
         let cut = cut.map_err(|error| JobError::analysis(&error, &place))?;
         document.cut(&file, &cut);
-        out.push_str(&cut.reported(test));
+        out.push_str(&cut.reported(test, &file));
         if let Some(error) = cut.refused() {
             return Err(JobError::new(ErrorKind::Record, error, error.hint().to_owned()).of(place));
         }

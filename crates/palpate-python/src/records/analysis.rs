@@ -378,6 +378,7 @@ shown! {
             input,
             options,
             notes: Vec::new(),
+            turned: Vec::new(),
         };
         let requested = Arc::new(Requested { measured, job });
         // A number that is none has no form in JSON: the document is made anew then.

@@ -143,6 +143,7 @@ impl Record {
             input,
             options,
             notes: Vec::new(),
+            turned: Vec::new(),
         })
     }
 }

@@ -63,7 +63,7 @@ documents! {
         force_change_n: f64 = hold.relaxation.change,
         /// Its standard error, N.
         force_change_standard_error_n: f64 = hold.relaxation.standard_error,
-        /// Probability of such a change by noise that correlates as the last fifth of the hold shows; a drift or a random walk exceeds it more often.
+        /// Probability of such a change by noise that correlates as the last fifth of the hold shows; a drift or a random walk exceeds it more often. 2.2e-308, the smallest number, stands for anything below.
         p_value: f64 = hold.relaxation.p_value,
         /// Force where the fit starts, N.
         force_start_n: f64 = hold.force_start,

@@ -15,16 +15,19 @@ use crate::word::capitalised;
 use crate::wrap::{indented, width, wrapped};
 
 /// Up to so many holds each has its parameters below its formula; more share a table.
-const FEW: usize = 3;
+pub(super) const FEW: usize = 3;
 /// Findings of the record that belong to the answer.
 const MOST_FINDINGS: usize = 2;
 
-/// The answer as text.
-pub(super) fn answer_text(record: &ComparedRecord, findings: &[Gathered]) -> String {
+/// The answer as text: a paragraph for each hold, or in brief a row.
+pub(super) fn answer_text(record: &ComparedRecord, findings: &[Gathered], in_brief: bool) -> String {
     let answer = Answer::new(record);
     let mut text = wrapped(&answer.sentence);
     let few = answer.holds.len() <= FEW;
-    for hold in &answer.holds {
+    if in_brief {
+        text.extend(verdicts_in_brief(record, &answer).map(|table| format!("\n{}", table.to_plain_text())));
+    }
+    for hold in answer.holds.iter().filter(|_| !in_brief) {
         text.push('\n');
         text.push_str(&wrapped(&format!(
             "{}: {} ({}, {:.0} %)",
@@ -101,6 +104,29 @@ pub(super) fn verdicts(answer: &Answer) -> Option<Table> {
                 hold.indistinguishable.join(", ")
             })
         })
+        .unless_empty()
+}
+
+/// The same in rows that fit a terminal.
+fn verdicts_in_brief(record: &ComparedRecord, answer: &Answer) -> Option<Table> {
+    const CAPTION: &str = "Law to use for each hold. Others: laws that are not distinguishable from it.";
+    let condition = |hold: &HoldAnswer| {
+        let compared = record.holds.iter().find(|compared| compared.number == hold.hold);
+        Cell::text(compared.map(ComparedHold::condition).unwrap_or_default())
+    };
+    let certainty = |hold: &HoldAnswer| {
+        let certainty = hold.reservation.as_ref().unwrap_or(&hold.certainty);
+        Cell::text(format!("{certainty}, {:.0} %", 100.0 * hold.probability))
+    };
+    Table::of("answer_in_brief", CAPTION, &answer.holds)
+        .column("Hold", "hold", "", |hold| Cell::Integer(hold.hold as i64))
+        .column("Held", "condition", "", condition)
+        .column("Law", "law", "", |hold| Cell::text(&hold.law))
+        .column("Certainty", "certainty", "", certainty)
+        .column("Held-out error", "holdout_error_percent", "%", |hold| {
+            Cell::number_or(hold.holdout_error.map(|error| 100.0 * error), 2, "too short: chosen by BIC")
+        })
+        .column("Others", "indistinguishable", "", |hold| Cell::Integer(hold.indistinguishable.len() as i64))
         .unless_empty()
 }
 

@@ -4,7 +4,7 @@ use std::fmt;
 
 use serde::{Deserialize, Serialize};
 
-use crate::number::{counted, significant};
+use crate::number::{counted, shortest, significant};
 
 /// Which time stamps are meant.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
@@ -277,7 +277,7 @@ impl fmt::Display for Correction {
                     }
                 }
             }
-            Self::RowsCounted { rate } => write!(f, "time counted from the rows at {rate} Hz"),
+            Self::RowsCounted { rate } => write!(f, "time counted from the rows at {} Hz", shortest(*rate, 6)),
             Self::ClocksJoined { left_out } => {
                 let left_out = counted(*left_out, "row");
                 write!(f, "displacement interpolated at the times of the force, {left_out} of the force left out")
@@ -311,7 +311,8 @@ impl fmt::Display for Correction {
                 averaged,
             } => {
                 let how = if *averaged { "means" } else { "straight lines" };
-                write!(f, "resampled to {rate} Hz by {how}, from a sample every {} s", significant(*interval, 3))
+                let (rate, interval) = (shortest(*rate, 6), significant(*interval, 3));
+                write!(f, "resampled to {rate} Hz by {how}, from a sample every {interval} s")
             }
             Self::ComplianceRemoved { largest } => {
                 write!(

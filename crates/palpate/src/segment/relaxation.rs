@@ -89,7 +89,8 @@ fn drift(signal: &[f64], parts: [usize; 2]) -> Relaxation {
     let p_value = if change.abs() <= rounding {
         1.0
     } else {
-        two_sided_p(change / standard_error.max(f64::MIN_POSITIVE))
+        // What is possible is not 0, however small.
+        two_sided_p(change / standard_error.max(f64::MIN_POSITIVE)).max(f64::MIN_POSITIVE)
     };
     let kind = match change {
         _ if p_value > SIGNIFICANT => RelaxationType::None,
@@ -171,6 +172,13 @@ mod tests {
                 assert!(wrong <= most, "{wrong} of 1000 at correlation {rho}, quantum {quantum}");
             }
         }
+    }
+
+    /// The probability of a change that no noise explains was 0.
+    #[test]
+    fn a_probability_too_small_for_a_number_is_the_smallest() {
+        let values: Vec<f64> = (0..1000).map(|i| if i < 500 { 1e3 } else { 1.0 } + 1e-3 * f64::from(i % 2)).collect();
+        assert_eq!(classify_relaxation(&values).p_value, f64::MIN_POSITIVE);
     }
 
     #[test]

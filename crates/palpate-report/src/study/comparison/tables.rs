@@ -138,7 +138,7 @@ pub fn comparison_text(records: &[ComparedRecord], left_out: &[LeftOut]) -> Stri
     let mut text = String::new();
     for record in records {
         let found = findings::gathered_of(record, findings::MOST_PLAIN);
-        text.push_str(&format!("{}\n\n{}\n", record.input.called(), answer::answer_text(record, &found)));
+        text.push_str(&format!("{}\n\n{}\n", record.input.called(), answer::answer_text(record, &found, false)));
         for hold in &record.holds {
             match laws_of_hold(record, hold) {
                 Some(table) => text.push_str(&table.to_plain_text()),

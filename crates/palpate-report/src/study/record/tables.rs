@@ -299,9 +299,14 @@ pub(super) fn all(analysis: &Analysis) -> Vec<Table> {
     tables
 }
 
-/// The tables and findings as text for a terminal.
+/// The tables and findings as text for a terminal; of many holds a row each, unless all is wanted `in_full`, and whether that would be more.
 #[must_use]
-pub fn analysis_text(analysis: &Analysis, input: &Input) -> String {
+pub fn analysis_text(analysis: &Analysis, input: &Input, in_full: bool) -> (String, bool) {
+    let in_brief = !in_full && analysis.holds.len() > answer::FEW;
+    (text_of(analysis, input, in_brief), in_brief)
+}
+
+fn text_of(analysis: &Analysis, input: &Input, in_brief: bool) -> String {
     let compared = ComparedRecord::of_analysis(analysis, input.clone());
     let gathered = findings::gathered(analysis, findings::MOST_PLAIN);
     if analysis.holds.is_empty() {
@@ -309,13 +314,15 @@ pub fn analysis_text(analysis: &Analysis, input: &Input) -> String {
     }
     let mut text = String::new();
     if analysis.options.compare.is_some() {
-        text.push_str(&answer::answer_text(&compared, &gathered));
+        text.push_str(&answer::answer_text(&compared, &gathered, in_brief));
         text.push('\n');
     }
     let mut tables = vec![holds(analysis)];
-    tables.extend(budget::tables(&budgets_of_analysis(analysis, &compared), analysis.options.fit.confidence));
+    if !in_brief {
+        tables.extend(budget::tables(&budgets_of_analysis(analysis, &compared), analysis.options.fit.confidence));
+    }
     tables.extend(paper_tables(analysis));
-    if analysis.specimen.is_none() {
+    if analysis.specimen.is_none() && !in_brief {
         tables.push(fits(analysis));
     }
     tables.push(exponents(analysis));

@@ -483,7 +483,7 @@ impl Finding {
                     "sign_suspicious",
                     format!("the sign of the {column} may be reversed: it falls first, to {} {unit} below its start", significant(fall, 3)),
                     "compression, or stretch of a strip, must be positive; with the other sign loading reads as unloading",
-                    "if the file has the opposite sign, give the unit of that column a minus sign, as in \"force=Load:-N\" of the columns, or set sign = -1 in the test description",
+                    "if the file has the opposite sign, give the unit of that column a minus sign among the columns (⟨columns⟩), or set sign = -1 in its table of the test description",
                 )
             }
             Self::RateCoefficientTrend { verdict, holds, slope, interval: (low, high) } => {
