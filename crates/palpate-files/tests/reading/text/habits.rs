@@ -350,7 +350,7 @@ fn thousands_are_read_where_the_column_shows_them() {
         assert!(layout(text).to_string().contains("thousands set off"), "{text}");
     }
     // Latin-1 has the blank that breaks no line in one byte.
-    let latin = read(b"t;F (\xb5N)\n0,0;998,5\n0,1;1\xa0185,1\n".to_vec(), &[2]).expect("Latin-1");
+    let latin = read(b"t;F (\xb5N)\n0,0;998,5\n0,1;1\xa0185,1\n", &[2]).expect("Latin-1");
     assert_eq!(latin.values, [vec![998.5, 1185.1]]);
     // Three decimals of one column beside decimal commas of another.
     assert!(read("t;F\n0,1;1.185\n0,2;1.190\n", &[1, 2]).is_err());
