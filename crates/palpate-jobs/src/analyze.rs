@@ -185,8 +185,7 @@ impl Analyzed {
     #[must_use]
     pub fn brief_text(&self) -> String {
         let (text, is_brief) = analysis_text(&self.analysis, &self.input, false);
-        let rest =
-            "--details prints the formula, the forecast and every fit of each hold, and the uncertainty budget.\n";
+        let rest = "--details prints the formula, the held-out errors and every fit of each hold.\n";
         if is_brief { text + rest } else { text }
     }
 }

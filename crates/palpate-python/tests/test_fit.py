@@ -266,8 +266,22 @@ def test_an_estimate_is_formatted_with_its_error() -> None:
     one = estimate["equilibrium"]
     assert f"{one:.3f}" == f"{one.value:.3f} ± {one.standard_error:.3f}" and f"{one}" == str(one) == repr(one)
     assert f"{estimate['exponent']:.2f}" == "5.00"
+    # Numbers were padded one by one.
+    assert f"{one:>20.2f}" == f"{one:.2f}".rjust(20) and f"{one:<20.2f}" == f"{one:.2f}".ljust(20)
+    assert f"{one:+.2f}" == f"+{one:.2f}"
     with pytest.raises(ValueError, match="format"):
         f"{one:x}"
+
+
+def test_numbered_terms_keep_their_bounds() -> None:
+    """``amplitude_1`` between 0 and 0.5 was 0.98 with an interval from 0.95 to 0.5, and the fit was good."""
+    t = np.linspace(0.0, 40.0, 400)
+    y = 1 + np.exp(-t / 2) + 0.3 * np.exp(-t / 25) + np.random.default_rng(0).normal(0.0, 0.02, t.size)
+    fit = palpate.fit_hold(t, y, law="prony:2", bounds={"amplitude_1": (0, 0.5)})
+    interval = fit.estimates["amplitude_1"].interval
+    assert fit.is_good and interval is not None and 0 < interval[0] < fit.parameters["amplitude_1"] < interval[1] < 0.5
+    assert fit.rmse == pytest.approx(palpate.fit_hold(t, y, law="prony:2").rmse, rel=1e-9)
+    assert np.all(np.asarray(fit.sample(50)["amplitude_1"]) <= 0.5)
 
 
 def test_intervals_rest_on_what_was_requested_for() -> None:

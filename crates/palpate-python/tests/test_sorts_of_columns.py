@@ -280,3 +280,28 @@ def test_labels_do_not_replace_results() -> None:
             palpate.fit_many(frame.rename(columns={"run": name}), by=name, time="t", signal="y")
     mixed = frame.assign(run=["1"] * (len(frame) // 2) + [2] * (len(frame) - len(frame) // 2))
     assert palpate.fit_many(mixed, by="run", time="t", signal="y")["run"] == ["1", "2"]
+
+
+def test_dates_far_from_the_samples_are_no_other_dates() -> None:
+    """Beyond 292 years nanoseconds began again: the year 2600 was a time before the first sample."""
+    fit = palpate.fit_hold(DATES, Y, law="standard-linear-solid")
+    limit = fit.parameters["equilibrium"]
+    assert fit.predict(np.array(["2600-01-01", "9999-12-31"], dtype="datetime64[D]")) == pytest.approx(limit, rel=1e-6)
+    assert fit.predict(np.datetime64("1600-01-01")) == fit.predict(DATES[0])
+    with pytest.raises(palpate.OptionError, match="expected dates within 292 years of 1970, found 9999-01-01"):
+        fit.predict(datetime.datetime(9999, 1, 1))
+    with pytest.raises(palpate.OptionError, match="expected dates alone, found NoneType None at index 1"):
+        fit.predict([datetime.datetime(2024, 3, 1), None])
+    years = np.arange(400).astype("datetime64[Y]")
+    slow = palpate.fit_hold(years, 1 + 2 * np.exp(-np.arange(400) / 50), law="standard-linear-solid")
+    assert slow.predict(years[-1]) == pytest.approx(slow.best_fit[-1], rel=1e-12)
+
+
+def test_quantities_are_of_one_dimension_and_of_that_of_the_number() -> None:
+    """A radius of 30 N was one of 30 m."""
+    with pytest.raises(palpate.OptionError, match="specimen.radius: expected numbers in SI, found quantities in newton"):
+        palpate.simulate_many(PROTOCOL, {"specimen.radius": UNITS.Quantity([30.0, 35.0], "N")})
+    runs = palpate.simulate_many(PROTOCOL, {"specimen.radius_m": UNITS.Quantity([30.0, 35.0], "mm")})
+    assert runs == palpate.simulate_many(PROTOCOL, {"specimen.radius": [0.03, 0.035]})
+    with pytest.raises(palpate.OptionError, match="signal: expected quantities of one dimension, found newton and, at index 1, meter"):
+        palpate.fit_hold([0.0, 1.0], [UNITS.Quantity(1.0, "N"), UNITS.Quantity(2.0, "m")])

@@ -39,9 +39,24 @@ pub(crate) fn find(lines: &[&str], skip: usize, delimiters: &[Delimiter]) -> Opt
         let cells = classify(lines, skip, delimiter);
         Some((longest_run(&cells)?, cells, delimiter))
     });
+    let runs: Vec<(Run, Vec<Vec<Cell>>, Delimiter)> = runs.collect();
     // The first of several with one score.
-    let best = runs.reduce(|best, next| if next.0.score > best.0.score { next } else { best });
-    best.map(|(run, cells, delimiter)| of_run(run, cells, delimiter))
+    let best =
+        (0..runs.len()).reduce(|best, next| if runs[next].0.score > runs[best].0.score { next } else { best })?;
+    let cuts_thousands = |(run, cells, delimiter): &(Run, Vec<Vec<Cell>>, Delimiter)| {
+        let is_mark = matches!(delimiter, Delimiter::Tab | Delimiter::Semicolon);
+        is_mark && run.last - run.first >= runs[best].0.last - runs[best].0.first && is_all_numbers(run, cells)
+    };
+    // Blanks set off thousands where another mark cuts the same lines into numbers alone.
+    let marked = (0..runs.len()).find(|other| runs[best].2 == Delimiter::Blanks && cuts_thousands(&runs[*other]));
+    runs.into_iter()
+        .nth(marked.unwrap_or(best))
+        .map(|(run, cells, delimiter)| of_run(run, cells, delimiter))
+}
+
+/// Whether the lines of a run have two cells or more, each a number.
+fn is_all_numbers(run: &Run, cells: &[Vec<Cell>]) -> bool {
+    run.width > 1 && cells[run.first..=run.last].iter().flatten().all(|cell| cell.is_numeric())
 }
 
 /// The block of data in rows of cells that are split already, as those of a sheet are.
@@ -180,6 +195,10 @@ mod tests {
         assert_eq!(found(&[" 1,5  2", " 2,5  3"]), Some((Delimiter::Blanks, 0, 2)));
         assert_eq!(found(&["1.5, 2", "2.5, 3"]), Some((Delimiter::Comma, 0, 2)));
         assert_eq!(found(&["time,force"]), None);
+        // Thousands were cut at their blanks: forces of 1 N and "000".
+        assert_eq!(found(&["0\t1 000\t0.1", "1\t1 280\t0.2"]), Some((Delimiter::Tab, 0, 3)));
+        assert_eq!(found(&["0,5\t1 030", "1,5\t1 040"]), Some((Delimiter::Tab, 0, 2)));
+        assert_eq!(found(&["0 \t100 20", "1 \t110 30"]), Some((Delimiter::Blanks, 0, 3)));
     }
 
     #[test]

@@ -55,10 +55,21 @@ def as_doubles(values: Any, name: str, omit_nan: bool = False) -> NDArray[np.flo
 def _dates(array: NDArray[Any]) -> NDArray[np.datetime64] | None:
     """Dates as those of NumPy; None of another column."""
     if array.dtype.kind == "O" and array.size and not isinstance(array[0], timedelta) and hasattr(array[0], "timestamp"):
-        # Dates with a time zone are objects: those of pandas keep nanoseconds in `value`.
-        moments = [moment.value if hasattr(moment, "value") else round(1e6 * _with_zone(moment).timestamp()) * 1000 for moment in array]
-        return np.array(moments, dtype="datetime64[ns]")
+        return np.array([_moment_ns(moment, index) for index, moment in enumerate(array)], dtype="datetime64[ns]")
     return array if array.dtype.kind == "M" else None
+
+
+def _moment_ns(moment: Any, index: int) -> int:
+    """A date in ns since 1970; dates with a time zone are objects, of which those of pandas keep nanoseconds in `value`."""
+    if not hasattr(moment, "timestamp"):
+        raise OptionError(f"expected dates alone, found {_reported(moment)} at index {index}")
+    try:
+        found = moment.value if hasattr(moment, "value") else round(1e6 * _with_zone(moment).timestamp()) * 1000
+    except OverflowError:
+        found = 1 << 63
+    if not -(1 << 63) <= found < 1 << 63:
+        raise OptionError(f"expected dates within 292 years of 1970, found {moment} at index {index}")
+    return int(found)
 
 
 def _with_zone(moment: Any) -> Any:
@@ -73,6 +84,21 @@ def _first(dates: NDArray[np.datetime64]) -> np.datetime64:
     return first
 
 
+def _since(dates: NDArray[np.datetime64], first_ns: int) -> NDArray[np.float64]:
+    """Time in s since a date in ns since 1970; coarse dates may lie further from it than nanoseconds count."""
+    whole, rest = divmod(first_ns, 1000)
+    if _is_fine(dates):
+        passed, rest = dates - np.datetime64(first_ns, "ns"), 0
+    else:
+        passed = dates.astype("datetime64[us]") - np.datetime64(whole, "us")
+    return np.where(np.isnat(passed), np.nan, passed / np.timedelta64(1, "s") - 1e-9 * rest)
+
+
+def _is_fine(dates: NDArray[np.datetime64] | np.datetime64) -> bool:
+    """Whether the unit of dates is a nanosecond or less."""
+    return np.datetime_data(dates.dtype)[0] in ("ns", "ps", "fs", "as")
+
+
 def first_date_ns(times: Any) -> int | None:
     """The first date of a column of times in ns since 1970; None of a column of others."""
     if isinstance(times, np.ndarray) and times.dtype.kind == "f":
@@ -83,7 +109,14 @@ def first_date_ns(times: Any) -> int | None:
         # What reads the column says what is wrong with it.
         return None
     dates = _dates(column) if column.ndim == 1 and column.size else None
-    return None if dates is None else int(_first(dates).astype("datetime64[ns]").astype(np.int64))
+    return None if dates is None else _ns(_first(dates))
+
+
+def _ns(date: np.datetime64) -> int:
+    """A date in ns since 1970, of any unit."""
+    if _is_fine(date):
+        return int(date.astype("datetime64[ns]").astype(np.int64))
+    return 1000 * int(date.astype("datetime64[us]").astype(np.int64))
 
 
 def at_times(values: Any, name: str, first_ns: int | None) -> tuple[NDArray[np.float64], bool]:
@@ -106,7 +139,7 @@ def at_times(values: Any, name: str, first_ns: int | None) -> tuple[NDArray[np.f
     if first_ns is None:
         message = f"{name}: expected numbers in s or durations, as the samples have, found dates"
         raise OptionError(f"{message}\nhint: subtract the date at which their clock is 0")
-    return as_doubles(dates - np.datetime64(first_ns, "ns"), name), is_single
+    return as_doubles(_since(dates, first_ns), name), is_single
 
 
 def _seconds(array: NDArray[Any], name: str) -> NDArray[Any]:
@@ -115,7 +148,7 @@ def _seconds(array: NDArray[Any], name: str) -> NDArray[Any]:
     if dates is not None:
         if not name.endswith("time_s"):
             raise OptionError(f"{name}: expected numbers in s, found dates\nhint: subtract the first date of the samples")
-        array = dates - _first(dates)
+        return _since(dates, _ns(_first(dates)))
     elif array.dtype.kind == "O" and isinstance(array[0], timedelta):
         array = array.astype("timedelta64[ns]")
     if array.dtype.kind == "m" and name.rstrip(")").endswith("_s"):

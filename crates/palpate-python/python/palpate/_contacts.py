@@ -6,7 +6,7 @@ import os
 from collections.abc import Mapping
 from typing import Any
 
-from palpate import _palpate
+from palpate import _palpate, _units
 from palpate._descriptions import described, toml
 from palpate._options import DriveBy, EnergyBy
 from palpate._palpate import OptionError, Record, Table, Trajectory
@@ -187,6 +187,8 @@ def simulate_many(
         example = '{"law.exponent": [3, 5]}'
         raise OptionError(f"numbers: expected arrays by the path of a number, such as {example}, found {type(numbers).__name__}")
     columns = [(str(number), values) for number, values in numbers.items()]
+    for number, values in columns:
+        _check_dimension(number, values)
     try:
         runs = len(columns[0][1]) if columns else 0
     except TypeError:
@@ -194,3 +196,11 @@ def simulate_many(
         runs = 0
     with bar(progress, runs, "run") as tell:
         return _palpate.simulate_many(path, text, columns, times_s, tell)
+
+
+def _check_dimension(path: str, values: Any) -> None:
+    """Refuses quantities of a dimension beside a path without its unit: nothing says whether it is that of the number."""
+    first = values[0] if isinstance(values, (list, tuple)) and values else values
+    if _units.is_quantity(first) and not first.dimensionless and not _units.ending(path):
+        message = f"{path}: expected numbers in SI, found quantities in {first.units}"
+        raise OptionError(f"{message}\nhint: end the path in its unit, as in specimen.radius_m")

@@ -1592,8 +1592,8 @@ class Fit(_Series):
         Parameters
         ----------
         time_s : float or array_like, shape (N,), optional
-            Time on the clock of the samples that were fitted, s, or a duration on it; dates where the samples had dates. Before the first
-            sample the signal is that at the start, at inf it is the limit of the law, at NaN it is NaN. Without any, the times of the samples.
+            Time on the clock of the samples that were fitted, s, or a duration on it; dates where the samples had dates, without a zone in
+            UTC. Before the first sample the signal is that at the start, at inf it is the limit of the law, at NaN it is NaN. Without any, the times of the samples.
         elapsed_s : float or array_like, shape (N,), optional
             Instead of `time_s`: time since the first sample, s.
         interval : float, optional

@@ -183,7 +183,8 @@ def _creep(fit: Any, elapsed_s: NDArray[np.float64], parameters: dict[str, float
         return laws.logarithmic(elapsed_s, start, -shape["amplitude"], shape["time_constant_s"])
     if fit.law == "power":
         return np.asarray(start + shape["amplitude"] * passed ** shape["exponent"])
-    flow = parameters.get("flow", 0.0) * passed
+    # Without flow an infinite time adds nothing: 0 * inf is NaN.
+    flow = parameters["flow"] * passed if parameters.get("flow") else np.zeros_like(passed)
     if fit.law == "maxwell":
         return np.asarray(start + flow)
     amplitudes = {name: -value for name, value in shape.items() if name.startswith("amplitude")}

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from html import escape
 from typing import Any
 
@@ -61,3 +62,19 @@ def _repr_html_(self: Any) -> str:
 
     rows = "".join(cells(row, "td") for row in body)
     return f"<p>{escape(_heading(self))}</p><table><thead>{cells(head, 'th')}</thead><tbody>{rows}</tbody></table>"
+
+
+#: The parts of a format of numbers: what pads the whole, and what each number is written by.
+_FORMAT = re.compile(r"(?:(.?)([<>=^]))?([-+ ]?)(z?#?)(0?)(\d*)(.*)", re.DOTALL)
+
+
+def formatted(value: float, error: float | None, spec: str) -> str:
+    """An estimate with its standard error, each by a format of numbers, padded together to its width."""
+    fill, align, sign, alternate, zero, width, rest = _FORMAT.fullmatch(spec).groups()  # type: ignore[union-attr]
+    plain = alternate + rest
+    text = format(value, sign + plain)
+    if error is not None:
+        text += f" ± {format(error, plain)}"
+    # The whole is no number that zeros could fill up behind its sign.
+    align = ">" if align in (None, "=") or zero else align
+    return f"{text:{fill or ' '}{align}{width}}" if width else text

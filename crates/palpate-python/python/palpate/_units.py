@@ -29,6 +29,10 @@ def in_si(values: Any, name: str) -> Any:
         bare = next((index for index, value in enumerate(values) if not is_quantity(value)), None)
         if bare is not None:
             raise OptionError(f"{name}: expected quantities with a unit everywhere, found one without at index {bare}")
+        other = next((index for index, value in enumerate(values) if not value.is_compatible_with(values[0].units)), None)
+        if other is not None:
+            message = f"{name}: expected quantities of one dimension, found {values[0].units} and, at index {other}, {values[other].units}"
+            raise OptionError(message)
         return [in_si(value, name) for value in values]
     if isinstance(values, (list, tuple)) or not is_quantity(values):
         return values

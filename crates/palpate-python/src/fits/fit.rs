@@ -13,7 +13,7 @@ use palpate::number::{significant, with_interval};
 use palpate::watch::{Unwatched, Watch};
 use palpate_report::result::word;
 use pyo3::prelude::*;
-use pyo3::types::{IntoPyDict, PyDict, PyFloat};
+use pyo3::types::{IntoPyDict, PyDict};
 use serde::{Deserialize, Serialize};
 
 use crate::arrays::{array, doubles};
@@ -56,19 +56,13 @@ shown! {
         self.estimate.value
     }
 
-    /// Value and standard error, each by the format; without one what ``str`` gives.
+    /// Value and standard error, each by the format and padded together to its width; without a format what ``str`` gives.
     fn __format__(&self, py: Python<'_>, format: &str) -> PyResult<String> {
         if format.is_empty() {
             return Ok(self.__repr__());
         }
-        let number = |value: f64| -> PyResult<String> {
-            PyFloat::new(py, value).call_method1("__format__", (format,))?.extract()
-        };
-        let value = number(self.estimate.value)?;
-        Ok(match self.estimate.standard_error {
-            Some(error) => format!("{value} ± {}", number(error)?),
-            None => value,
-        })
+        let found = (self.estimate.value, self.estimate.standard_error, format);
+        py.import("palpate._show")?.call_method1("formatted", found)?.extract()
     }
 
     fn __repr__(&self) -> String {
@@ -310,8 +304,8 @@ shown! {
     /// Parameters
     /// ----------
     /// time_s : float or array_like, shape (N,), optional
-    ///     Time on the clock of the samples that were fitted, s, or a duration on it; dates where the samples had dates. Before the first
-    ///     sample the signal is that at the start, at inf it is the limit of the law, at NaN it is NaN. Without any, the times of the samples.
+    ///     Time on the clock of the samples that were fitted, s, or a duration on it; dates where the samples had dates, without a zone in
+    ///     UTC. Before the first sample the signal is that at the start, at inf it is the limit of the law, at NaN it is NaN. Without any, the times of the samples.
     /// elapsed_s : float or array_like, shape (N,), optional
     ///     Instead of `time_s`: time since the first sample, s.
     /// interval : float, optional

@@ -298,7 +298,7 @@ shown! {
     /// >>> round(fit.parameters["time_constant_s"], 3)
     /// 8.0
     #[pyo3(signature = (hold=1, *, law=None))]
-    fn fit(&self, py: Python<'_>, hold: usize, law: Option<&str>) -> PyResult<PyFit> {
+    fn fit(&self, py: Python<'_>, hold: i64, law: Option<&str>) -> PyResult<PyFit> {
         fit_of(&self.done(py)?.result.analysis, hold, law)
     }
 

@@ -27,8 +27,8 @@ fn with_samples(hold: &HoldAnalysis, fit: &Fit) -> PyFit {
 }
 
 /// The fit of a law to the hold with this number; of the recommended law without a name.
-pub(super) fn fit_of(analysis: &Analysis, number: usize, law: Option<&str>) -> PyResult<PyFit> {
-    let Some(hold) = analysis.holds.iter().find(|hold| hold.number == number) else {
+pub(super) fn fit_of(analysis: &Analysis, number: i64, law: Option<&str>) -> PyResult<PyFit> {
+    let Some(hold) = analysis.holds.iter().find(|hold| usize::try_from(number) == Ok(hold.number)) else {
         let message = format!("hold: expected a number from 1 to {}, found {number}", analysis.holds.len());
         return Err(refused_plainly::<OptionError>(message));
     };

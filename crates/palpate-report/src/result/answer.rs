@@ -4,7 +4,7 @@ use std::cmp::Ordering;
 
 use palpate::analysis::{Finding, Severity};
 use palpate::fit::Fit;
-use palpate::forecast::{Certainty, Comparison, PooledVerdict, Ranking, name_in_words, pooled};
+use palpate::forecast::{Certainty, Comparison, PooledVerdict, Ranking, Verdict, name_in_words, pooled};
 use palpate::laws::Law;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -199,7 +199,7 @@ fn sentence(record: &ComparedRecord, law: Option<Law>, agreeing: usize, judged: 
         .iter()
         .filter(|found| found.verdict.as_ref().is_some_and(|verdict| verdict.reservation.is_some()));
     let what = match reserved.count() {
-        0 => &*open_on_all(judged).map_or_else(
+        0 => &*open_on_most(judged, law).map_or_else(
             || "Law for this record".to_owned(),
             |open| format!("{open} The first choice for this record"),
         ),
@@ -219,18 +219,28 @@ fn sentence(record: &ComparedRecord, law: Option<Law>, agreeing: usize, judged: 
     )
 }
 
-/// That the law is open, if it is on every hold; it stands before the choice.
-fn open_on_all(judged: &[&Comparison]) -> Option<String> {
+/// That the law is open, unless it is certain on most holds that name this one; it stands before the choice.
+fn open_on_most(judged: &[&Comparison], law: Law) -> Option<String> {
     let verdicts = || judged.iter().filter_map(|found| found.verdict.as_ref());
-    if !verdicts().all(|verdict| verdict.certainty == Certainty::Open) {
+    let is_open = |verdict: &&Verdict| verdict.certainty == Certainty::Open;
+    let (open, all) = (verdicts().filter(is_open).count(), verdicts().count());
+    let certain = verdicts().filter(|verdict| verdict.certainty != Certainty::Open && verdict.law == law).count();
+    if certain >= open.max(1) {
         return None;
     }
-    let most = verdicts().map(|verdict| verdict.probability).fold(0.0, f64::max);
-    let (each, most) = match judged {
-        [_] => (String::new(), format!("{:.0} %", 100.0 * most)),
-        judged => (format!(" on each of {} holds", judged.len()), format!("{:.0} % at the most", 100.0 * most)),
+    let most = 100.0 * verdicts().filter(is_open).map(|verdict| verdict.probability).fold(0.0, f64::max);
+    let others = match all - open - certain {
+        0 => String::new(),
+        others => format!(", and {others} favour another law"),
     };
-    Some(format!("Which law to use is open{each} ({most})."))
+    Some(match (open, all) {
+        (_, 1) => format!("Which law to use is open ({most:.0} %)."),
+        (open, all) if open == all => {
+            format!("Which law to use is open on each of {all} holds ({most:.0} % at the most).")
+        }
+        (0, _) => "Which law to use differs from hold to hold.".to_owned(),
+        (open, all) => format!("Which law to use is open on {open} of {all} holds ({most:.0} % at the most){others}."),
+    })
 }
 
 /// What the choice rests on where no hold could be held out in part; it stands before the choice.

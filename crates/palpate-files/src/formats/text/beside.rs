@@ -44,7 +44,7 @@ pub(super) fn look_into(
         metadata,
         ..layout.clone()
     };
-    let groups: Vec<Group> = groups.into_iter().map(|group| part_of(&layout, group)).collect();
+    let groups: Vec<Group> = groups.iter().map(|group| part_of(&layout, group, groups[0])).collect();
     let part = |(group, title): (&Group, String)| Part {
         name: Some(title),
         written: layout.to_string(),
@@ -67,7 +67,13 @@ pub(super) fn look_into(
 /// The columns of each test, where their names repeat and exactly one in each group is a time. Empty ones stand between groups.
 fn groups(columns: &[ColumnInfo]) -> Option<Vec<&[ColumnInfo]>> {
     let filled = |column: &ColumnInfo| column.kind != ColumnKind::Empty || column.name.is_some();
-    let times: Vec<usize> = candidates(columns, Quantity::Time).iter().map(|column| column.number - 1).collect();
+    let known: HashSet<String> = candidates(columns, Quantity::Time)
+        .iter()
+        .filter_map(|column| column.name.as_deref().map(base))
+        .collect();
+    // A number behind the unit hides it: `Time (s).1`.
+    let is_time = |column: &&ColumnInfo| column.name.as_deref().is_some_and(|name| known.contains(&base(name)));
+    let times: Vec<usize> = columns.iter().filter(is_time).map(|column| column.number - 1).collect();
     let first = columns.iter().position(filled)?;
     let offset = times.first()?.checked_sub(first)?;
     let starts = times.iter().map(|time| time.checked_sub(offset)).collect::<Option<Vec<usize>>>()?;
@@ -83,20 +89,25 @@ fn groups(columns: &[ColumnInfo]) -> Option<Vec<&[ColumnInfo]>> {
     (groups.len() > 1 && groups[0].len() > 1 && groups.iter().all(|group| is_one(group))).then_some(groups)
 }
 
-/// A name less the number that tells it from its like: `Force 2`, `Force.1`, `Force_3`.
+/// A name less its unit and the number that tells it from its like: `Force 2`, `Force.1`, `Force_3`, `Force (N).1`.
 fn base(name: &str) -> String {
-    name.trim_end_matches(|letter: char| letter.is_ascii_digit() || " ._#()-".contains(letter))
+    let end = name.find(['(', '[']).filter(|at| *at > 0).unwrap_or(name.len());
+    name[..end]
+        .trim_end_matches(|letter: char| letter.is_ascii_digit() || " ._#()-".contains(letter))
         .to_lowercase()
 }
 
-/// One group, as it is written when it stands alone.
-fn part_of(layout: &Layout, group: &[ColumnInfo]) -> Group {
+/// One group, as it is written when it stands alone; a unit that a number hides is that of the first group.
+fn part_of(layout: &Layout, group: &[ColumnInfo], model: &[ColumnInfo]) -> Group {
     let first = group[0].number - 1;
     let columns = group
         .iter()
+        .zip(model)
         .zip(1..)
-        .map(|(column, number)| ColumnInfo {
+        .map(|((column, model), number)| ColumnInfo {
             number,
+            name: if column.unit.is_none() { model.name.clone() } else { column.name.clone() },
+            unit: column.unit.clone().or_else(|| model.unit.clone()),
             ..column.clone()
         })
         .collect();

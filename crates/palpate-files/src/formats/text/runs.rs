@@ -59,7 +59,7 @@ pub(super) fn look_into(
     let named = named(layout);
     let begins_again = || match clock(input, layout) {
         Some(plan) => match restarts(first.iter().copied(), &plan) {
-            Some(found) if found.is_empty() => begins_again_later(input, layout, (sampled.len(), &plan)),
+            Some(found) if found.is_empty() => begins_again_later(input, layout, (sampled, &plan)),
             found => Ok(found.is_some()),
         },
         None => Ok(false),
@@ -123,22 +123,33 @@ fn clock<'l>(input: &'l Input, layout: &'l Layout) -> Option<RowPlan<'l>> {
     RowPlan::new(&input.name, layout, &[time.number]).ok()
 }
 
-/// Whether the clock steps back behind the lines looked at so far.
-fn begins_again_later(input: &Input, layout: &Layout, (from, plan): (usize, &RowPlan<'_>)) -> Result<bool, FileError> {
+/// Whether the clock steps back behind the lines looked at so far, with nothing between rows but the lines above the first of them:
+/// other names would be another table.
+fn begins_again_later(
+    input: &Input,
+    layout: &Layout,
+    (sampled, plan): (&[&str], &RowPlan<'_>),
+) -> Result<bool, FileError> {
     /// Largest file that is gone through for this alone (16 MiB).
     const MOST: u64 = 16 << 20;
+    let from = sampled.len();
     let was_whole = from < MOST_LINES && input.size <= LONGEST_LINE as u64;
     if was_whole || input.size > MOST || input.packing != Packing::None {
         return Ok(false);
     }
+    let head = &sampled[..layout.first_data_line - 1];
+    let is_known = |line: &[u8]| head.iter().any(|known| known.trim().as_bytes() == line.trim_ascii());
     let mut reader = LineReader::open(input, layout.encoding)?;
-    let (mut read, mut last) = ([0.0], f64::NEG_INFINITY);
+    let (mut read, mut last, mut number) = ([0.0], f64::NEG_INFINITY, 0);
     while let Some(line) = reader.next_line()? {
+        number += 1;
         if plan.read(line, &mut read).is_ok() {
             if read[0] < last {
-                return Ok(reader.line() > from);
+                return Ok(number > from);
             }
             last = read[0];
+        } else if number > from && !line.trim_ascii().is_empty() && !is_known(line) {
+            return Ok(false);
         }
     }
     Ok(false)
@@ -185,8 +196,11 @@ fn goes_on(lines: &[Line<'_>], plan: &RowPlan<'_>) -> bool {
 
 /// Rows at which the clock begins again; `None` where it steps back elsewhere.
 fn restarts<'t>(rows: impl Iterator<Item = &'t str>, plan: &RowPlan<'_>) -> Option<Vec<usize>> {
+    /// Share of the time before by which the second row of a test follows the first at most: a single stamp that is wrong is no test.
+    const SECOND: f64 = 0.5;
     let (mut starts, mut begun) = (Vec::new(), 0);
     let mut known: Option<(f64, f64)> = None;
+    let mut latest = f64::INFINITY;
     let mut read = [0.0];
     for (row, line) in rows.enumerate() {
         if plan.read(line.as_bytes(), &mut read).is_err() {
@@ -200,9 +214,14 @@ fn restarts<'t>(rows: impl Iterator<Item = &'t str>, plan: &RowPlan<'_>) -> Opti
                 }
                 starts.push(row);
                 begun = row;
+                latest = time + SECOND * (last - first);
                 Some((time, time))
             }
-            Some((first, _)) => Some((first, time)),
+            Some(_) if time > latest => return None,
+            Some((first, _)) => {
+                latest = f64::INFINITY;
+                Some((first, time))
+            }
             None => Some((time, time)),
         };
     }

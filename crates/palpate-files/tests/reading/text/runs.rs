@@ -100,6 +100,28 @@ fn a_clock_that_begins_again_far_below_begins_a_test() {
     assert_eq!(titles(&contents), ["run 1", "run 2"]);
 }
 
+/// A second table with other names or units behind the lines looked at first was read with those of the first.
+#[test]
+fn a_late_table_with_names_of_its_own_is_no_run_of_the_first() {
+    let rows = |count: usize| (0..count).map(|at| format!("{at},{},0\n", at % 7)).collect::<String>();
+    let names = "Time (s),Force (N),Displacement (mm)\n";
+    let late = |between: &str| open(&format!("{names}{}{between}{}", rows(5000), rows(300)));
+    assert_eq!(late("").parts.len(), 2);
+    assert_eq!(late(names).parts.len(), 2);
+    for between in [
+        "Time (s),Force (kN),Displacement (mm)\n",
+        "Time (s),Displacement (mm),Force (N)\n",
+        "Specimen,K2,\n",
+    ] {
+        let contents = late(between);
+        assert_eq!(contents.parts.len(), 1, "{between}");
+        assert!(read_part(&contents, 0, None, &mut |_, _| Ok(())).is_err(), "{between}");
+    }
+    // One wrong stamp is no test.
+    let stamped = rows(5000).replace("\n4500,", "\n0,");
+    assert_eq!(open(&format!("{names}{stamped}")).parts.len(), 1);
+}
+
 /// Groups of columns side by side: only the last was read, and a short specimen was refused.
 #[test]
 fn columns_side_by_side_are_tests() {
@@ -124,6 +146,16 @@ fn columns_side_by_side_are_tests() {
     let contents = open(&text);
     assert_eq!(titles(&contents), ["columns 1–2", "columns 3–4"]);
     assert_eq!(forces(&contents, 1)[3], 3.5);
+    // A number behind the unit, as pandas writes it: only the first was read.
+    for (second, third) in [
+        ("Time (s).1,Force (N).1", "Time (s).2,Force (N).2"),
+        ("Time (s) (2),Force (N) (2)", "Time (s) (3),Force (N) (3)"),
+    ] {
+        let rows: String = (0..10).map(|at| format!("{at},1.5,{at},{at}.5,{at},2.5\n")).collect();
+        let contents = open(&format!("Time (s),Force (N),{second},{third}\n{rows}"));
+        assert_eq!(titles(&contents).len(), 3, "{second}");
+        assert_eq!(forces(&contents, 1)[3], 3.5, "{second}");
+    }
     // What cannot be read has the line that it has in the file.
     let error: FileError =
         open(&text.replace("7,1.5,7,7.5", "7,1.5,7,x")).read(1, &[1, 2], &mut |_, _| Ok(())).unwrap_err();

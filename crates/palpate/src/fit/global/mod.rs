@@ -7,12 +7,14 @@
 //! |---|---|
 //! | `grid.rs`, `plane.rs` | values that are tried, and nodes with all that needs no search projected out |
 //! | `lattice.rs`, `starts.rs` | the exhaustive coarse search |
+//! | `each.rs` | the same of terms with bounds of their own |
 //! | `exchange.rs` | exponentials added to a series, and replaced in it |
 //! | `kinks.rs` | laws that end in finite time |
 //! | `merged/` | local searches where terms merge |
 //! | `thorough.rs` | the search for hard cases |
 //! | `search.rs` | the whole way, and the doubts |
 
+mod each;
 mod exchange;
 pub(crate) mod grid;
 mod kinks;
@@ -23,13 +25,14 @@ pub(crate) mod search;
 pub(crate) mod starts;
 mod thorough;
 
+use each::search_each;
 use exchange::{exchanged, grown, paired, rising};
 pub(super) use grid::{Grid, coarse, rates};
 pub(crate) use grid::{combinations, distinct};
 use grid::{ends, finite_end, rates_with_end};
 use kinks::{first_kinks, near_kinks};
 use lattice::Lattice;
-use merged::{Valley, exact, inflation, local, rounding};
+use merged::{Valley, exact, inflation, local, mark_merged, rounding};
 use plane::Plane;
 pub(super) use search::{finalists, search};
 use starts::{fine_starts, starts};

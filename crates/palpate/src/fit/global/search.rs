@@ -1,7 +1,7 @@
 //! From a model and samples to the global optimum.
 
-use super::{ends, exact, grown, inflation, local, near_kinks, starts, thorough};
-use crate::fit::{Condensed, Model, RedundantTerm, Sampled, Scaled, condense, redundant_terms};
+use super::{ends, exact, grown, inflation, local, mark_merged, near_kinks, search_each, starts, thorough};
+use crate::fit::{Condensed, Model, Sampled, Scaled, condense, redundant_terms};
 use crate::optimise::{
     Effort, Ending, Near, Refined, Solution, Square, Target, Termination, curvature, descend, distance, polished,
     refine, standing, stepped,
@@ -21,6 +21,9 @@ pub(crate) fn search(
     most_iterations: usize,
     effort: &mut Effort<'_>,
 ) -> Result<Option<Solution>, Cancelled> {
+    if model.has_own_bounds() {
+        return search_each(model, scaled, most_iterations, effort);
+    }
     let nodes = condense(scaled);
     let valleys = valleys(model, &nodes, most_iterations, effort)?;
     let (shapes, target) = (model.at(&scaled.times), scaled.target());
@@ -112,14 +115,6 @@ fn settled_between_kinks(
 
 /// Relative difference of residual squares that is rounding.
 const ALIKE_AT_ALL: f64 = 1e-12;
-
-/// Says so if what ended well, or could not be distinguished, are merged terms.
-fn mark_merged(model: &Model, solution: &mut Solution) {
-    let open = matches!(solution.termination, Termination::Converged | Termination::Singular);
-    if open && redundant_terms(model, solution).iter().any(|term| matches!(term, RedundantTerm::Merged { .. })) {
-        solution.termination = Termination::TermsMerged;
-    }
-}
 
 /// The bottom of a valley of the condensed samples, or a start that only all samples can tell from it.
 struct Valley {

@@ -86,11 +86,11 @@ impl Fitted {
         self.model.names(|parameter| searched_name(&parameter.name, parameter.kind))
     }
 
-    /// Puts exponentials whose times were searched in the order of their times, fastest first.
+    /// Puts exponentials whose times were searched in the order of their times, fastest first; those with bounds of their own keep their places.
     pub(crate) fn arrange(&mut self) {
         let model = &self.model;
         let (moving, _) = model.moving();
-        if moving.len() < 2 || model.free().len() != moving.len() {
+        if moving.len() < 2 || model.free().len() != moving.len() || model.has_own_bounds() {
             return;
         }
         let solution = &mut self.solution;

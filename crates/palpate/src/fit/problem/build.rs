@@ -135,6 +135,7 @@ fn parameters(
             name,
             kind,
             bounds,
+            room: (widest.1 - widest.0).max(bounds.1 - bounds.0),
             fixed,
         });
     }

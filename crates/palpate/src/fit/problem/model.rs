@@ -13,6 +13,8 @@ pub(crate) struct ModelParameter {
     pub(crate) kind: ShapeParameterKind,
     /// Bounds in the units of the fit.
     pub(crate) bounds: (f64, f64),
+    /// Width of the range that a hold can tell of, whatever the bounds.
+    pub(crate) room: f64,
     /// Held at this value, in the units of the fit.
     pub(crate) fixed: Option<f64>,
 }
@@ -128,6 +130,17 @@ impl Model {
         (0..self.form.shapes.len()).partition(|&shape| self.free().any(|parameter| parameter.shape == shape))
     }
 
+    /// Whether terms of a series have bounds that tell them apart.
+    pub(crate) fn has_own_bounds(&self) -> bool {
+        let (moving, _) = self.moving();
+        let bounds = |shape: usize| {
+            let rate = self.parameters[self.parameters_of(shape).start].bounds;
+            (rate, self.linear_bounds.get(usize::from(self.constant) + shape))
+        };
+        let is_series = moving.len() > 1 && self.free.len() == moving.len();
+        is_series && moving.iter().any(|shape| bounds(*shape) != bounds(moving[0]))
+    }
+
     /// The model at these times.
     pub(crate) fn at<'a>(&'a self, times: &'a [f64]) -> Sampled<'a> {
         Sampled {
@@ -190,6 +203,10 @@ impl Shapes for Sampled<'_> {
 
     fn bounds(&self, index: usize) -> (f64, f64) {
         self.model.parameters[self.model.free[index]].bounds
+    }
+
+    fn room(&self, index: usize) -> f64 {
+        self.model.parameters[self.model.free[index]].room
     }
 
     fn linear_bounds(&self) -> &[(f64, f64)] {

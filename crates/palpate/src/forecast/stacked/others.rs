@@ -11,6 +11,9 @@ const FROM: [f64; 2] = [0.0, 0.3];
 /// Fewest other holds that are longer: what one tells of the next is tried on the others.
 const FEWEST: usize = 2;
 
+/// Fewest samples of a straight line that takes their noise off.
+const FEWEST_OF_LINE: usize = 6;
+
 /// A share of the last time that a hold has to reach, to tell of it.
 const REACHES: f64 = 0.95;
 
@@ -40,7 +43,7 @@ impl Others {
         durations.sort_by(|a, b| b.total_cmp(a));
         let until = *durations.get(durations.len().div_ceil(2).max(FEWEST) - 1)?;
         let long = others.iter().enumerate().filter(|(_, other)| other.duration() >= until);
-        let known = long.map(|(number, other)| Known::new(number, &other.samples)).collect();
+        let known = long.map(|(number, other)| Known::new(number, &other.samples, until)).collect();
         Some(Self { until, known })
     }
 
@@ -90,15 +93,27 @@ impl Others {
 }
 
 impl Known {
-    fn new(number: usize, samples: &Samples<'_>) -> Self {
+    /// Its course up to a time since the first sample, s; the last tenth is a straight line, since from its end laws go on.
+    fn new(number: usize, samples: &Samples<'_>, until: f64) -> Self {
+        const LAST: f64 = 0.1;
         let elapsed: Vec<f64> = samples.times.iter().map(|t| t - samples.times[0]).collect();
         let nodes = Condensed::finer(&elapsed, samples.values);
-        let values = nodes.values.iter().zip(&nodes.roots).map(|(value, root)| value / root).collect();
-        Self {
-            number,
-            times: nodes.times,
-            values,
+        let bare = nodes.values.iter().zip(&nodes.roots).map(|(value, root)| value / root);
+        let (mut times, mut values): (Vec<f64>, Vec<f64>) = nodes.times.iter().copied().zip(bare).unzip();
+        let points = elapsed.iter().zip(samples.values).map(|(t, y)| (*t, *y, 1.0));
+        let last: Vec<_> = points.filter(|(t, ..)| *t >= (1.0 - LAST) * until && *t <= until).collect();
+        if last.len() >= FEWEST_OF_LINE
+            && let Some((a, b, _)) = line(&last)
+        {
+            let kept = times.partition_point(|t| *t < last[0].0);
+            times.truncate(kept);
+            values.truncate(kept);
+            for t in [last[0].0, until] {
+                times.push(t);
+                values.push(a + b * t);
+            }
         }
+        Self { number, times, values }
     }
 
     fn end(&self) -> f64 {

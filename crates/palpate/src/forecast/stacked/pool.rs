@@ -9,6 +9,9 @@ const OTHERS: f64 = 0.2;
 /// The same for first parts that are as long as the hold itself.
 const AS_LONG: f64 = 10.0;
 
+/// An error that matters to nobody, as a share of the change.
+const NEGLIGIBLE: f64 = 1e-6;
+
 /// Trials by what is left out together: one of the hold itself, or all of another hold.
 pub(super) struct Pool<'a> {
     /// Numbers of the members that are weighed.
@@ -115,7 +118,7 @@ fn counted<'a>(
         trials.clone().into_iter().map(|trial| trial.importance * trial.product(*member, *member)).sum()
     };
     let least = members.iter().map(square).fold(f64::INFINITY, f64::min);
-    let unit = if least > 0.0 && least.is_finite() { least } else { 1.0 };
+    let unit = if least.is_finite() { least.max(all * NEGLIGIBLE * NEGLIGIBLE) } else { 1.0 };
     trials.into_iter().map(move |trial| Counted {
         trial,
         importance: counts * trial.importance / all,

@@ -84,10 +84,11 @@ impl<'a> TriedHold<'a> {
         times[times.len() - 1] - times[0]
     }
 
-    /// Number of samples up to a time since the first, s.
+    /// Number of samples up to a time since the first, s; one at that very time is among them, however it is rounded.
     fn until(&self, elapsed: f64) -> usize {
+        const ROUNDING: f64 = 1e-6;
         let times = self.samples.times;
-        times.partition_point(|t| t - times[0] <= elapsed)
+        times.partition_point(|t| t - times[0] <= elapsed * (1.0 + ROUNDING))
     }
 
     /// The samples up to a time since the first, s.

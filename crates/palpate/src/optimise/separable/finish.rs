@@ -56,7 +56,7 @@ pub(crate) fn finish(
         // A number whose error exceeds all the room it has is not felt by the data.
         let is_felt = inverse_normal.as_ref().is_some_and(|inverse| {
             let error = |i: usize| (inverse[(linear + i) * (size + 1)] * variance).sqrt();
-            (0..here.theta.len()).all(|i| error(i) <= shapes.bounds(i).1 - shapes.bounds(i).0)
+            (0..here.theta.len()).all(|i| error(i) <= shapes.room(i))
         });
         let at_bound = |(i, value): (usize, &f64)| {
             let (low, high) = shapes.bounds(i);

@@ -13,6 +13,11 @@ pub(crate) trait Shapes {
     fn column_of(&self, index: usize) -> usize;
     /// Bounds of nonlinear number `index`.
     fn bounds(&self, index: usize) -> (f64, f64);
+    /// Width of the range that data can tell of for nonlinear number `index`: that of its bounds unless a caller has narrowed these.
+    fn room(&self, index: usize) -> f64 {
+        let (low, high) = self.bounds(index);
+        high - low
+    }
     /// What it means when nonlinear number `index` ends at a bound.
     fn at_bound(&self, index: usize) -> Termination;
     /// Bounds of the linear numbers; none at all if empty.

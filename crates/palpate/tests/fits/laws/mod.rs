@@ -1,5 +1,6 @@
 //! What laws take, how they meet in their limits, and which of them is chosen.
 
+mod bounds;
 mod choosing;
 mod forecasts;
 mod inputs;

@@ -12,3 +12,14 @@ pub(crate) mod exact;
 
 pub(super) use apart::{Valley, rounding};
 pub(super) use exact::{exact, inflation, local};
+
+use crate::fit::{Model, RedundantTerm, redundant_terms};
+use crate::optimise::{Solution, Termination};
+
+/// Says so if what ended well, or could not be distinguished, are merged terms.
+pub(super) fn mark_merged(model: &Model, solution: &mut Solution) {
+    let open = matches!(solution.termination, Termination::Converged | Termination::Singular);
+    if open && redundant_terms(model, solution).iter().any(|term| matches!(term, RedundantTerm::Merged { .. })) {
+        solution.termination = Termination::TermsMerged;
+    }
+}
