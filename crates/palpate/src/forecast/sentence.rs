@@ -28,7 +28,7 @@ impl Comparison {
     /// let comparison = compare_laws(&Samples::new(&times, &values), &CompareOptions::default())?;
     /// // From 1.095 at 39.9 s, after a change of 1.905, to 1 + 2/(1 + 0.5 · 79.8) = 1.0489 at 79.8 s.
     /// let sentence = comparison.forecast_sentence().unwrap();
-    /// assert!(sentence.starts_with("When the hold has lasted twice as long, the signal will have changed by another 2.5 % ["), "{sentence}");
+    /// assert!(sentence.starts_with("When the hold has lasted twice as long, the signal will have changed by another 2.4 % ["), "{sentence}");
     /// # Ok::<(), palpate::fit::FitError>(())
     /// ```
     #[must_use]
