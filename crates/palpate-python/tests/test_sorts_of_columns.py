@@ -291,7 +291,7 @@ def test_dates_far_from_the_samples_are_no_other_dates() -> None:
     with pytest.raises(palpate.OptionError, match="expected dates within 292 years of 1970, found 9999-01-01"):
         fit.predict(datetime.datetime(9999, 1, 1))
     with pytest.raises(palpate.OptionError, match="expected dates alone, found NoneType None at index 1"):
-        fit.predict([datetime.datetime(2024, 3, 1), None])
+        fit.predict([datetime.datetime(2024, 3, 1), None])  # type: ignore[arg-type] # pyright: ignore[reportArgumentType]
     years = np.arange(400).astype("datetime64[Y]")
     slow = palpate.fit_hold(years, 1 + 2 * np.exp(-np.arange(400) / 50), law="standard-linear-solid")
     assert slow.predict(years[-1]) == pytest.approx(slow.best_fit[-1], rel=1e-12)

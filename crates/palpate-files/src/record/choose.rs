@@ -1,7 +1,7 @@
 //! Choosing the columns of a file: from a description, else by the header.
 
 use super::{
-    chooser::Chooser,
+    chooser::{Chooser, Found},
     column_use::ColumnUse,
     conversion::{self, Conversion},
     error::ColumnError,
@@ -39,9 +39,13 @@ pub(super) fn choose(part: &Part, test: &TestDescription) -> Result<Plan, Column
         return Err(ColumnError::Oscillation(column.into()));
     }
     let load = chooser.load(test)?;
-    let displacement = chooser.travel(test, load.as_ref())?;
     let load_choice = load.as_ref().and_then(|load| load.choice);
     let travel_choice = stated.stated(Quantity::is_travel).map(|(_, choice)| choice);
+    let is_of_another = |displacement: &Found<'_>| {
+        let time = stated.time.as_ref().and_then(|time| time.column.as_ref());
+        travel_choice.is_none() && time.is_some_and(|time| chooser.is_of_another(time, load.as_ref(), displacement))
+    };
+    let displacement = chooser.travel(test, load.as_ref())?.filter(|displacement| !is_of_another(displacement));
     let may_be_there = displacement.is_none() && load_choice.is_none_or(|load| load.column.is_none());
     let clocks = [(travel_choice, displacement.as_ref()), (load_choice, load.as_ref())];
     let one_time = stated.time.as_ref().is_some_and(|time| time.column.is_some());

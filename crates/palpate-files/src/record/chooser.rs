@@ -126,6 +126,24 @@ impl<'a> Chooser<'a> {
         Ok(column.map(|column| Found::of(Role::Values(quantity), column, choice)))
     }
 
+    /// Whether a displacement that nobody named stands in the columns of another test than the time that was named: with a time before it, and a
+    /// load of its own.
+    pub(super) fn is_of_another(&self, time: &ColumnRef, load: Option<&Found<'a>>, displacement: &Found<'a>) -> bool {
+        let numbers =
+            |quantity| recognise::candidates(&self.part.columns, quantity).into_iter().map(|found| found.number);
+        let times: Vec<usize> = numbers(Quantity::Time).collect();
+        let owner = |number: usize| times.iter().rfind(|time| **time <= number);
+        let Ok(time) = self.named("columns.time.column", time) else {
+            return false;
+        };
+        let own = owner(displacement.column.number);
+        let has_load = numbers(Quantity::Force).any(|number| owner(number) == own);
+        own.is_some()
+            && own != owner(time.number)
+            && has_load
+            && load.is_some_and(|load| owner(load.column.number) != own)
+    }
+
     /// The clock that the file itself gives the column of a quantity.
     pub(super) fn own_clock(&self, quantity: Quantity, values: &Found<'a>) -> Option<Found<'a>> {
         let clock = self.part.clock_of(values.column.number)?;

@@ -52,9 +52,11 @@ pub(crate) fn falls_to_a_thousandth(values: &[f64]) -> Option<usize> {
         let thousandths = 1e3 * value;
         (thousandths - thousandths.round()).abs() < 1e-6 * thousandths.abs().max(1.0)
     };
-    let (before, here) = (*values.get(first.checked_sub(1)?)?, values[first]);
-    let jumps = before.abs() >= 100.0 && (0.5..2.0).contains(&(1e3 * here / before));
-    (small(here) && jumps).then_some(first)
+    let alike = |value: f64, other: f64| (0.5..2.0).contains(&(value / other));
+    let jumps = |at: &usize| values[at - 1].abs() >= 100.0 && alike(1e3 * values[*at], values[at - 1]);
+    // 1.000 is a whole number, too: the jump may lie before it.
+    let mut near = (1..=first).rev().take_while(|at| alike(values[*at], values[first]));
+    near.find(jumps).filter(|_| small(values[first]))
 }
 
 fn weigh(lines: &[&str], block: &Block) -> Result<DecimalMark, Doubt> {
@@ -268,6 +270,10 @@ mod tests {
         assert_eq!(falls_to_a_thousandth(&[980.0, 989.0, 996.0, 997.5, 1000.25]), None);
         assert_eq!(falls_to_a_thousandth(&[0.0, 0.0, 1.003]), None);
         assert_eq!(falls_to_a_thousandth(&[100.0, 200.0, 300.0]), None);
+        // 1.000 was the whole number 1.
+        assert_eq!(falls_to_a_thousandth(&[998.0, 999.0, 1.0, 1.001]), Some(2));
+        assert_eq!(falls_to_a_thousandth(&[548.0, 549.0, 1.0, 1.0, 1.002]), Some(2));
+        assert_eq!(falls_to_a_thousandth(&[600.0, 1.0, 0.5]), None);
     }
 
     /// `1.185` beside `1.185,5`, or beside 999 in a file with decimal commas, was refused.

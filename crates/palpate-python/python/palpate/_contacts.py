@@ -200,7 +200,7 @@ def simulate_many(
 
 def _check_dimension(path: str, values: Any) -> None:
     """Refuses quantities of a dimension beside a path without its unit: nothing says whether it is that of the number."""
-    first = values[0] if isinstance(values, (list, tuple)) and values else values
+    first: Any = values[0] if isinstance(values, (list, tuple)) and values else values
     if _units.is_quantity(first) and not first.dimensionless and not _units.ending(path):
         message = f"{path}: expected numbers in SI, found quantities in {first.units}"
         raise OptionError(f"{message}\nhint: end the path in its unit, as in specimen.radius_m")

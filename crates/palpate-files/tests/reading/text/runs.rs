@@ -2,6 +2,7 @@
 
 use palpate_files::{
     FileError,
+    description::{NamedColumns, TestDescription},
     input::Input,
     open::Contents,
     record::read_part,
@@ -164,4 +165,24 @@ fn columns_side_by_side_are_tests() {
     for names in ["Time,Force,Time,Disp", "Time,Force 1,Force 2,Disp"] {
         assert_eq!(open(&format!("{names}\n0,1.5,2,3\n1,2.5,3,4\n")).parts.len(), 1, "{names}");
     }
+}
+
+/// The second group has no displacement: that of the first was read beside its force.
+#[test]
+fn a_displacement_beside_another_time_is_of_another_test() {
+    let rows: String = (0..10).map(|at| format!("{at},1.5,{at},{at},{at}.5\n")).collect();
+    let contents = open(&format!("Time (s),Force (N),Displacement (mm),Time (s),Force (N)\n{rows}"));
+    assert_eq!(contents.parts.len(), 1);
+    let read = |columns: &str| {
+        let test = TestDescription {
+            columns: NamedColumns::parse(columns).expect("columns").columns,
+            ..TestDescription::default()
+        };
+        read_part(&contents, 0, Some(&test), &mut |_, _| Ok(()))
+            .unwrap_or_else(|error| panic!("{error}"))
+            .record
+    };
+    assert!(read("force=5,time=4").displacement().is_none());
+    assert!(read("force=2,time=1").displacement().is_some());
+    assert!(read("force=5,time=4,displacement=3").displacement().is_some());
 }
