@@ -179,8 +179,12 @@ def analysis(self: Any, ax: Any = None, **line: Any) -> Any:
     time_s, force_n, curves = self._course()
     ax = axes(ax)
     ax.plot(time_s, force_n, ".", color="0.6", markersize=3, label="measured")
-    for hold, law, times_s, forces_n in curves:
-        ax.plot(times_s, forces_n, **{"label": f"hold {hold}: {law}", **line})
+    laws = dict.fromkeys(law for _, law, _, _ in curves)
+    colors = {law: f"C{index % 10}" for index, law in enumerate(laws)}
+    for _, law, times_s, forces_n in curves:
+        # A law that many holds have is one entry of the legend: a label that begins with _ is none.
+        entry = law if laws.pop(law, True) is None else f"_{law}"
+        ax.plot(times_s, forces_n, **{"label": entry, "color": colors[law], **line})
     ax.set(xlabel=label("time_s"), ylabel=label("force_n"))
     ax.legend()
     return ax
