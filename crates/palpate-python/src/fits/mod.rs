@@ -1,5 +1,6 @@
 //! Laws and their fits to holds.
 
+pub(crate) mod estimate;
 pub(crate) mod fit;
 pub(crate) mod fit_many;
 pub(crate) mod laws;

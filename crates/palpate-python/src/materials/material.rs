@@ -18,7 +18,8 @@ use crate::errors::{
     ModelError, OptionError, choice, failed, of_mapping, refused, refused_plainly, undescribed, unwritten, warn,
 };
 use crate::files::stated;
-use crate::fits::fit::{PyEstimate, reported, square};
+use crate::fits::estimate::{PyEstimate, reported};
+use crate::fits::fit::square;
 use crate::mappings::quantity;
 use crate::materials::grip::Grip;
 use crate::materials::prediction::Prediction;

@@ -193,14 +193,12 @@ impl<'a> RowPlan<'a> {
         let (mut count, mut held) = (0, 0);
         for cell in Fields::of(line, self.layout.delimiter) {
             let holds = match self.tasks.get(count) {
-                Some(Task::Read(_)) => self.number(cell, count).is_some(),
-                Some(Task::ReadDate(_)) => date::parse(cell).is_some(),
-                Some(Task::AddDay(_)) => date::day(cell).is_some(),
                 Some(Task::Check) => number::classify(cell).is_numeric(),
                 Some(Task::Pass) => {
                     count += 1;
                     continue;
                 }
+                Some(_) => self.holds_number(cell, count),
                 None => return false,
             };
             if !holds && !number::is_absent(cell) {
@@ -214,16 +212,20 @@ impl<'a> RowPlan<'a> {
 
     /// Indices of the cells of a line that are to be read and hold no number.
     pub(crate) fn without_number<'l>(&'l self, line: &'l [u8]) -> impl Iterator<Item = usize> + 'l {
-        let lacks = |(index, cell): (usize, &[u8])| match self.tasks.get(index) {
-            Some(Task::Read(_)) => self.number(cell, index).is_none(),
-            Some(Task::ReadDate(_)) => date::parse(cell).is_none(),
-            Some(Task::AddDay(_)) => date::day(cell).is_none(),
-            _ => false,
-        };
         Fields::of(line, self.layout.delimiter)
             .enumerate()
-            .filter(move |cell| lacks(*cell))
+            .filter(|(index, cell)| !self.holds_number(cell, *index))
             .map(|(index, _)| index)
+    }
+
+    /// Whether a cell of the column with an index holds a number, if it is to be read as one.
+    fn holds_number(&self, cell: &[u8], column: usize) -> bool {
+        match self.tasks.get(column) {
+            Some(Task::Read(_)) => self.number(cell, column).is_some(),
+            Some(Task::ReadDate(_)) => date::parse(cell).is_some(),
+            Some(Task::AddDay(_)) => date::day(cell).is_some(),
+            _ => true,
+        }
     }
 
     /// The error for many cells of a column, by its index, without a number, of so many rows.
