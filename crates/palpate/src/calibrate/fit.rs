@@ -115,7 +115,8 @@ pub fn calibrate(
             let columns: Vec<Vec<f64>> = open.iter().map(|i| jacobian[*i].clone()).collect();
             let of_displacement = from_displacement(&problem, data, &found, &columns, &mut stages)?;
             let systematic = systematic_effects(&problem, data, &found, (&columns, &gradients), &mut stages)?;
-            let mut assessed = Assessed::of_columns(columns, found.residuals.clone(), confidence)?;
+            let mut assessed =
+                Assessed::of_columns(columns, (&data.forces()[..data.fitted()], found.residuals.clone()), confidence)?;
             of_displacement.iter().for_each(|covariance| assessed.add(covariance));
             (Some(assessed), systematic)
         }

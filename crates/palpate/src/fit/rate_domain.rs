@@ -129,6 +129,7 @@ impl Scaled {
             noise: NoiseChoice::FromResiduals,
             known,
             may_vary: false,
+            curve: None,
             times: None,
         };
         let assessed = Assessed::new(solution, &amplitudes[..size - 1], &ones[..size], self.fastest, &trust, effort)?;

@@ -14,16 +14,18 @@ pub(crate) enum Noise {
     PowerLaw(f64, f64),
     /// A random walk with steps of this size, and white noise of this size.
     Walk(f64, f64),
-    /// White noise in proportion to the signal above 0.9.
-    Proportional,
+    /// AR(1) of this correlation in proportion to the signal above 0.9.
+    Proportional(f64),
     /// White noise, and all rounded to five times its size.
     Rounded,
+    /// White noise of a sensor so many times as slow, with straight lines between its readings.
+    Interpolated(usize),
     /// Noise that fades within 0.1 s, at times evenly spaced in ln t.
     LogarithmicTimes,
 }
 
 /// All kinds by their names.
-pub(crate) const KINDS: [(&str, Noise); 21] = [
+pub(crate) const KINDS: [(&str, Noise); 24] = [
     ("white", Noise::Filtered(&[], &[1.0], 1.0)),
     ("AR(1) 0.7", Noise::Filtered(&[0.7], &[1.0], 0.714)),
     ("AR(1) 0.9", Noise::Filtered(&[0.9], &[1.0], 0.436)),
@@ -43,8 +45,11 @@ pub(crate) const KINDS: [(&str, Noise); 21] = [
     ("walk 0.3 and white", Noise::Walk(0.3, 1.0)),
     ("walk 0.1 and white", Noise::Walk(0.1, 1.0)),
     ("walk 0.03 and white", Noise::Walk(0.03, 1.0)),
-    ("proportional", Noise::Proportional),
+    ("proportional", Noise::Proportional(0.0)),
+    ("proportional AR(1) 0.9", Noise::Proportional(0.9)),
     ("rounded", Noise::Rounded),
+    ("interpolated, 4 to 1", Noise::Interpolated(4)),
+    ("interpolated, 10 to 1", Noise::Interpolated(10)),
     ("logarithmic times", Noise::LogarithmicTimes),
 ];
 
@@ -163,7 +168,16 @@ impl Noise {
                 });
                 plus(walk.collect(), white(random), beside)
             }
-            Self::Proportional => white(random).iter().zip(clean).map(|(made, y)| 5.0 * made * (y - 0.9)).collect(),
+            Self::Proportional(correlation) => {
+                let factor = 5.0 * (1.0 - correlation * correlation).sqrt();
+                let made = filtered(random, &[correlation], &[1.0], count);
+                made.iter().zip(clean).map(|(made, y)| factor * made * (y - 0.9)).collect()
+            }
+            Self::Interpolated(times) => {
+                let read: Vec<f64> = (0..count / times + 2).map(|_| random.normal()).collect();
+                let between = |i: usize| (i / times, (i % times) as f64 / times as f64);
+                (0..count).map(between).map(|(i, share)| read[i] + share * (read[i + 1] - read[i])).collect()
+            }
             Self::Rounded => white(random),
             Self::LogarithmicTimes => {
                 let mut last = random.normal();

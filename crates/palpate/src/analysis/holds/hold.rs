@@ -7,7 +7,9 @@ use super::jump::force_step;
 use super::rate_bias::{RateBias, rate_bias};
 use crate::analysis::{AnalysisOptions, Finding};
 use crate::contact::{Shape, Specimen};
-use crate::fit::{ExponentChoice, LatencyFit, LawOptions, OrderSelection, Samples, Termination, fitted, select_order};
+use crate::fit::{
+    ExponentChoice, LatencyFit, LawOptions, OrderSelection, Samples, Termination, UNEXPLAINED, fitted, select_order,
+};
 use crate::forecast::{CompareOptions, Comparison, KnownFit, RampChoice, compare_laws_watched};
 use crate::laws::Loading;
 use crate::record::Record;
@@ -375,16 +377,13 @@ fn judge(hold: &mut HoldAnalysis) {
             independent: best.effective_samples(),
         });
     }
-    if let Some(p_value) = best.noise_p_value.filter(|p_value| *p_value < UNLIKELY) {
+    if let Some(p_value) = best.noise_p_value.filter(|p_value| *p_value < UNEXPLAINED) {
         hold.findings.push(Finding::NoiseUnexplained {
             noise: best.noise_in_words(),
             p_value,
         });
     }
 }
-
-/// Probability of residuals below which they are not of the kind of noise that was found.
-const UNLIKELY: f64 = 1e-3;
 
 /// Correlation of exponent and equilibrium, if it is close to one and the exponent is not known well for all that.
 fn confounded(fit: &LatencyFit) -> Option<f64> {

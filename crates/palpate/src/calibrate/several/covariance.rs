@@ -57,7 +57,7 @@ impl Covariance {
                 simulations: 0,
             };
             let of_displacement = from_displacement(&member.problem, data[record], &found, &orthonormal, stages)?;
-            let mut assessed = Assessed::of_columns(orthonormal, found.residuals, 0.95)?;
+            let mut assessed = Assessed::of_columns(orthonormal, (data[record].forces(), found.residuals), 0.95)?;
             of_displacement.iter().for_each(|covariance| assessed.add(covariance));
             let (Some(uncertainty), Some(as_white)) = (&assessed.uncertainty, &assessed.white) else {
                 return Err(undetermined(joint, optimum, names));

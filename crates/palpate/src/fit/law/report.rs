@@ -18,6 +18,7 @@ impl Fitted {
             noise: options.noise,
             known,
             may_vary: self.scaled.roots.is_none(),
+            curve: None,
             times: Some((&self.scaled.times, self.scaled.duration)),
         };
         let assessed = Assessed::new(solution, &self.amplitudes(), &units, scale, &trust, effort)?;

@@ -1,6 +1,6 @@
 //! Which noise left the residuals of a fit.
 
-use super::autoregression::innovations;
+use super::autoregression::{MOST_ORDER, innovations};
 use super::lagged::{Lagged, first_order, partial};
 use super::likelihood::{Kind, Likelihood, Slow};
 use super::markov::Beside;
@@ -17,6 +17,12 @@ const CORRELATES: f64 = 1.5;
 
 /// Up to so many samples any correlation may be, whatever the residuals show.
 const FEW: usize = 40;
+
+/// Up to so many samples residuals seldom show how many samples noise looks back, or that it is slow.
+const SHORT: usize = 150;
+
+/// Where the search for a partial autocorrelation begins that residuals do not show.
+const NEXT: f64 = 0.02;
 
 /// Means of neighbours that show a walk beside white noise.
 const MEANS: usize = 64;
@@ -109,6 +115,10 @@ impl Series<'_> {
             // An autoregression that needs several samples, all of them alike, may stand for slow noise.
             kinds.take(Lagged::new(jacobian, residuals, length, 1).noise(&start[..1]), 1);
         }
+        if !partial.is_empty() && samples <= SHORT && order < MOST_ORDER {
+            let one_more: Vec<f64> = start.iter().copied().chain([NEXT]).collect();
+            kinds.take(Lagged::new(jacobian, residuals, length, order + 1).noise(&one_more), order + 1);
+        }
         if is_slow || alike {
             let slow = Slow::new(jacobian, residuals, length, samples);
             // Two parameters, and a walk or a power law is as good an account of a slow drift: priced as three.
@@ -125,8 +135,12 @@ impl Series<'_> {
                 kinds.take(beside.in_time(true, kinds.worth(1)), 1);
                 kinds.take(beside.in_time(false, kinds.worth(2)), 2);
             }
-            // Noise that fades well within the hold is no walk.
-            if is_slow || alike || partial.first().is_none_or(|by| *by > 1.0 - OUTLASTED / samples as f64) {
+            // Noise that fades well within a long hold is no walk.
+            if is_slow
+                || alike
+                || samples <= SHORT
+                || partial.first().is_none_or(|by| *by > 1.0 - OUTLASTED / samples as f64)
+            {
                 kinds.take_walks(&beside);
             }
         }

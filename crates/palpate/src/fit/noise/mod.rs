@@ -35,10 +35,12 @@
 //! | `estimation.rs` | which noise left the residuals |
 //! | `portmanteau.rs` | whether it accounts for them |
 //! | `mixture.rs` | intervals of many numbers where several models are likely |
+//! | `blocks.rs` | how it sums up over blocks of neighbours, where no model describes it |
 //! | `spread.rs` | noise whose size changes along the hold |
 //! | `uncertainty.rs` | errors and intervals that follow |
 
 mod autoregression;
+mod blocks;
 mod columns;
 mod estimation;
 mod filter;
@@ -53,5 +55,6 @@ mod spread;
 pub(crate) mod uncertainty;
 
 pub use model::NoiseModel;
+pub(crate) use portmanteau::UNEXPLAINED;
 pub(crate) use uncertainty::{Assessed, Scale, Trust};
 pub use uncertainty::{ModelCovariance, Uncertainty};

@@ -6,6 +6,9 @@ use super::model::NoiseModel;
 use crate::statistics::dot;
 use crate::vector::add_multiple;
 
+/// The probability below which residuals are not of the kind of noise that was found, and intervals do not rest on it alone.
+pub(crate) const UNEXPLAINED: f64 = 1e-3;
+
 /// Lags that are tested.
 const LAGS: usize = 20;
 

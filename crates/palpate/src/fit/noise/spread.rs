@@ -1,5 +1,8 @@
 //! Noise whose size changes along a hold: with the signal, as that of many sensors does, or with time.
 
+use std::borrow::Cow;
+
+use super::autoregression::innovations;
 use crate::statistics::{dot, mean};
 use crate::vector::elementary::exp;
 use crate::vector::{accelerated, multiply, shifted, sum};
@@ -20,20 +23,24 @@ const FARTHEST: f64 = 14.0;
 pub(super) struct Spread(Vec<f64>);
 
 impl Spread {
-    /// That of residuals which correlate by so much from one to the next; `None` where it is even.
-    pub(super) fn of(residuals: &[f64], fitted: &[f64], correlation: f64) -> Option<Self> {
-        let square = dot(residuals, residuals) / residuals.len() as f64;
-        if residuals.len() < FEWEST || square <= f64::MIN_POSITIVE * 1e20 {
+    /// That of residuals with these partial autocorrelations; `None` where it is even.
+    ///
+    /// Where they correlate, it is that of what each sample brings beyond its prediction by those before.
+    pub(super) fn of(residuals: &[f64], fitted: &[f64], partial: &[f64]) -> Option<Self> {
+        let beyond = if partial.is_empty() {
+            Cow::Borrowed(residuals)
+        } else {
+            Cow::Owned(innovations(residuals, partial))
+        };
+        let square = dot(&beyond, &beyond) / beyond.len() as f64;
+        if beyond.len() < FEWEST || square <= f64::MIN_POSITIVE * 1e20 {
             return None;
         }
-        let mut squares = shifted(residuals, 0.0, 1.0 / square);
-        multiply(&mut squares, residuals);
-        // Squares of Gaussian noise correlate by the square of its correlation.
-        let repeated = correlation * correlation;
-        let counts = ((1.0 - repeated) / (1.0 + repeated)).sqrt();
+        let mut squares = shifted(&beyond, 0.0, 1.0 / square);
+        multiply(&mut squares, &beyond);
         let numbers: Vec<f64> = (0..residuals.len()).map(|i| i as f64).collect();
         let regressors = [fitted, &numbers];
-        let scored = regressors.map(|of| (counts * score(&squares, of).abs(), of)).into_iter();
+        let scored = regressors.map(|of| (score(&squares, of).abs(), of)).into_iter();
         let (score, of) =
             scored.filter(|(score, _)| score.is_finite()).max_by(|(one, _), (other, _)| one.total_cmp(other))?;
         (score > OBSERVED).then(|| Self(deviations(&squares, &standardised(of))))
@@ -147,12 +154,12 @@ mod tests {
     #[test]
     fn even_noise_has_no_course_and_that_which_follows_the_signal_has() {
         let signal = signal(400);
-        let even = (0..1000).filter(|seed| Spread::of(&noise(&[1.0; 400], *seed), &signal, 0.0).is_some()).count();
+        let even = (0..1000).filter(|seed| Spread::of(&noise(&[1.0; 400], *seed), &signal, &[]).is_some()).count();
         assert!(even <= 8, "{even} of 1000");
         let proportional: Vec<f64> = signal.iter().map(|y| y - 0.8).collect();
         let mean_square = dot(&proportional, &proportional) / 400.0;
         for seed in 0..20 {
-            let found = Spread::of(&noise(&proportional, seed), &signal, 0.0).unwrap();
+            let found = Spread::of(&noise(&proportional, seed), &signal, &[]).unwrap();
             let unit = mean_square.sqrt();
             let off = found.0.iter().zip(&proportional).map(|(found, true_one)| (found * unit / true_one).ln().abs());
             let worst = off.fold(0.0, f64::max);

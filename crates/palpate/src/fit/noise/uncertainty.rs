@@ -1,14 +1,18 @@
 //! From the noise of a fit to the covariance of its parameters, their errors and intervals.
 
+use std::borrow::Cow;
+
 use serde::{Deserialize, Serialize};
 
+use super::blocks::by_blocks;
 use super::columns::Columns;
+use super::lagged::partial;
 use super::model::{Lags, Likely, Noise};
-use super::portmanteau::p_value;
+use super::portmanteau::{UNEXPLAINED, p_value};
 use super::spread::{Spread, by_residuals};
 use crate::fit::{Estimate, NoiseChoice, NoiseModel};
 use crate::optimise::{Cholesky, Effort, Few, Solution, Termination};
-use crate::statistics::dot;
+use crate::statistics::{dot, mean};
 use crate::vector::{add_multiple, cross_products, extremes};
 use crate::watch::Cancelled;
 
@@ -83,8 +87,24 @@ pub(crate) struct Trust<'a> {
     pub(crate) known: bool,
     /// Whether the size of the noise may change along the samples.
     pub(crate) may_vary: bool,
+    /// The fitted values, where they are no sum of columns.
+    pub(crate) curve: Option<&'a [f64]>,
     /// Times of the samples, and their unit in s.
     pub(crate) times: Option<(&'a [f64], f64)>,
+}
+
+impl Uncertainty {
+    /// Multiplies covariances by the mean ratio of these variances to those there are, where it is above 1.
+    fn widen(&mut self, covariance: &[Vec<f64>]) {
+        let variances = |rows: &[Vec<f64>]| -> Vec<f64> { (0..rows.len()).map(|i| rows[i][i]).collect() };
+        let pairs = variances(covariance).into_iter().zip(variances(&self.covariance));
+        let ratio = mean(&pairs.map(|(other, own)| other / own).collect::<Vec<f64>>());
+        if ratio > 1.0 && ratio.is_finite() {
+            let models = self.models.iter_mut().map(|model| &mut model.covariance);
+            let entries = std::iter::once(&mut self.covariance).chain(models).flatten().flatten();
+            entries.for_each(|entry| *entry *= ratio);
+        }
+    }
 }
 
 impl Assessed {
@@ -104,6 +124,7 @@ impl Assessed {
             noise: choice,
             known,
             may_vary,
+            curve,
             times,
         } = *trust;
         let (samples, size) = (solution.residuals.len(), units.len());
@@ -114,22 +135,29 @@ impl Assessed {
             (0..size).map(|i| (0..size).map(|j| entry(i, j)).collect()).collect()
         };
         let columns: Vec<&[f64]> = solution.columns.iter().chain(&solution.derivatives).map(Vec::as_slice).collect();
+        let inverse = solution.inverse_normal.as_deref().filter(|_| known);
+        // Merged terms have columns that are one another's multiples, beside which no noise has a likelihood.
+        let taken_up = if inverse.is_some() { columns.clone() } else { independent(&columns) };
         let times = times.filter(|_| choice == NoiseChoice::FromResiduals);
         let (times, time_unit) =
             times.map_or((None, 1.0), |(times, unit)| (Some(times).filter(|times| are_uneven(times)), unit));
         let spread = (may_vary && times.is_none() && choice == NoiseChoice::FromResiduals)
-            .then(|| Spread::of(&solution.residuals, &fitted(solution), lags.correlations[0]))
+            .then(|| {
+                let (partial, _) = partial(&lags, samples, size);
+                let curve = curve.map_or_else(|| Cow::Owned(fitted(solution)), Cow::Borrowed);
+                Spread::of(&solution.residuals, &curve, &partial)
+            })
             .flatten();
         effort.hear()?;
         let (noise, noise_p_value) = match (choice, &spread) {
             (NoiseChoice::White, _) => (Noise::white(&lags, freedom), None),
             (NoiseChoice::FromResiduals, None) => {
-                let noise = Noise::of(&columns, &solution.residuals, &lags, times);
+                let noise = Noise::of(&taken_up, &solution.residuals, &lags, times);
                 let p_value = times.is_none().then(|| p_value(&solution.residuals, noise.model)).flatten();
                 (noise, p_value)
             }
             (NoiseChoice::FromResiduals, Some(spread)) => {
-                let even: Vec<Vec<f64>> = columns.iter().map(|column| spread.even(column)).collect();
+                let even: Vec<Vec<f64>> = taken_up.iter().map(|column| spread.even(column)).collect();
                 let views: Vec<&[f64]> = even.iter().map(Vec::as_slice).collect();
                 let residuals = spread.even(&solution.residuals);
                 let noise = Noise::of(&views, &residuals, &Lags::of(&residuals), times);
@@ -142,7 +170,6 @@ impl Assessed {
         let ratio = solution.variance * freedom / solution.residual_square;
         let ratio = if ratio.is_finite() { ratio } else { 1.0 };
         let finite = |rows: &Vec<Vec<f64>>| rows.iter().flatten().all(|entry| entry.is_finite());
-        let inverse = solution.inverse_normal.as_deref().filter(|_| known);
         let white = inverse.map(|inverse| scaled(inverse, solution.variance)).filter(finite);
         let weighed: Option<Vec<Vec<f64>>> =
             spread.as_ref().map(|spread| columns.iter().map(|column| spread.weighed(column)).collect());
@@ -187,7 +214,14 @@ impl Assessed {
                 models,
             })
         };
-        let uncertainty = inverse.filter(|_| white.is_some()).map(of_inverse).transpose()?;
+        let mut uncertainty = inverse.filter(|_| white.is_some()).map(of_inverse).transpose()?;
+        if let (Some(uncertainty), Some(inverse)) = (&mut uncertainty, inverse)
+            && noise_p_value.is_some_and(|p_value| p_value < UNEXPLAINED)
+            && let Some(filling) = by_blocks(&columns, &solution.residuals)
+        {
+            let filling = with_amplitudes(filling, amplitudes);
+            uncertainty.widen(&scaled(&sandwiched(inverse, &filling, size), ratio));
+        }
         Ok(Self {
             white,
             uncertainty: uncertainty.filter(|found| finite(&found.covariance)),
@@ -198,9 +232,15 @@ impl Assessed {
         })
     }
 
-    /// Assesses least squares with this Jacobian, column by column, of a model that is linear in nothing.
-    pub(crate) fn of_columns(columns: Vec<Vec<f64>>, residuals: Vec<f64>, confidence: f64) -> Result<Self, Cancelled> {
+    /// Assesses least squares with this Jacobian, column by column, of a model that is linear in nothing, to values that differ from
+    /// it by the residuals.
+    pub(crate) fn of_columns(
+        columns: Vec<Vec<f64>>,
+        (values, residuals): (&[f64], Vec<f64>),
+        confidence: f64,
+    ) -> Result<Self, Cancelled> {
         let size = columns.len();
+        let curve: Vec<f64> = values.iter().zip(&residuals).map(|(value, left)| value - left).collect();
         let views: Vec<&[f64]> = columns.iter().map(Vec::as_slice).collect();
         let mut normal = vec![0.0; size * size];
         cross_products(&views, &views, &mut normal);
@@ -221,7 +261,8 @@ impl Assessed {
             confidence,
             noise: NoiseChoice::FromResiduals,
             known: true,
-            may_vary: false,
+            may_vary: true,
+            curve: Some(&curve),
             times: None,
         };
         Self::new(&solution, &[], &vec![1.0; size], 1.0, &trust, &Effort::default())
@@ -317,6 +358,31 @@ fn fitted(solution: &Solution) -> Vec<f64> {
         add_multiple(&mut values, *amplitude, column);
     }
     values
+}
+
+/// The columns that those before them do not span.
+fn independent<'a>(columns: &[&'a [f64]]) -> Vec<&'a [f64]> {
+    /// The share of its square that a column has to have beside those before: of less, products with correlated noise keep no digits.
+    const LEAST: f64 = 1e-6;
+    let size = columns.len();
+    let mut rest = vec![0.0; size * size];
+    cross_products(columns, columns, &mut rest);
+    let squares: Vec<f64> = (0..size).map(|i| rest[i * size + i]).collect();
+    let mut kept = Vec::with_capacity(size);
+    for k in 0..size {
+        let own = rest[k * size + k];
+        if own.is_nan() || own <= LEAST * squares[k] {
+            continue;
+        }
+        kept.push(columns[k]);
+        for i in k + 1..size {
+            let by = rest[i * size + k] / own;
+            for j in k + 1..size {
+                rest[i * size + j] -= by * rest[k * size + j];
+            }
+        }
+    }
+    kept
 }
 
 /// JᵀRJ from that of columns and bare derivatives: the latter count times their amplitudes.
