@@ -3,10 +3,11 @@
 use serde::{Deserialize, Serialize};
 
 use super::{
-    Condensed, FitError, Fitted, LawOptions, Samples, Scaled, SpectrumOptions, build, condense, finalists, fit_spectrum,
+    Condensed, FitError, Fitted, LawOptions, Samples, Scaled, SpectrumOptions, build, condense, finalists,
+    fit_spectrum, local,
 };
 use crate::laws::{BasisFunction, Law, LawCurve, Term};
-use crate::optimise::{Effort, Ending, polished, refine};
+use crate::optimise::{Effort, Ending, Termination, polished, refine, standing};
 
 /// How well the first part of a hold predicts the rest.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
@@ -105,7 +106,13 @@ fn law_curve(samples: &Samples<'_>, law: Law, options: &LawOptions) -> Result<La
         .ok_or(FitError::NoDecay)?;
     let shapes = model.at(&nodes.times);
     let refined = refine(&shapes, nodes.target(), &theta, Ending::tight(1), &mut effort)?;
-    let solution = polished(&shapes, nodes.target(), refined, &mut effort)?;
+    let solution = if refined.point.square.is_finite() {
+        polished(&shapes, nodes.target(), refined, &mut effort)?
+    } else {
+        // Merged terms: normal equations are singular there, and have left no amplitudes.
+        let valley = local(&shapes, nodes.target(), &theta, f64::EPSILON, &mut effort)?;
+        standing(&shapes, nodes.target(), &valley.theta, &valley.linear, Termination::Singular)
+    };
     let fitted = Fitted {
         model,
         scaled,

@@ -43,7 +43,7 @@ pub(crate) use error::fitted;
 pub use forecast::{Forecast, forecast};
 pub(crate) use forecast::{condensed_curve, extrapolated};
 pub(crate) use global::{combinations, distinct};
-use global::{finalists, search};
+use global::{finalists, local, search};
 pub use joint::{
     HoldWeights, JointComparison, JointFit, JointOptions, SharedTrend, TrendPoint, TrendVerdict, compare_joint,
     compare_joint_watched, fit_joint, fit_joint_watched,

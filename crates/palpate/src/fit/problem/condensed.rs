@@ -32,6 +32,9 @@ const FINE_WIDTH: f64 = 0.05;
 /// The same for nodes that only show where valleys are.
 const COARSE_WIDTH: f64 = 0.6;
 
+/// Evenly spaced samples lie at ends of bins: the rounding of a clock, which begins anywhere, is not to decide which bin they are in.
+const CLEARLY: f64 = 1.0 - 1e-6;
+
 /// Samples gathered in bins that widen with time, each bin replaced by two weighted nodes.
 ///
 /// The nodes are those of Gauss's rule for the sample times of the bin: a sum of cubics over the samples equals that over the
@@ -80,7 +83,7 @@ impl Condensed {
         let mut pending = Pending::default();
         let mut from = 0;
         while from < times.len() {
-            let end = times[from] * (1.0 + width);
+            let end = times[from] * (1.0 + width) * CLEARLY;
             let until = from + 1 + count_below(&times[from + 1..], end);
             if until - from > 2 {
                 pending.push(times, values, roots, from..until);

@@ -29,6 +29,26 @@ fn hold(signal: Signal, noise: f64, random: &mut Rng) -> (Vec<f64>, Vec<f64>) {
     (times, values)
 }
 
+/// Where terms of a series merged the forecast of it was the middle of the hold, which rounding decided; and the rounding of a clock decided
+/// which samples are condensed together. Bands were up to ten times as wide for it.
+#[test]
+fn neither_rounding_nor_the_clock_changes_a_band() {
+    let (laws, options) = (CompareOptions::default().laws(), LawOptions::default());
+    let mut random = Rng::new(3);
+    for _ in 0..12 {
+        let times: Vec<f64> = (0..300).map(|i| 20.0 * f64::from(i) / 299.0).collect();
+        let values: Vec<f64> = times.iter().map(|t| 1.0 + 2.0 * (-t / 5.0).exp() + 0.01 * random.normal()).collect();
+        let nearly: Vec<f64> = values.iter().map(|value| value * (1.0 + 1e-13)).collect();
+        let later: Vec<f64> = times.iter().map(|t| t + 1e5).collect();
+        let widths = [(&times, &values), (&times, &nearly), (&later, &values)].map(|(times, values)| {
+            let found = HoldForecast::of(&Samples::new(times, values), &laws, &options, &mut Unwatched).unwrap();
+            let at = found.unwrap().at(60.0, 0.95);
+            at.high - at.low
+        });
+        assert!(widths.iter().all(|width| (width / widths[0] - 1.0).abs() < 0.05), "{widths:?}");
+    }
+}
+
 #[test]
 fn the_band_of_a_forecast_covers_what_follows() {
     const REPEATS: usize = 6;

@@ -18,7 +18,7 @@ const GOLDEN: [(&str, u64, u64, u64); 12] = [
     ("power", 308, 101, 2),
     ("logarithmic", 22, 6, 2),
     ("fractional-zener", 220, 36, 2),
-    ("diffusion", 22, 25, 2),
+    ("diffusion", 22, 42, 2),
 ];
 
 #[test]

@@ -11,7 +11,8 @@ mod confluent;
 pub(crate) mod exact;
 
 pub(super) use apart::{Valley, rounding};
-pub(super) use exact::{exact, inflation, local};
+pub(in crate::fit) use exact::local;
+pub(super) use exact::{exact, inflation};
 
 use crate::fit::{Model, RedundantTerm, redundant_terms};
 use crate::optimise::{Solution, Termination};
