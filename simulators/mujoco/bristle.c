@@ -22,13 +22,17 @@ static void carried_along(const mjtNum jaw_frame[9], const mjtNum normal[3], con
   if (across > 0) mju_scl3(slip, slip, length / across);
 }
 
+void let_go(mjtNum* memory) {
+  mju_zero3(memory + MEMORY_SLIP);
+  memory[MEMORY_TWIST] = 0;
+}
+
 traction bristle(const contact* c, const placement* at, const mjtNum jaw_frame[9], double normal_force, double dt, mjtNum* memory) {
   traction friction = {{0, 0, 0}, 0, 0, c->friction * normal_force};
   const double radius = c->friction > 0 ? c->torsion / c->friction : 0;
   mjtNum slip[3], twist, total;
   if (!(friction.limit > 0)) {
-    mju_zero3(memory + MEMORY_SLIP);
-    memory[MEMORY_TWIST] = 0;
+    let_go(memory);
     friction.limit = 0;
     return friction;
   }

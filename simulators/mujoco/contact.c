@@ -102,6 +102,8 @@ static void compute(const mjModel* m, mjData* d, int instance, int capability) {
   } else {
     place_geoms(m, d, c, &at);
     to = c->sides * at.displacement;
+    /* Farther away nothing changes any more. */
+    if (to < -c->sides * c->depth) to = -c->sides * c->depth;
   }
   if (!isfinite(to)) {
     /* The engine resets such a state itself; until then the jaw stays where it was. */
@@ -116,6 +118,8 @@ static void compute(const mjModel* m, mjData* d, int instance, int capability) {
   } else if (at.displacement > -c->depth) {
     friction = bristle(c, &at, d->geom_xmat + 9 * c->geom1, force, dt, memory);
     if (force != 0) apply(m, c, &at, force, &friction, d->qfrc_passive);
+  } else {
+    let_go(memory);
   }
   /* The stages of Runge and Kutta within a step are evaluations that no step ends with. */
   if (m->opt.integrator == mjINT_RK4 && state[STATE_IS_AHEAD] == 1 && d->time > state[STATE_NOW + MEMORY_TIME]) return;

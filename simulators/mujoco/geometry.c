@@ -29,16 +29,24 @@ static void relative_motion(const mjModel* m, const mjData* d, const contact* c,
   at->spin = mju_dot3(spin, at->normal);
 }
 
+/* Distance of two geoms (m) and the segment between them. The search goes far only where it finds nothing within the depth of the body. */
+static mjtNum distance_of(const mjModel* m, mjData* d, const contact* c, mjtNum ends[6]) {
+  const mjtNum near = mj_geomDistance(m, d, c->geom1, c->geom2, c->depth, ends);
+  return near < c->depth ? near : mj_geomDistance(m, d, c->geom1, c->geom2, mjMAXVAL, ends);
+}
+
 void place_geoms(const mjModel* m, mjData* d, contact* c, placement* at) {
-  mjtNum ends[6], distance;
-  distance = mj_geomDistance(m, d, c->geom1, c->geom2, c->depth, ends);
+  mjtNum ends[6];
+  const mjtNum distance = distance_of(m, d, c, ends);
+  /* On the rigid one of the two, which is geom1; no body is a plane. */
+  const mjtNum* on_rigid = m->geom_type[c->geom2] == mjGEOM_PLANE ? ends + 3 : ends;
   at->displacement = -distance;
   at->spin = at->closing = 0;
-  mju_copy3(at->point, ends);
+  mju_copy3(at->point, on_rigid);
   mju_zero3(at->velocity);
   mju_sub3(at->normal, ends + 3, ends);
   if (mju_normalize3(at->normal) < mjMINVAL || distance == 0) {
-    /* No segment: farther away than it was sought, or at first touch, where there is no force yet. */
+    /* No segment at first touch, where there is no force yet. */
     mju_sub3(at->normal, d->geom_xpos + 3 * c->geom2, d->geom_xpos + 3 * c->geom1);
     mju_normalize3(at->normal);
   } else if (distance < 0) {

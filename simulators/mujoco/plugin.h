@@ -37,7 +37,7 @@ typedef enum {
   MEASURE_NORMAL_FORCE,    /* N */
   MEASURE_MARGIN_TO_SLIP,  /* friction limit less load, N; 0 while it slips or the jaw is off */
   MEASURE_TANGENTIAL_LOAD, /* tangential force and torsion as the force that loads the contact as much, N */
-  MEASURE_DISPLACEMENT,    /* displacement of one contact since first touch, m; below 0 while the jaw is off */
+  MEASURE_DISPLACEMENT,    /* displacement of one contact since first touch, m; less the distance while the jaw is off */
   MEASURE_COUNT
 } measure_index;
 
@@ -61,7 +61,7 @@ typedef struct {
   double depth;      /* m */
   double deepest;    /* largest displacement of the jaw that the body takes, m */
   double calibrated; /* that of its calibration, m */
-  int geom1, geom2;  /* the jaw and the body, or -1 */
+  int geom1, geom2;  /* the rigid one and the soft one, or -1 */
   int joint;         /* or a slide joint, or -1 */
   double closing;    /* +1 or -1: direction of the joint that squeezes */
   double touch;      /* position of the joint at first touch, m */
@@ -79,7 +79,7 @@ typedef struct {
 /* Where a contact is and how it moves, in the world. */
 typedef struct {
   double displacement; /* of one contact since first touch, m; below 0 while the jaw is off */
-  mjtNum point[3];     /* on the jaw */
+  mjtNum point[3];     /* on the rigid one of the two */
   mjtNum normal[3];    /* from the jaw into the body */
   mjtNum velocity[3];  /* of the body relative to the jaw, across the normal, m/s */
   mjtNum closing;      /* speed at which they come together along the normal, m/s */
@@ -103,6 +103,9 @@ void place_geoms(const mjModel* m, mjData* d, contact* c, placement* at);
 
 /* Deflects the bristle of `memory` by the motion during dt and returns the friction under a normal force. */
 traction bristle(const contact* c, const placement* at, const mjtNum jaw_frame[9], double normal_force, double dt, mjtNum* memory);
+
+/* Takes the deflection from the bristle of `memory`: nothing deflects what is apart. */
+void let_go(mjtNum* memory);
 
 /* Adds the force and the moment on the body, and their opposites on the jaw, to generalised forces. */
 void apply(const mjModel* m, const contact* c, const placement* at, double normal_force, const traction* friction, mjtNum* qfrc);

@@ -1,5 +1,6 @@
 //! The comment at the head of a card: what it is fitted to, its error, and what the engine cannot show.
 
+use palpate::contact::Sides;
 use palpate::export::HOLD_TIMES;
 use palpate_report::document::Software;
 
@@ -37,6 +38,10 @@ impl Card {
         let conditions = self.conditions;
         let share = self.body.contact_displacement(1.0);
         let at = |value: f64| short(1e3 * value);
+        let held = match self.body.sides() {
+            Sides::One => ", all of it at one contact of a body whose back is held",
+            Sides::Two => "",
+        };
         let contact = |low: f64, high: f64, unit: &str| {
             if share == 1.0 {
                 String::new()
@@ -57,7 +62,7 @@ impl Card {
                 at(conditions.fastest)
             ),
             _ => format!(
-                "Fitted to: loading from {} to {} mm of jaw travel{} at {} to {} mm/s of the jaw{}",
+                "Fitted to: loading from {} to {} mm of jaw travel{} at {} to {} mm/s of the jaw{}{held}",
                 at(self.loading.shallowest() / share),
                 at(conditions.depth),
                 contact(self.loading.shallowest(), conditions.depth, "mm"),
@@ -123,10 +128,16 @@ impl Card {
             Engine::Drake => "in proportion to the force",
             _ => "linearly",
         };
-        vec![format!(
+        let memory = format!(
             "What {title} cannot show: its contact has no memory. The force in a hold is constant, its damping part vanishes when the jaw \
              stops, a second squeeze is like the first, and speed changes the force {damping}"
-        )]
+        );
+        let held = "Squeezed from one side: hold the back of the body, by a plate or the finger that it is on. Two jaws on a free body are \
+                    two such contacts in series, with half of the force or less; a body between two jaws needs squeezed_from = 'two sides'";
+        match self.body.sides() {
+            Sides::One => vec![memory, held.to_owned()],
+            Sides::Two => vec![memory],
+        }
     }
 }
 

@@ -122,7 +122,8 @@ fn geometry(engine: Engine, shape: &Shape) -> Result<(), JobError> {
         Shape::Profile { .. } => "a profile",
         Shape::Indenter { .. } => "the tip of an indenter",
     };
-    let message = format!("a card for {} needs a ball, a pad or a block, found {found}", engine.title());
+    let message =
+        format!("a card for {} needs a ball, a pad or a body of constant section, found {found}", engine.title());
     let hint = "cards for physx, isaac and newton have no geometry".to_owned();
     Err(JobError::new(ErrorKind::Model, message, hint))
 }

@@ -22,25 +22,36 @@ def mujoco_model(card: palpate.Card, *, gravity: bool = False) -> str:
     return ET.tostring(root, encoding="unicode")
 
 
-def squeeze(data: Any, indentation_m: float, speed_m_per_s: float) -> None:
-    """Puts both jaws at an indentation (m) of the body with a speed of it (m/s); their joints are at 0 where they touch it."""
-    for name, way in (("palpate_left_jaw", 1.0), ("palpate_right_jaw", -1.0)):
+def jaws(model: Any) -> list[tuple[str, float]]:
+    """The jaws of a card with the direction in which each closes: two, or one where the back of the body is held."""
+    names = {"palpate_left_jaw": 1.0, "palpate_right_jaw": -1.0, "palpate_jaw": 1.0}
+    return [(name, way) for name, way in names.items() if mujoco.mj_name2id(model, mujoco.mjtObj.mjOBJ_BODY, name) >= 0]
+
+
+def squeeze(model: Any, data: Any, indentation_m: float, speed_m_per_s: float) -> None:
+    """Puts the jaws at an indentation (m) of the body with a speed of it (m/s); their joints are at 0 where they touch it."""
+    for name, way in jaws(model):
         data.joint(name).qpos[0] = way * indentation_m
         data.joint(name).qvel[0] = way * speed_m_per_s
 
 
-def mujoco_forces(card: palpate.Card, indentations_m: Any, speed_m_per_s: float) -> Any:
-    """Mean force of the two contacts in N at indentations (m) and their speed."""
-    model = mujoco.MjModel.from_xml_string(mujoco_model(card))
+def contact_force(model: Any, data: Any) -> float:
+    """Mean force of the jaws in N."""
+    total, force = 0.0, np.zeros(6)
+    for contact in range(data.ncon):
+        mujoco.mj_contactForce(model, data, contact, force)
+        total += float(force[0])
+    return total / len(jaws(model))
+
+
+def mujoco_forces(card: palpate.Card, indentations_m: Any, speed_m_per_s: float, *, xml: str | None = None) -> Any:
+    """Mean force of a jaw in N at indentations (m) and their speed, of a card or of its model as it was changed."""
+    model = mujoco.MjModel.from_xml_string(xml or mujoco_model(card))
     data = mujoco.MjData(model)
     forces = []
     for indentation in indentations_m:
         mujoco.mj_resetData(model, data)
-        squeeze(data, float(indentation), speed_m_per_s)
+        squeeze(model, data, float(indentation), speed_m_per_s)
         mujoco.mj_forward(model, data)
-        total, force = 0.0, np.zeros(6)
-        for contact in range(data.ncon):
-            mujoco.mj_contactForce(model, data, contact, force)
-            total += float(force[0])
-        forces.append(0.5 * total)
+        forces.append(contact_force(model, data))
     return np.array(forces)

@@ -9,6 +9,7 @@ import copy
 import os
 import re
 import threading
+import tomllib
 from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
@@ -418,6 +419,94 @@ def test_a_body_that_may_fall_asleep_is_refused() -> None:
     with pytest.raises(mujoco.FatalError, match='the body "ball" may fall asleep, and this contact does not wake it: set sleep="never" on it'):
         data("")
     assert data('sleep="never"').time == 0.0
+
+
+def test_the_displacement_of_bodies_apart_is_less_their_distance() -> None:
+    for shape, half in (('type="box" size="0.01 0.03 0.03"', 0.01), ('type="sphere" size="0.012"', 0.012), ('type="capsule" size="0.01 0.02"', 0.01)):
+        m = mujoco.MjModel.from_xml_string(f"""<mujoco><option gravity="0 0 0"/><default><geom contype="0" conaffinity="0"/></default>
+          <extension><plugin plugin="palpate.contact">{instance("far", DESCRIPTION, geom1="jaw", geom2="ball")}</plugin>
+            <plugin plugin="palpate.sensor"/></extension>
+          <worldbody><body><joint name="jaw" type="slide" axis="1 0 0"/><geom name="jaw" {shape} mass="1"/></body>
+            <geom name="ball" size="0.035"/></worldbody>
+          <sensor><plugin name="far" plugin="palpate.sensor"><config key="contact" value="far"/></plugin></sensor></mujoco>""")
+        d = mujoco.MjData(m)
+        for gap in (0.001, 0.03, 0.06, 0.5, 40.0, 1e7):
+            d.qpos[0] = -(0.035 + half + gap)
+            mujoco.mj_step(m, d)
+            excess, force, _, _, displacement = d.sensor("far").data
+            assert displacement == pytest.approx(-gap, rel=1e-6) and force == 0 and excess == 0
+        # The memory is that of a body that is let go, from wherever the jaw comes back.
+        d.qpos[0] = -(0.035 + half - 0.002)
+        mujoco.mj_step(m, d)
+        assert d.sensor("far").data[1] > 0.5
+
+
+@pytest.mark.parametrize("away", [0.001, 1.0])
+def test_a_body_that_was_taken_away_and_put_back_is_not_deflected(away: float) -> None:
+    m = gripper("0 0 -20")
+    d = held(m, seconds=0.5)
+    assert d.sensor("left").data[3] > 0.5
+    m.opt.gravity[:] = 0
+    place = d.joint("body").qpos.copy()
+    # Off both fingers, by less than the depth of the body and by more.
+    d.ctrl[:] = -away
+    d.joint("left").qpos[0] = d.joint("right").qpos[0] = -away
+    d.qvel[:] = 0
+    mujoco.mj_step(m, d, nstep=3)
+    assert d.sensor("left").data[4] == pytest.approx(-away, abs=1e-4)
+    d.ctrl[:] = 0.005
+    d.joint("left").qpos[0] = d.joint("right").qpos[0] = 0.005
+    d.joint("body").qpos[:] = place
+    d.qvel[:] = 0
+    mujoco.mj_forward(m, d)
+    assert d.sensor("left").data[1] > 1 and d.sensor("left").data[3] < 1e-9
+
+
+def test_friction_on_a_plane_has_the_arm_of_the_squeezed_ball_whichever_geom_is_first() -> None:
+    spins = []
+    for geoms in ({"geom1": "floor", "geom2": "ball"}, {"geom1": "ball", "geom2": "floor"}):
+        m = mujoco.MjModel.from_xml_string(f"""<mujoco><option timestep="1e-4" gravity="0 0 0"/>
+          <default><geom contype="0" conaffinity="0" friction="0.5"/></default>
+          <extension><plugin plugin="palpate.contact">{instance("floor", DESCRIPTION, **geoms)}</plugin></extension>
+          <worldbody><geom name="floor" type="plane" size="1 1 1"/>
+            <body pos="0 0 0.03"><freejoint/><geom name="ball" size="0.035" mass="0.1"/></body></worldbody></mujoco>""")
+        d = mujoco.MjData(m)
+        # It slides along x and is 5 mm deep.
+        d.qvel[0] = 1.0
+        mujoco.mj_forward(m, d)
+        force, moment = d.qfrc_passive[0], d.qfrc_passive[4]
+        assert force < 0 and moment / force == pytest.approx(-0.03, rel=1e-6)
+        spins.append(moment)
+    assert spins[0] == pytest.approx(spins[1], rel=1e-9)
+
+
+def test_two_contacts_with_a_body_that_is_squeezed_from_one_side_are_in_series() -> None:
+    """A free block between two fingers needs the description of two sides; held by the world, one side is right."""
+    block = "[specimen]\nshape = 'block'\narea = '12 cm^2'\nlength = '60 mm'\nmodulus = '28 kPa'\n" + DESCRIPTION[DESCRIPTION.index("[law]") :]
+    sided = {sides: block + f"[contact]\nsqueezed_from = '{sides}'\n" for sides in ("one side", "two sides")}
+    expected = palpate.ContactState(tomllib.loads(block)).step(0.0, 0.004)
+    geom = '<geom name="body" type="sphere" size="0.035" mass="0.1"/>'
+
+    def forces(description: str) -> Any:
+        m = gripper("0 0 0", description=description)
+        d = mujoco.MjData(m)
+        d.joint("left").qpos[0] = d.joint("right").qpos[0] = 0.002
+        mujoco.mj_forward(m, d)
+        return np.array([d.sensor(side).data[1] for side in ("left", "right")])
+
+    assert forces(sided["two sides"]) == pytest.approx(expected, rel=1e-9)
+    assert forces(sided["one side"]) == pytest.approx(0.5 * expected, rel=1e-9)
+    # One finger, and a body that the world holds: all of the travel is at its contact.
+    m = mujoco.MjModel.from_xml_string(f"""<mujoco><default><geom contype="0" conaffinity="0"/></default>
+      <extension><plugin plugin="palpate.contact">{instance("jaw", sided["one side"], geom1="jaw", geom2="body")}</plugin>
+        <plugin plugin="palpate.sensor"/></extension>
+      <worldbody><body pos="-0.045 0 0"><joint name="jaw" type="slide" axis="1 0 0"/>
+        <geom name="jaw" type="box" size="0.01 0.03 0.03"/></body>{geom}</worldbody>
+      <sensor><plugin name="jaw" plugin="palpate.sensor"><config key="contact" value="jaw"/></plugin></sensor></mujoco>""")
+    d = mujoco.MjData(m)
+    d.qpos[0] = 0.004
+    mujoco.mj_forward(m, d)
+    assert d.sensor("jaw").data[1] == pytest.approx(expected, rel=1e-9)
 
 
 def test_a_sensor_needs_an_instance_of_a_contact() -> None:

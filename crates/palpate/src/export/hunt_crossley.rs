@@ -102,7 +102,7 @@ fn rows(loading: &Loading, radius: Option<f64>, gap: f64) -> Vec<([f64; 4], f64)
         let field = radius.map_or(0.0, |radius| pressure_force(radius, sample.indentation));
         ([u, u * speed, field, field * speed], sample.force)
     };
-    loading.samples.iter().map(row).collect()
+    loading.fitted().map(row).collect()
 }
 
 /// Force (m²) of a pressure field of modulus 1 in a ball.

@@ -47,11 +47,13 @@ const RANGES: [(f64, f64); 4] = [(-4.5, 4.5), (0.002, 0.998), (1.0, 6.0), (-3.0,
 /// Values of each on the grid of the search.
 const GRID: [usize; 4] = [9, 5, 5, 6];
 
-/// Points of the grid from which the search goes on.
-const STARTS: usize = 15;
+/// Points of the grid from which the search goes on, and ends of it from which it goes on to the end: the error has many valleys.
+const STARTS: usize = 60;
+const BEST: usize = 10;
 
-/// First steps of the search, and the share of them at which it ends.
+/// First steps of the search, and the shares of them at which it is broken off and at which it ends.
 const STEPS: Curve = [0.4, 0.12, 0.6, 0.3];
+const ROUGH: f64 = 0.12;
 const ENOUGH: f64 = 2e-3;
 
 /// Rounds of the fit that a curve is compared by, on the grid and in the search.
@@ -145,7 +147,7 @@ fn rows(loading: &Loading, curve: Curve) -> Vec<([f64; 2], f64)> {
         let impedance = first + way(sample.indentation / width, curve[1], curve[2]) * (last - first);
         (functions(impedance, last, (sample.indentation, sample.speed)), sample.force)
     };
-    loading.samples.iter().map(row).collect()
+    loading.fitted().map(row).collect()
 }
 
 /// Largest error of a curve with the best K and B after some rounds, N.
@@ -153,7 +155,7 @@ fn largest_error(loading: &Loading, curve: Curve, rounds: usize) -> f64 {
     fit_rounds(&rows(loading, curve), [None, Some(0)], rounds).map_or(f64::INFINITY, |(_, error)| error)
 }
 
-/// The curve whose largest error is least: a grid, then compass searches from its best points.
+/// The curve whose largest error is least: a grid, then compass searches from its best points, the best of them to the end.
 fn searched(loading: &Loading) -> Option<Curve> {
     let value = |axis: usize, index: usize| {
         let (low, high) = RANGES[axis];
@@ -170,16 +172,19 @@ fn searched(loading: &Loading) -> Option<Curve> {
     };
     let mut starts: Vec<(Curve, f64)> = (0..GRID.iter().product()).map(start).collect();
     starts.sort_by(|(_, a), (_, b)| a.total_cmp(b));
-    let ended = starts.iter().take(STARTS).map(|(curve, _)| descended(loading, *curve));
+    let rough = starts.iter().take(STARTS).map(|(curve, _)| descended(loading, *curve, (1.0, ROUGH)));
+    let mut rough: Vec<(Curve, f64)> = rough.collect();
+    rough.sort_by(|(_, a), (_, b)| a.total_cmp(b));
+    let ended = rough.iter().take(BEST).map(|(curve, _)| descended(loading, *curve, (ROUGH, ENOUGH)));
     let (best, error) = ended.min_by(|(_, a), (_, b)| a.total_cmp(b))?;
     error.is_finite().then_some(best)
 }
 
-/// A compass search from a curve.
-fn descended(loading: &Loading, start: Curve) -> (Curve, f64) {
+/// A compass search from a curve, from one share of the first steps to another.
+fn descended(loading: &Loading, start: Curve, (first, end): (f64, f64)) -> (Curve, f64) {
     let (mut here, mut least) = (start, largest_error(loading, start, ROUNDS));
-    let mut share = 1.0;
-    while share > ENOUGH {
+    let mut share = first;
+    while share > end {
         let mut has_moved = false;
         for (axis, sign) in (0..STEPS.len()).flat_map(|axis| [(axis, 1.0), (axis, -1.0)]) {
             let mut next = here;

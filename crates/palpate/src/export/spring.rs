@@ -22,7 +22,7 @@ impl SpringDamper {
     /// [`ExportError::NoFit`] for forces that determine neither.
     pub fn fit(loading: &Loading) -> Result<Self, ExportError> {
         let row = |sample: &LoadingSample| ([sample.indentation, sample.speed], sample.force);
-        let rows: Vec<([f64; 2], f64)> = loading.samples.iter().map(row).collect();
+        let rows: Vec<([f64; 2], f64)> = loading.fitted().map(row).collect();
         let engine = "a spring and a damper";
         let [stiffness, damping] = fit(&rows, [None, Some(0)]).ok_or(ExportError::NoFit { engine })?;
         let error = loading.error(|u, speed| force(stiffness, damping, (u, speed)));

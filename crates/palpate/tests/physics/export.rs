@@ -104,6 +104,24 @@ fn a_series_is_of_one_hold_only() {
     assert!(slow - fast > 0.03, "{slow} and {fast} of the peak after 1 s");
 }
 
+/// Largest error of a force in loading as a share of the peak force, found by many more depths and other speeds than those of a fit.
+fn largest_error(contact: &Contact, conditions: Conditions, force: Force<'_>, peak: f64) -> f64 {
+    let share = contact.specimen().contact_displacement(1.0);
+    let mut largest = 0.0_f64;
+    for index in 0..=24 {
+        let speed = conditions.slowest * (conditions.fastest / conditions.slowest).powf(f64::from(index) / 24.0);
+        let duration = conditions.depth / speed;
+        let motion = Motion::new(vec![0.0, duration], vec![0.0, conditions.depth]).unwrap();
+        let times = (100..=6000).map(|step| duration * f64::from(step) / 6000.0).collect();
+        let course = simulate(&motion, contact, &Sampling::Times(times)).unwrap();
+        for (u, expected) in course.contact_displacement.iter().zip(&course.force) {
+            largest = largest.max(((force(*u, share * speed) - expected) / peak).abs());
+        }
+    }
+    largest
+}
+
+/// A peak of the error between the depths that were fitted was larger than the error stated.
 #[test]
 fn stated_errors_are_those_of_the_forces() {
     let conditions = conditions(0.015, 0.008336);
@@ -119,16 +137,16 @@ fn stated_errors_are_those_of_the_forces() {
             ("spring", &|u, speed| spring.force(u, speed), spring.error),
         ];
         for (kind, force, stated) in forces {
-            let error = |sample: &palpate::export::LoadingSample| {
-                ((force(sample.indentation, sample.speed) - sample.force) / loading.peak).abs()
-            };
-            let largest = loading.samples.iter().map(error).fold(0.0, f64::max);
+            let largest = largest_error(&contact, conditions, force, loading.peak);
             println!(
                 "{name}, {kind}: {:.2} % in loading, {} % in the hold",
                 100.0 * stated.loading,
                 stated.hold.map(|error| format!("{:+.1}", 100.0 * error)).join(" ")
             );
-            assert!((largest - stated.loading).abs() < 1e-12 && stated.loading_rms <= stated.loading);
+            assert!(
+                (largest / stated.loading - 1.0).abs() < 5e-3 && stated.loading_rms <= stated.loading,
+                "{largest}, {stated:?}"
+            );
             // Samples begin at a sixtieth of the depth: a damper has a force before, the material next to none.
             let touch = force(f64::MIN_POSITIVE, loading.samples[0].speed) / loading.peak;
             assert!(

@@ -1,4 +1,5 @@
-//! MuJoCo: an MJCF model of the body between two jaws, its contacts as pairs with `solref`, `solreffriction` and `solimp`.
+//! MuJoCo: an MJCF model of the body between two jaws, or of the held body and one jaw, its contacts as pairs with `solref`, `solreffriction`
+//! and `solimp`.
 //!
 //! Documentation: "XML Reference", contact/pair attributes `solref`, `solreffriction`, `solimp`, `condim`, `friction`, and option attributes
 //! `cone`, `impratio`; "Modeling", section "Solver parameters"; "Computation", section "Constraint model" (mujoco.readthedocs.io).
@@ -6,7 +7,7 @@
 //! Pairs, not geoms, because friction would otherwise have the damping of the normal force: with an impedance of 0.01 its rate is a hundred
 //! times B, which no usual time step integrates.
 
-use palpate::contact::Shape;
+use palpate::contact::{Shape, Sides};
 use palpate::export::SoftConstraint;
 
 use super::super::card::Card;
@@ -26,31 +27,34 @@ const JAW: f64 = 1000.0;
 /// Standard gravity, m/s².
 const GRAVITY: f64 = 9.80665;
 
+/// The weld that holds a body squeezed from one side: as stiff as MuJoCo's constraints are, so that it takes micrometres of the travel.
+const WELD: &str = "solref=\"0.02 1\" solimp=\"0.9999 0.9999 0.001 0.5 2\"";
+
 pub(super) fn text(card: &Card, fit: &SoftConstraint) -> String {
     let head = card.head(&notes(card, fit));
     let friction = card.options.friction.map_or(String::new(), |mu| {
         let mu = plain(mu);
         format!(" friction=\"{mu} {mu} 0.005 0.0001 0.0001\"")
     });
-    let numbers = |values: &[f64]| values.iter().map(|value| plain(*value)).collect::<Vec<_>>().join(" ");
     let points = contact_points(card.shape());
     let solref = numbers(&[-fit.stiffness / points, -fit.damping / points]);
     let solimp = numbers(&[fit.first, fit.last, fit.width, fit.midpoint, fit.power]);
     let sliding = numbers(&[-1.0, -FRICTION_RATE * fit.last]);
     let (geometry, half, height) = geometry(card.shape());
-    let jaw = |side: &str, sign: f64| {
-        let (thickness, height) = (0.2 * half, plain(height));
-        let size = numbers(&[thickness, 2.0 * half, 2.0 * half]);
-        let place = plain(sign * (half + thickness));
-        format!(
-            r#"    <body name="palpate_{side}_jaw" pos="0 0 {height}">
-      <joint name="palpate_{side}_jaw" type="slide" axis="1 0 0"/>
-      <geom name="palpate_{side}_jaw" type="box" size="{size}" pos="{place} 0 0" mass="{mass}"/>
-    </body>
-"#,
-            mass = plain(JAW * fit.mass)
-        )
+    let (names, weld): (&[(&str, f64)], String) = match card.body.sides() {
+        Sides::Two => (&[("palpate_left_jaw", -1.0), ("palpate_right_jaw", 1.0)], String::new()),
+        Sides::One => {
+            let weld = format!(
+                "  <equality>\n    <weld name=\"palpate_back\" body1=\"palpate_body\" {WELD}/>\n  </equality>\n"
+            );
+            (&[("palpate_jaw", -1.0)], weld)
+        }
     };
+    let jaws: String = names.iter().map(|(name, side)| jaw(name, *side, (half, height), JAW * fit.mass)).collect();
+    let pairs: String = names
+        .iter()
+        .map(|(name, _)| format!("    <pair class=\"palpate\" geom1=\"palpate_body\" geom2=\"{name}\"/>\n"))
+        .collect();
     format!(
         r#"{comment}<mujoco model="palpate contact">
   <option cone="elliptic" impratio="{IMPRATIO}"/>
@@ -66,15 +70,30 @@ pub(super) fn text(card: &Card, fit: &SoftConstraint) -> String {
     </body>
 {jaws}  </worldbody>
   <contact>
-    <pair class="palpate" geom1="palpate_body" geom2="palpate_left_jaw"/>
-    <pair class="palpate" geom1="palpate_body" geom2="palpate_right_jaw"/>
-  </contact>
-</mujoco>
+{pairs}  </contact>
+{weld}</mujoco>
 "#,
         comment = xml_comment(&head),
         height = plain(height),
         mass = plain(fit.mass),
-        jaws = jaw("left", -1.0) + &jaw("right", 1.0)
+    )
+}
+
+fn numbers(values: &[f64]) -> String {
+    values.iter().map(|value| plain(*value)).collect::<Vec<_>>().join(" ")
+}
+
+/// A jaw on a slide along x, on one side of a body of half the width and the height of its centre (m).
+fn jaw(name: &str, side: f64, (half, height): (f64, f64), mass: f64) -> String {
+    let thickness = 0.2 * half;
+    let size = numbers(&[thickness, 2.0 * half, 2.0 * half]);
+    let (place, height, mass) = (plain(side * (half + thickness)), plain(height), plain(mass));
+    format!(
+        r#"    <body name="{name}" pos="0 0 {height}">
+      <joint name="{name}" type="slide" axis="1 0 0"/>
+      <geom name="{name}" type="box" size="{size}" pos="{place} 0 0" mass="{mass}"/>
+    </body>
+"#
     )
 }
 
@@ -95,6 +114,39 @@ fn geometry(shape: &Shape) -> (String, f64, f64) {
 
 fn notes(card: &Card, fit: &SoftConstraint) -> Vec<String> {
     let u = card.loading.indentation;
+    let points = contact_points(card.shape());
+    let mass = short(fit.mass);
+    let largest = 100.0 * SoftConstraint::LARGEST;
+    let mut notes = vec![
+        "Use: the pairs are the contact; give them the names of your geoms, and your model the option cone and impratio".to_owned(),
+        format!(
+            "The force is in proportion to 1/(w1 + w2), w the first number of body_invweight0 of the two bodies in the compiled model, and \
+             the card is for {mass} kg (w1 = 1/{mass}) and jaws so heavy that w2 is 0. For other bodies multiply both numbers of solref by \
+             {mass} (w1 + w2). For jaws of mass M that is 1 + {mass}/(3 M) where one slide joint moves them, as here, because w is then \
+             1/(3 M), and 1 + {mass}/M where they are free"
+        ),
+    ];
+    match card.body.sides() {
+        Sides::Two => notes.extend(between_jaws(card, fit, u, largest)),
+        Sides::One => notes.extend([
+            "The weld holds the back of the body; give it body2, the plate or the finger that the body is on, or let the geom of the body \
+             be one of that plate or finger, whose w then counts"
+                .to_owned(),
+            format!(
+                "The impedance is small, at most {}, so that the contact is a spring and a damper where what it presses is held; a body or \
+                 a jaw that it alone moves has up to {largest} % less force",
+                SoftConstraint::LARGEST
+            ),
+        ]),
+    }
+    notes.extend(
+        (points > 1.0).then(|| format!("The face of the body has {points} contacts with a jaw, which share its force")),
+    );
+    notes
+}
+
+/// What holds for a free body between two jaws.
+fn between_jaws(card: &Card, fit: &SoftConstraint, u: f64, largest: f64) -> [String; 3] {
     let by = |du: f64, speed: f64| fit.force(u * (1.0 - du), speed);
     let stiffness = ((by(0.0, 0.0) - by(1e-4, 0.0)) / (1e-4 * u)).max(f64::MIN_POSITIVE);
     let resistance = (fit.force(u, 1.0) - fit.force(u, 0.0)).max(f64::MIN_POSITIVE);
@@ -105,26 +157,16 @@ fn notes(card: &Card, fit: &SoftConstraint) -> Vec<String> {
     let impedance = fit.impedance(u);
     let points = contact_points(card.shape());
     let creep = 0.5 * GRAVITY * (1.0 - impedance) / (points * impedance * IMPRATIO * FRICTION_RATE);
-    let mass = short(fit.mass);
-    let corners = format!("The face of the block has {points} contacts with a jaw, which share its force");
-    let mut notes = vec![
-        format!(
-            "Use: the pairs are the contact; give them the names of your geoms, and your model the option cone and impratio. The force is \
-             per mass: keep the mass of {mass} kg. The jaws must be much heavier; with jaws of mass M multiply both numbers of solref by \
-             1 + {mass}/M"
-        ),
+    [
         format!(
             "The impedance is small, at most {}, so that the contact is a spring and a damper in a grip between two jaws; a contact \
-             without an opposite one has up to {} % less force",
+             without an opposite one has up to {largest} % less force",
             SoftConstraint::LARGEST,
-            100.0 * SoftConstraint::LARGEST
         ),
         format!("Time steps above {} s are unstable for this body between two jaws at this depth", short(stable)),
         format!(
             "Under its weight between two vertical jaws the body creeps by {} mm/min at this depth",
             short(60e3 * creep)
         ),
-    ];
-    notes.extend((points > 1.0).then_some(corners));
-    notes
+    ]
 }
