@@ -5,7 +5,7 @@ use std::path::Path;
 
 use palpate::contact::{RateDependence, Sides};
 use palpate::simulate::{Contact, ContactModel, Separation};
-use palpate_files::description::{DescriptionError, parse_material, parse_scene, read_protocol_text};
+use palpate_files::description::{DescriptionError, law_named, parse_material, parse_scene, read_protocol_text};
 
 use crate::call::{Message, Status, exclusive, guarded, shared};
 
@@ -25,7 +25,8 @@ const _: () = {
 /// Why there is no model.
 enum Refused {
     Described(DescriptionError),
-    Law,
+    /// A law that is not stepped, by its name.
+    Law(Option<String>),
 }
 
 impl From<DescriptionError> for Refused {
@@ -44,9 +45,11 @@ impl Refused {
                 }
                 Status::Description
             }
-            Self::Law => {
+            Self::Law(found) => {
+                let name = found.as_deref().unwrap_or("another law");
                 message.set(format_args!(
-                    "expected the latency law with one rate coefficient, which is stepped, found another law"
+                    "law.name: expected \"latency\" with one rate coefficient, which is stepped here, found {name:?}; hint: \
+                     palpate.ContactStates in Python steps contacts of every law"
                 ));
                 Status::Law
             }
@@ -61,7 +64,7 @@ impl Model {
             rate: RateDependence::Constant,
         } = parse_scene(text, path)?.1
         else {
-            return Err(Refused::Law);
+            return Err(Refused::Law(law_named(text)));
         };
         // A table of this name is that of a calibrated material, whose parameters nobody has edited since.
         let is_calibrated = text.lines().any(|line| line.trim_start().starts_with("[calibration"));

@@ -103,7 +103,7 @@ fn keyword(name: &str, value: Option<&str>) -> String {
     let (job, name) = name.split_once('/').map_or((None, name), |(job, name)| (Some(job), name));
     let unit = match name {
         "minimum_hold" | "tolerance" => return format!("phases.{name}"),
-        "squeeze" | "stroke" => "_m",
+        "squeeze" | "stroke" | "depth" => "_m",
         "force" | "most_force" | "band" => "_n",
         "hold" | "close_within" | "shortest_pause" | "fit_until" | "at" => "_s",
         _ => "",
@@ -111,6 +111,7 @@ fn keyword(name: &str, value: Option<&str>) -> String {
     let written = match value {
         // A number without its unit, which the keyword has.
         Some("250g") if name == "mass" => "mass_kg=0.25".to_owned(),
+        Some(value) if let Some(depth) = in_metres(name, value) => format!("{name}{unit}={depth}"),
         Some(value) => format!("{name}{unit}=\"{value}\""),
         None if job.is_some() => format!("{name}{unit}=True"),
         None => format!("{name}{unit}"),
@@ -119,6 +120,12 @@ fn keyword(name: &str, value: Option<&str>) -> String {
         Some(job) => format!("{job}({written})"),
         None => written,
     }
+}
+
+/// A depth in metres, which its keyword takes as a number.
+fn in_metres(name: &str, value: &str) -> Option<f64> {
+    let millimetres: f64 = value.strip_suffix("mm").filter(|_| name == "depth")?.parse().ok()?;
+    Some(millimetres / 1e3)
 }
 
 /// What is wrong with the text that a mapping was made to: it has keys as Python indexes them, and no lines that anybody wrote.

@@ -416,6 +416,10 @@ def test_a_material_file_that_is_none_has_the_words_of_the_command_line(material
             palpate.Material.read(tmp_path / name)
         reported = command("predict", tmp_path / name, "--protocol", HOLD).stderr
         assert reported.strip() == f"error: {caught.value}"
+    # A contact is not stepped by a parameter that was not calibrated, either.
+    for make in (palpate.ContactState, lambda path: palpate.ContactStates(path, 2)):
+        with pytest.raises(palpate.OptionError, match="a value edited by hand is no longer calibrated, found 6"):
+            make(tmp_path / "changed.toml")
     with pytest.raises(palpate.PalpateError, match="cannot write"):
         material.write(tmp_path / "edited.toml" / "inside.toml")
     with pytest.raises(IsADirectoryError, match="expected a file, found a directory"):

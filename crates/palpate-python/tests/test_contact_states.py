@@ -297,3 +297,23 @@ def test_two_threads_cannot_step_one_object_at_once() -> None:
         thread.join()
     assert all("borrowed" in str(error) for error in errors)
     assert np.isfinite(contacts.force_n).all() and len(set(contacts.force_n.tolist())) == 1
+
+
+def test_states_that_no_body_has_are_refused_or_go_on_as_documented() -> None:
+    ball = {"specimen": {"shape": "ball", "radius": "35 mm", "modulus": "28 kPa"}, "law": {"name": "latency", "exponent": 5, "rate_coefficient": "2e4 /s"}}
+    linear = {**ball, "law": {"name": "standard-linear-solid", "overshoot": 1.0, "time": "2 s"}}
+    for model in (ball, linear):
+        contacts = palpate.ContactStates(model, 2)
+        # 36 mm at one contact of a ball of 35 mm: its contact area would be that of the other side.
+        for number, message in ((0.036, "contact 1: contact displacement must stay below the radius of 0.035 m"), (np.nan, "contact 1: .* finite")):
+            with pytest.raises(palpate.ModelError, match=message):
+                contacts.state = np.array([[0.0, 0.0], [number, 0.0]])
+        assert not contacts.state.any()
+    contacts = palpate.ContactStates(ball, 3)
+    contacts.state[0] = [np.nan, 0.0]
+    contacts.state[1] = [1e9, 0.0]
+    contacts.state[2] = [0.5, 0.1]
+    assert np.isnan(contacts.force_n[0]) and (contacts.force_n[1:] < 0).all()
+    forces = contacts.step(1e-3, 1e-3, errors="mask")
+    assert contacts.failed.tolist() == [True, True, False]
+    assert np.isfinite(forces[[0, 2]]).all() and contacts.state[2, 0] == 5e-4

@@ -19,7 +19,7 @@ from palpate._options import Engine
 
 BALL = "examples/records/ball-material.toml"
 ENGINES: tuple[Engine, ...] = get_args(Engine)
-LOAD: dict[str, Any] = {"mass_kg": 0.25, "friction": 0.6}
+LOAD: dict[str, Any] = {"mass_kg": 0.25}
 
 pytestmark = pytest.mark.filterwarnings("ignore::palpate.PalpateWarning")
 
@@ -31,7 +31,7 @@ def _in_the_root(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 def command(engine: str, *flags: str) -> str:
-    arguments = [sys.executable, "-m", "palpate", "export", engine, BALL, "--mass", "250g", "--friction", "0.6", *flags]
+    arguments = [sys.executable, "-m", "palpate", "export", engine, BALL, "--mass", "250g", *flags]
     return subprocess.run(arguments, capture_output=True, check=True).stdout.decode()
 
 
@@ -47,12 +47,15 @@ def test_a_card_is_that_of_the_command(engine: Engine, tmp_path: Path) -> None:
 
 def test_every_option_is_that_of_the_command() -> None:
     keywords: dict[str, Any] = {
-        **{"depth_m": 0.012, "speed_m_per_s": 0.01, "slowest_m_per_s": 0.004, "hold_s": 30.0, "mass_kg": 0.25, "friction": 0.6},
-        **{"poisson_ratio": 0.4, "terms_per_decade": 3.0},
+        **{"depth_m": 0.012, "speed_m_per_s": 0.01, "hold_s": 30.0, "mass_kg": 0.25},
     }
-    flags = ["--depth", "12 mm", "--speed", "10 mm/s", "--slowest", "4 mm/s", "--hold", "30 s"]
-    flags += ["--poisson-ratio", "0.4", "--terms-per-decade", "3", "--format", "json"]
-    assert palpate.export(BALL, "abaqus", **keywords).to_json() == command("abaqus", *flags)
+    flags = ["--depth", "12 mm", "--speed", "10 mm/s", "--hold", "30 s", "--format", "json"]
+    of_continua = ["--poisson-ratio", "0.4", "--terms-per-decade", "3"]
+    of_contacts = ["--slowest", "4 mm/s", "--friction", "0.6"]
+    abaqus = palpate.export(BALL, "abaqus", **keywords, poisson_ratio=0.4, terms_per_decade=3.0)
+    assert abaqus.to_json() == command("abaqus", *flags, *of_continua)
+    drake = palpate.export(BALL, "drake", **keywords, slowest_m_per_s=0.004, friction=0.6)
+    assert drake.to_json() == command("drake", *flags, *of_contacts)
 
 
 @pytest.mark.parametrize("engine", ["mujoco", "drake", "febio"])
@@ -111,8 +114,12 @@ def test_bad_input_is_refused() -> None:
         palpate.export(7, "drake")  # type: ignore[arg-type] # pyright: ignore[reportArgumentType]
     with pytest.raises(palpate.OptionError):
         palpate.export("examples/records/ball.toml", "drake")
-    with pytest.raises(palpate.ModelError, match="contact displacement must stay below the radius"):
-        palpate.export(BALL, "drake", depth_m=0.08)
+    # The hint is a keyword as it is given.
+    below = r"contact displacement must stay below the radius(.|\n)*hint: the test went to 15\.0 mm: depth_m=0\.015$"
+    with pytest.raises(palpate.ModelError, match=below):
+        palpate.export(BALL, "mujoco", mass_kg=0.2, depth_m=15)
+    with pytest.raises(palpate.OptionError, match=r"friction is for engines of contacts, and the engine is febio\nhint: leave friction out"):
+        palpate.export(BALL, "febio", friction=0.5)
     for keywords in ({"hold_s": 0.0}, {"speed_m_per_s": math.nan}, {"depth_m": -1.0}, {"mass_kg": math.inf}, {"friction": -0.1}):
         with pytest.raises(palpate.OptionError):
             palpate.export(BALL, "drake", **keywords)

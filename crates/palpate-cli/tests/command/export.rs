@@ -14,8 +14,12 @@ fn ball() -> String {
     root().join(BALL).display().to_string()
 }
 
+/// Finite elements have no friction in their card.
+const CONTINUA: [&str; 4] = ["abaqus", "openradioss", "febio", "felupe"];
+
 fn export<'a>(engine: &'a str, ball: &'a str) -> Vec<&'a str> {
-    vec!["export", engine, ball, "--mass", "250g", "--friction", "0.6"]
+    let friction: &[&str] = if CONTINUA.contains(&engine) { &[] } else { &["--friction", "0.6"] };
+    [&["export", engine, ball, "--mass", "250g"], friction].concat()
 }
 
 fn card(engine: &str, more: &[&str]) -> String {
@@ -230,6 +234,17 @@ fn bad_input_is_refused_with_what_helps() {
     assert!(error.contains("--poisson-ratio must be 0 or more and below 0.5, found 0.5"), "{error}");
     let error = refused(&root, &["export", "drake", &ball, "--poisson-ratio", "0.3"]);
     assert!(error.contains("--poisson-ratio is for finite elements"), "{error}");
+    for [engine, option, value] in [
+        ["febio", "--friction", "0.5"],
+        ["abaqus", "--slowest", "1 mm/s"],
+        ["mujoco", "--terms-per-decade", "3"],
+        ["newton", "--poisson-ratio", "0.3"],
+    ] {
+        let error = refused(&root, &["export", engine, &ball, "--mass", "250g", option, value]);
+        let kind = if CONTINUA.contains(&engine) { "engines of contacts" } else { "finite elements" };
+        assert!(error.contains(&format!("{option} is for {kind}, and the engine is {engine}")), "{error}");
+        assert!(error.contains(&format!("hint: leave {option} out")), "{error}");
+    }
     let error = refused(&root, &["export", "drake", &ball, "--friction", "-1"]);
     assert!(error.contains("--friction must be a number of 0 or more"), "{error}");
     let error = refused(&root, &["export", "drake", &ball, "--out", &ball]);

@@ -32,8 +32,8 @@ pub use body::{ShapeAbout, shapes};
 pub use edit::{Edit, edit_test};
 pub use material::{MATERIAL_VERSION, MaterialFile, MaterialOrigin, parse_material, read_material};
 pub use protocol::{
-    Protocol, parse_protocol, parse_protocol_of, parse_scene, read_protocol, read_protocol_of, read_protocol_text,
-    read_scene, self_contained,
+    Protocol, law_named, parse_protocol, parse_protocol_of, parse_scene, read_protocol, read_protocol_of,
+    read_protocol_text, read_scene, self_contained,
 };
 pub use schema::{schema_material, schema_protocol, schema_test};
 pub use sweep::{Plan, Spacing, Sweep, SweptParameter, parse_runs, parse_sweep, read_sweep};

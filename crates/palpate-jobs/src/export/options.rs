@@ -103,7 +103,7 @@ pub struct Export {
         long = "speed", value_name = "SPEED", value_parser = crate::typed::speed, allow_hyphen_values = true,
     ))]
     pub speed_m_per_s: Option<f64>,
-    /// Slowest speed of the jaw; the slowest ramp of the test if not given, or, where the test has one speed, half the fastest, or the least share
+    /// Slowest speed of the jaw, of a contact; the slowest ramp of the test if not given, or, where the test has one speed, half the fastest, or the least share
     /// of it that a card fits to 2 %.
     #[cfg_attr(feature = "clap", arg(
         long = "slowest", value_name = "SPEED", value_parser = crate::typed::speed, allow_hyphen_values = true,
@@ -173,10 +173,27 @@ impl Export {
                 "add ⟨mass=250g⟩ with the mass of the body",
             ));
         }
-        if self.poisson_ratio.is_some() && !self.engine.is_continuum() {
-            let message = format!("⟨poisson_ratio⟩ is for finite elements, and the engine is {}", self.engine.name());
-            return Err(JobError::option(message, "leave ⟨poisson_ratio⟩ out"));
+        self.check_effects()
+    }
+
+    /// Refuses options that have no effect on the card of the engine.
+    fn check_effects(&self) -> Result<(), JobError> {
+        let is_dense = self.terms_per_decade.to_bits() != Self::default().terms_per_decade.to_bits();
+        let (kind, others) = match self.engine.is_continuum() {
+            true => (
+                "engines of contacts",
+                [("friction", self.friction.is_some()), ("slowest", self.slowest_m_per_s.is_some())],
+            ),
+            false => {
+                ("finite elements", [("poisson_ratio", self.poisson_ratio.is_some()), ("terms_per_decade", is_dense)])
+            }
+        };
+        match others.iter().find(|(_, is_given)| *is_given) {
+            Some((name, _)) => {
+                let message = format!("⟨{name}⟩ is for {kind}, and the engine is {}", self.engine.name());
+                Err(JobError::option(message, &format!("leave ⟨{name}⟩ out")))
+            }
+            None => Ok(()),
         }
-        Ok(())
     }
 }

@@ -46,7 +46,8 @@ class SoftGripTask:
     control: Control = "position"
     #: Whether every episode draws a body from the covariance of a `palpate.Material`.
     posterior: bool = False
-    #: Parameters that every episode draws between two numbers, evenly: those of ``ContactStates`` by name, ``mass_kg``, ``friction``.
+    #: Parameters that every episode draws between two numbers, evenly: those of ``ContactStates`` by name, ``mass_kg``, ``friction``; with
+    #: `posterior` none of those that the material has, which are drawn together.
     ranges: Mapping[str, tuple[float, float]] = field(default_factory=dict)
     #: Mass that is held, kg, and coefficient of friction between finger and body.
     mass_kg: float = 0.2
@@ -88,7 +89,10 @@ class SoftGripTask:
         if self.posterior:
             if isinstance(self.model, (str, PathLike)):
                 object.__setattr__(self, "model", Material.read(self.model))
-            _posterior(self.model)
+            twice = [name for name in _posterior(self.model)[0] if name in self.ranges]
+            if twice:
+                hint = f"leave {twice[0]} out of ranges, or use posterior=False"
+                raise OptionError(f"ranges: expected no parameter that posterior=True draws, found {twice[0]}\nhint: {hint}")
         for name, ends in self.ranges.items():
             if name not in (*OF_BODY, *OF_LOAD):
                 raise OptionError(f"ranges: expected names among {', '.join((*OF_BODY, *OF_LOAD))}, found {name}")
@@ -145,7 +149,7 @@ class Bodies:
         self.friction = np.full(count, float(task.friction))
         self.posterior = _posterior(task.model) if task.posterior else None
         names = [] if self.posterior is None else list(self.posterior[0])
-        names += [name for name in task.ranges if name in OF_BODY and name not in names]
+        names += [name for name in task.ranges if name in OF_BODY]
         #: Values of contacts, for `ContactStates.reset`.
         self.of_body = {name: np.ones(count) for name in names}
 

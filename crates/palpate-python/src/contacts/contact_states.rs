@@ -269,6 +269,10 @@ shown! {
     /// The states, a row each, in place: what is written there is the state. Columns are one contact's share of the displacement of the
     /// jaw, m, and, of the latency law, the displacement of the node behind the contact layer, m; of a linear law the excess of every
     /// term, by rising rate, in strain, or in N where its memory is of force. Zeros are an untouched contact.
+    ///
+    /// Numbers written in place are not checked: until the next step ``force_n`` and ``stiffness_n_per_m`` are what their formulas give, which
+    /// may be NaN, or below 0 where the jaw is beyond the body. A step fails for a contact whose numbers are not finite or a million depths
+    /// away, and goes on from any others. An assigned array is checked: finite numbers and forces, no jaw beyond its body.
     #[getter]
     fn state<'py>(&mut self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         let shape = self.shape();

@@ -5,12 +5,14 @@ use std::path::{Path, PathBuf};
 
 use palpate::contact::RateDependence;
 use palpate::simulate::{Contact, ContactModel};
-use palpate_files::description::{DescriptionError, parse_scene, read_protocol_text, self_contained};
+use palpate_files::description::{
+    DescriptionError, law_named, parse_material, parse_scene, read_protocol_text, self_contained,
+};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use rayon::prelude::*;
 
-use crate::errors::{ModelError, PalpateError, of_mapping, refused_plainly, undescribed};
+use crate::errors::{ModelError, PalpateError, of_mapping, refused, refused_plainly, undescribed};
 use crate::files::stated;
 use crate::mappings::mapping_text;
 use crate::work::{briefly, in_parallel};
@@ -45,6 +47,10 @@ impl Given {
 
     fn read(&self) -> Read {
         let path = self.path.as_deref().unwrap_or(Path::new("model"));
+        // A table of this name is that of a calibrated material, whose parameters nobody has edited since.
+        if self.text.lines().any(|line| line.trim_start().starts_with("[calibration")) {
+            parse_material(&self.text, path)?;
+        }
         Ok((parse_scene(&self.text, path)?.1, self_contained(&self.text, path)?))
     }
 
@@ -63,7 +69,7 @@ pub(super) fn described_contact(model: &Bound<'_, PyAny>) -> PyResult<(Contact, 
 /// The same under the latency law.
 pub(super) fn described(model: &Bound<'_, PyAny>) -> PyResult<(ContactModel, String)> {
     let (contact, text) = described_contact(model)?;
-    Ok((latency(contact)?, text))
+    Ok((latency(contact, &text)?, text))
 }
 
 /// Descriptions that are read in some ten milliseconds.
@@ -92,7 +98,8 @@ pub(super) fn all_described(models: &Bound<'_, PyAny>) -> PyResult<Vec<(Contact,
     Ok(all.into_iter().map(|place| read[place].clone()).collect())
 }
 
-fn latency(contact: Contact) -> PyResult<ContactModel> {
+/// The model of a contact that is stepped alone; `text` describes it.
+fn latency(contact: Contact, text: &str) -> PyResult<ContactModel> {
     match contact {
         Contact::Latency {
             model,
@@ -101,7 +108,11 @@ fn latency(contact: Contact) -> PyResult<ContactModel> {
         Contact::Latency { .. } => {
             Err(refused_plainly::<ModelError>("a contact is stepped by a latency law with one rate coefficient"))
         }
-        Contact::Linear(_) => Err(refused_plainly::<ModelError>("a contact is stepped by the latency law alone")),
+        Contact::Linear(_) => {
+            let found = law_named(text).map_or("a linear law".to_owned(), |name| format!("\"{name}\""));
+            let message = format!("law.name: a contact is stepped by the latency law alone, found {found}");
+            Err(refused::<ModelError>(message, Some("palpate.ContactStates steps contacts of every law")))
+        }
     }
 }
 
@@ -112,5 +123,5 @@ pub(super) fn contact_of(text: &str) -> PyResult<Contact> {
 
 /// The same under the latency law.
 pub(super) fn model_of(text: &str) -> PyResult<ContactModel> {
-    latency(contact_of(text)?)
+    latency(contact_of(text)?, text)
 }

@@ -264,6 +264,18 @@ def test_bodies_are_drawn_from_the_covariance_of_a_calibration() -> None:
 
 
 @pytest.mark.filterwarnings("ignore::palpate.PalpateWarning")
+def test_a_parameter_is_drawn_from_the_covariance_or_from_a_range_but_not_from_both() -> None:
+    material = calibrated()
+    with pytest.raises(palpate.OptionError, match="ranges: expected no parameter that posterior=True draws, found modulus_pa\nhint: leave modulus_pa"):
+        SoftGripVectorEnv(3, model=material, posterior=True, ranges={"modulus_pa": (2e4, 4e4)})
+    # What the material does not have comes from its range.
+    envs = SoftGripVectorEnv(100, model=material, posterior=True, ranges={"radius_m": (0.03, 0.04), "mass_kg": (0.1, 0.2)})
+    envs.reset(seed=1)
+    assert set(envs.bodies.of_body) == {*material.parameters, "radius_m"}
+    assert np.ptp(envs.bodies.of_body["radius_m"]) > 0.008 and np.ptp(envs.bodies.mass_kg) > 0.08
+
+
+@pytest.mark.filterwarnings("ignore::palpate.PalpateWarning")
 def test_a_file_of_a_material_has_its_covariance(tmp_path: Path) -> None:
     path = tmp_path / "material.toml"
     calibrated().write(path)

@@ -110,6 +110,13 @@ pub fn parse_scene(text: &str, path: &Path) -> Result<(Option<String>, Contact),
     Ok((tables.title, model))
 }
 
+/// The name of the law in a text that [`parse_scene`] reads, `None` where it names none itself.
+#[must_use]
+pub fn law_named(text: &str) -> Option<String> {
+    let tables: toml::Table = text.parse().ok()?;
+    tables.get("law")?.get("name")?.as_str().map(str::to_owned)
+}
+
 /// The text of a protocol with the body of the material file that it names, if any: a self-contained protocol.
 ///
 /// # Errors

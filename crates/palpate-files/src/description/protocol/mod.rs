@@ -16,6 +16,6 @@ pub(super) mod sweep_schema;
 pub(super) mod tables;
 
 pub use convert::{
-    Protocol, parse_protocol, parse_protocol_of, parse_scene, read_protocol, read_protocol_of, read_protocol_text,
-    read_scene, self_contained,
+    Protocol, law_named, parse_protocol, parse_protocol_of, parse_scene, read_protocol, read_protocol_of,
+    read_protocol_text, read_scene, self_contained,
 };

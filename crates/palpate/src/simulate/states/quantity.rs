@@ -3,8 +3,9 @@
 use super::linear::own;
 use super::models::{ContactModels, Law};
 use super::part::OneStepError;
+use crate::contact::Specimen;
 use crate::simulate::linear::Memories;
-use crate::simulate::{ContactState, StepError};
+use crate::simulate::{ContactState, Separation, StepError};
 use crate::vector::LANES;
 
 /// What contacts show.
@@ -77,7 +78,7 @@ impl ContactModels {
         }
     }
 
-    /// Checks that states are those of contacts: finite numbers, with finite forces.
+    /// Checks that states are those of contacts: finite numbers, with finite forces, and jaws that are not beyond their bodies.
     ///
     /// # Errors
     /// [`OneStepError`] for the first one that is none.
@@ -96,8 +97,26 @@ impl ContactModels {
                 };
                 return Err(OneStepError { index, error });
             }
+            self.check_depth(index, states[index]).map_err(|error| OneStepError { index, error })?;
         }
         Ok(())
+    }
+
+    /// Checks that a contact displacement (m) is one that the body of a contact has.
+    fn check_depth(&self, index: usize, u: f64) -> Result<(), StepError> {
+        let check = |specimen: &Specimen, separation: Separation| {
+            specimen.check_contact_displacement(u, separation == Separation::Bonded).map_err(StepError::from)
+        };
+        match &self.law {
+            Law::Latency(models) => {
+                let model = models.model(index);
+                check(&model.specimen, model.separation)
+            }
+            Law::Linear(models) => {
+                let stepper = models.stepper(index);
+                check(&stepper.contact().specimen, stepper.contact().separation)
+            }
+        }
     }
 
     /// Makes contacts untouched: those that `mask` marks, or all without it.
