@@ -126,7 +126,7 @@ def contact_errors(material: palpate.Material, card: palpate.Card) -> tuple[floa
     depth, share = document["depth_m"], document["contact_displacement_m"] / document["depth_m"]
     worst = 0.0
     for speed in np.geomspace(document["slowest_m_per_s"], document["fastest_m_per_s"], 5):
-        depths = np.linspace(1 / 60, 1.0, 60) * depth
+        depths = np.linspace(1 / 60, 1.0, 240) * depth
         law = material.predict([{"to": f"{depth!r} m", "rate": f"{float(speed)!r} m/s"}], at_s=depths / speed).force_n
         forces = contact_forces(card, depths, float(speed), share)
         if forces is None:

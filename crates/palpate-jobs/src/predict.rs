@@ -129,12 +129,17 @@ impl Predicted {
     /// Stages the series as the file at `path`: a log of ROS 2 if it ends in `.mcap`, otherwise CSV.
     ///
     /// # Errors
-    /// [`JobError`] where a time has no stamp, or the operating system takes no file there.
+    /// [`JobError`] where a time has no stamp, a log would have one, or the operating system takes no file there.
     pub fn stage(&self, path: &Path, stage: &mut Stage) -> Result<(), JobError> {
         if !is_log(path) {
             let mut bytes = Vec::new();
             self.write_series(&mut bytes).map_err(|error| unwritten(path, &error))?;
             return stage.bytes(path, &bytes);
+        }
+        if self.prediction.trajectory.time.len() < 2 {
+            // No record has one row, so that no reader of ours would take it.
+            let message = "a log needs 2 times or more, found 1";
+            return Err(JobError::option(message, "add another ⟨at⟩, or write CSV").of(path.display()));
         }
         stage.file(path, |into| {
             let written = write_prediction_log(into, &self.prediction, self.single);

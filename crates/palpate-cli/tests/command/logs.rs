@@ -157,6 +157,11 @@ fn a_prediction_is_logged_with_its_band() {
     let log = Log::open(&folder.path().join("at.mcap"));
     assert_eq!(log.values("/palpate/wrench log time"), [0.0, 45.0]);
     assert!(log.0.parts[0].column_named("/palpate/joint_states.velocity[finger]").is_none());
+    // A log of one time would be none that `inspect` reads.
+    let error = refused(folder.path(), &[&predict[..], &["--at", "60 s", "--out", "one.mcap"]].concat());
+    assert!(error.contains("one.mcap: a log needs 2 times or more, found 1"), "{error}");
+    assert!(error.contains("hint: add another --at, or write CSV"), "{error}");
+    assert!(!folder.path().join("one.mcap").exists());
 }
 
 #[test]

@@ -112,7 +112,7 @@ fn largest_error(contact: &Contact, conditions: Conditions, force: Force<'_>, pe
         let speed = conditions.slowest * (conditions.fastest / conditions.slowest).powf(f64::from(index) / 24.0);
         let duration = conditions.depth / speed;
         let motion = Motion::new(vec![0.0, duration], vec![0.0, conditions.depth]).unwrap();
-        let times = (100..=6000).map(|step| duration * f64::from(step) / 6000.0).collect();
+        let times = (100..=6000).map(|step| duration * (f64::from(step) / 6000.0)).collect();
         let course = simulate(&motion, contact, &Sampling::Times(times)).unwrap();
         for (u, expected) in course.contact_displacement.iter().zip(&course.force) {
             largest = largest.max(((force(*u, share * speed) - expected) / peak).abs());

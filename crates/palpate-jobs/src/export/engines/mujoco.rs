@@ -27,8 +27,8 @@ const JAW: f64 = 1000.0;
 /// Standard gravity, m/s².
 const GRAVITY: f64 = 9.80665;
 
-/// The weld that holds a body squeezed from one side: as stiff as MuJoCo's constraints are, so that it takes micrometres of the travel.
-const WELD: &str = "solref=\"0.02 1\" solimp=\"0.9999 0.9999 0.001 0.5 2\"";
+/// The weld that holds a body squeezed from one side: as stiff as the largest stable time step allows, so that it takes micrometres of the travel.
+const WELD: &str = "solref=\"0.01 1\" solimp=\"0.9999 0.9999 0.001 0.5 2\"";
 
 pub(super) fn text(card: &Card, fit: &SoftConstraint) -> String {
     let head = card.head(&notes(card, fit));
@@ -132,6 +132,7 @@ fn notes(card: &Card, fit: &SoftConstraint) -> Vec<String> {
             "The weld holds the back of the body; give it body2, the plate or the finger that the body is on, or let the geom of the body \
              be one of that plate or finger, whose w then counts"
                 .to_owned(),
+            format!("Time steps above {} s are unstable: friction is stiff", short(2.0 / FRICTION_RATE)),
             format!(
                 "The impedance is small, at most {}, so that the contact is a spring and a damper where what it presses is held; a body or \
                  a jaw that it alone moves has up to {largest} % less force",
