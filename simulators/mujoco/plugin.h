@@ -37,7 +37,7 @@ typedef enum {
   MEASURE_NORMAL_FORCE,    /* N */
   MEASURE_MARGIN_TO_SLIP,  /* friction limit less load, N; 0 while it slips or the jaw is off */
   MEASURE_TANGENTIAL_LOAD, /* tangential force and torsion as the force that loads the contact as much, N */
-  MEASURE_DISPLACEMENT,    /* displacement of one contact since first touch, m; less the distance while the jaw is off */
+  MEASURE_DISPLACEMENT,    /* displacement of one contact since first touch, m; the distance below 0 while it is off */
   MEASURE_COUNT
 } measure_index;
 

@@ -300,7 +300,8 @@ def test_two_threads_cannot_step_one_object_at_once() -> None:
 
 
 def test_states_that_no_body_has_are_refused_or_go_on_as_documented() -> None:
-    ball = {"specimen": {"shape": "ball", "radius": "35 mm", "modulus": "28 kPa"}, "law": {"name": "latency", "exponent": 5, "rate_coefficient": "2e4 /s"}}
+    specimen = {"shape": "ball", "radius": "35 mm", "modulus": "28 kPa"}
+    ball = {"specimen": specimen, "law": {"name": "latency", "exponent": 5, "rate_coefficient": "2e4 /s"}}
     linear = {**ball, "law": {"name": "standard-linear-solid", "overshoot": 1.0, "time": "2 s"}}
     for model in (ball, linear):
         contacts = palpate.ContactStates(model, 2)

@@ -103,7 +103,7 @@ pub struct Export {
         long = "speed", value_name = "SPEED", value_parser = crate::typed::speed, allow_hyphen_values = true,
     ))]
     pub speed_m_per_s: Option<f64>,
-    /// Slowest speed of the jaw, of a contact; the slowest ramp of the test if not given, or, where the test has one speed, half the fastest, or the least share
+    /// Slowest speed of the jaw; the slowest ramp of the test if not given, or, where the test has one speed, half the fastest, or the least share
     /// of it that a card fits to 2 %.
     #[cfg_attr(feature = "clap", arg(
         long = "slowest", value_name = "SPEED", value_parser = crate::typed::speed, allow_hyphen_values = true,

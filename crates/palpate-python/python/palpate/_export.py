@@ -89,7 +89,7 @@ def export(
     mass_kg
         Mass of the body, kg; "mujoco" needs it, because its contact is per mass.
     friction
-        Coefficient of friction between jaw and body; that of the engine if left out.
+        Coefficient of friction between jaw and body, of a contact; that of the engine if left out.
     poisson_ratio
         Poisson's ratio of a Prony card; that of Hertz's law, or else 0.49, if left out.
     terms_per_decade
@@ -103,7 +103,8 @@ def export(
     Raises
     ------
     OptionError
-        An engine that there is not, a mass that is missing, a number out of its range.
+        An engine that there is not, a mass that is missing, a number out of its range, an option that does not change the card of
+        the engine.
     ModelError
         A depth that the body does not have; a Prony series of an exponent below 1.
 
