@@ -46,9 +46,9 @@ impl Refused {
                 Status::Description
             }
             Self::Law(found) => {
-                let name = found.as_deref().unwrap_or("another law");
+                let found = found.as_ref().map_or("another law".to_owned(), |name| format!("\"{name}\""));
                 message.set(format_args!(
-                    "law.name: expected \"latency\" with one rate coefficient, which is stepped here, found {name:?}; hint: \
+                    "law.name: expected \"latency\" with one rate coefficient, which is stepped here, found {found}; hint: \
                      palpate.ContactStates in Python steps contacts of every law"
                 ));
                 Status::Law

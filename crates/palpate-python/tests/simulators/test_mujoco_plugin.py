@@ -41,6 +41,11 @@ name = 'latency'
 exponent = 5
 rate_coefficient = '2e4 /s'
 """
+LINEAR = DESCRIPTION[: DESCRIPTION.index("[law]")] + """[law]
+name = 'standard-linear-solid'
+overshoot = 1
+time = '2 s'
+"""
 # A soft fingertip of 12 mm radius on a rigid core, pressed from one side.
 TIP = """[specimen]
 shape = 'pad'
@@ -390,6 +395,7 @@ def test_a_reset_in_the_middle_begins_with_an_untouched_body() -> None:
     ({"joint": "jaw", "touch": "1 mm"}, 'touch: expected a number of'),
     ({"joint": "jaw", "material": "ball.toml"}, "expected one of the keys material (a file) and description (its text), found both"),
     ({"joint": "jaw", "description": "[specimen]"}, "specimen"),
+    ({"joint": "jaw", "description": LINEAR.replace("\n", "&#10;")}, 'which is stepped here, found "standard-linear-solid"; hint: palpate.ContactStates'),
     ({"joint": "jaw", "description": None, "material": "/no/such.toml"}, "/no/such.toml"),
     ({"joint": "jaw", "friction": "0.5"}, "friction: expected none with a joint"),
     ({"geom1": "jaw", "geom2": "wall", "touch": "0.1"}, "touch: expected none with geoms"),
