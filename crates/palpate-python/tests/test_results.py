@@ -251,6 +251,32 @@ def test_samples_of_times_are_positive_and_held_parameters_stay() -> None:
     assert spread == pytest.approx(estimate.standard_error / estimate.value, rel=0.1)
 
 
+@pytest.mark.parametrize("memory", [0.0, 0.6])
+def test_draws_have_the_quantiles_of_the_intervals(memory: float) -> None:
+    """They were normal with the mean covariance: where one model of little probability has a long memory, wider than the intervals."""
+    beyond = []
+    for seed in range(12):
+        noise = np.random.default_rng(seed).normal(0.0, 0.01, T.size)
+        for index in range(1, T.size):
+            noise[index] += memory * noise[index - 1]
+        signal = 1 + 2 * np.exp(-T / 8) + noise
+        fit = palpate.fit_hold(T, signal, law="standard-linear-solid", intervals="curvature")
+        draws = fit.sample(20_000, seed=seed)
+        intervals = {name: fit.estimates[name].interval for name in draws}
+        beyond.append([[np.mean(draws[name] < low), np.mean(draws[name] > high)] for name, (low, high) in intervals.items()])  # type: ignore[misc]
+    # The share beyond an end has the error sqrt(0.025 * 0.975/20000) = 0.0011, the mean of 12 a third of it.
+    np.testing.assert_allclose(beyond, 0.025, atol=0.005)
+    np.testing.assert_allclose(np.mean(beyond, axis=0), 0.025, atol=0.0015)
+
+
+def test_draws_of_few_samples_are_those_of_student() -> None:
+    times = np.linspace(0.0, 40.0, 7)
+    fit = palpate.fit_hold(times, 1 + 2 * np.exp(-times / 8) + np.array([1, -2, 2, 0, -1, 1, -1]) * 1e-3, law="standard-linear-solid", noise="white")
+    low, high = fit.estimates["equilibrium"].interval or (0.0, 0.0)
+    draws = fit.sample(100_000, seed=1)["equilibrium"]
+    assert np.mean((draws < low) | (draws > high)) == pytest.approx(0.05, abs=0.003)
+
+
 def test_no_samples_without_a_covariance() -> None:
     fit = palpate.fit_hold(T, 1 + 2 * np.exp(-T / 8), law="prony:3")
     assert fit.covariance is None

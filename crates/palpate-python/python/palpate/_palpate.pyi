@@ -1680,11 +1680,11 @@ class Fit(_Series):
     def sample(self, n: int = 1000, *, seed: int | None = None) -> dict[str, _Doubles]:
         """Draw sets of parameters from the distribution that the fit leaves for them.
 
-        A multivariate normal distribution in the scales of `searched`, with `covariance`: rates and times, whose logarithms were
-        searched, are log-normal. It is what the curvature at the optimum says; where `interval_method` is another one, the true
-        distribution is not normal and its tails are those of the intervals. `covariance` is the mean over the models of the noise that are likely:
-        where one of little probability has a long memory, the draws spread wider than the intervals. Where the fit had `bounds`, sets
-        outside of them are drawn again.
+        The distribution of the intervals of curvature: one of the models of the noise, each by its probability, and from it Student's t of
+        N - p degrees of freedom with its covariance, in the scales of `searched`: rates and times, whose logarithms were searched, are
+        log-t. The covariance of many sets is `covariance`, the mean over the models, times (N - p)/(N - p - 2). Where `interval_method` is
+        another one than "curvature", the true distribution has other tails, which are those of the intervals. Where the fit had `bounds`,
+        sets outside of them are drawn again.
 
         Parameters
         ----------
@@ -1712,8 +1712,10 @@ class Fit(_Series):
         >>> noise = np.random.default_rng(1).normal(0.0, 0.01, 400)
         >>> fit = palpate.fit_hold(t, 1 + 2 * np.exp(-t / 8) + noise, law="standard-linear-solid")
         >>> draws = fit.sample(20_000, seed=1)
-        >>> round(float(draws["time_constant_s"].std()) / fit.estimates["time_constant_s"].standard_error, 1)
-        1.0
+        >>> low, high = fit.estimates["time_constant_s"].interval
+        >>> within = (low < draws["time_constant_s"]) & (draws["time_constant_s"] < high)
+        >>> round(float(within.mean()), 2)
+        0.95
         """
         ...
     def to_arviz(self, draws: int = 1000, *, chains: int = 4, seed: int | None = None) -> xarray.DataTree:
