@@ -72,7 +72,9 @@ def test_a_fit_of_dates_is_evaluated_at_dates() -> None:
     expected = fit.predict(elapsed)
     moment: Any = pandas.Timestamp(at)
     zone, duration = moment.tz_localize("UTC"), moment - pandas.Timestamp(DATES[0])
-    for one in (at, moment, zone, zone.tz_convert("Asia/Tokyo"), moment.to_pydatetime(warn=False), duration, duration.to_numpy()):
+    with_zone = palpate.fit_hold(pandas.DatetimeIndex(DATES, tz="UTC"), Y)
+    assert with_zone.predict(zone) == with_zone.predict(zone.tz_convert("Asia/Tokyo")) == pytest.approx(expected, rel=1e-9)
+    for one in (at, moment, moment.to_pydatetime(warn=False), duration, duration.to_numpy()):
         # Dates of `datetime` have whole microseconds.
         assert fit.predict(one) == pytest.approx(expected, rel=1e-7) and isinstance(fit.predict(one), float)
         assert fit.eval(one, **fit.parameters) == pytest.approx(expected, rel=1e-7)

@@ -52,11 +52,43 @@ def as_doubles(values: Any, name: str, omit_nan: bool = False) -> NDArray[np.flo
         raise OptionError(f"{name}: expected numbers, found {_reported(array[0])}") from None
 
 
-def _dates(array: NDArray[Any]) -> NDArray[np.datetime64] | None:
-    """Dates as those of NumPy; None of another column."""
+def _dates(array: NDArray[Any], name: str) -> NDArray[np.datetime64] | None:
+    """Dates as those of NumPy; None of another column. All of them have a time zone, or none has."""
     if array.dtype.kind == "O" and array.size and not isinstance(array[0], timedelta) and hasattr(array[0], "timestamp"):
-        return np.array([_moment_ns(moment, index) for index, moment in enumerate(array)], dtype="datetime64[ns]")
+        found = np.array([_moment_ns(moment, index) for index, moment in enumerate(array)], dtype="datetime64[ns]")
+        zones = {moment.tzinfo is not None: index for index, moment in reversed([*enumerate(array)]) if not _is_missing(moment)}
+        if len(zones) > 1:
+            first, other = (("with", "without") if zones[True] < zones[False] else ("without", "with"))
+            message = f"{name}: expected dates {first} a time zone everywhere, as the first has, found one {other} at index {max(zones.values())}"
+            raise OptionError(f"{message}\n{_ZONE_HINT}")
+        return found
     return array if array.dtype.kind == "M" else None
+
+
+#: What helps where dates with a time zone meet dates without one.
+_ZONE_HINT = (
+    "hint: give all of them their zone: column.dt.tz_localize(zone) of pandas, column.dt.replace_time_zone(zone) of polars, "
+    "date.replace(tzinfo=zone) of datetime"
+)
+
+
+def _is_missing(moment: Any) -> bool:
+    """Whether a date is the missing one, which has no time zone."""
+    return bool(moment != moment)
+
+
+def _has_zone(values: Any, array: NDArray[Any]) -> bool | None:
+    """Whether the dates of a column have a time zone; None where none of them is known.
+
+    Those of polars and Arrow are dates of NumPy as an array, which have none.
+    """
+    kind = getattr(values, "dtype", getattr(values, "type", None))
+    if getattr(kind, "time_zone", None) is not None or getattr(kind, "tz", None) is not None:
+        return True
+    if array.dtype.kind == "M":
+        return None if np.isnat(array).all() else False
+    known = next((moment for moment in array if not _is_missing(moment)), None)
+    return None if known is None else known.tzinfo is not None
 
 
 def _moment_ns(moment: Any, index: int) -> int:
@@ -73,7 +105,7 @@ def _moment_ns(moment: Any, index: int) -> int:
 
 
 def _with_zone(moment: Any) -> Any:
-    """A date of `datetime` with its zone; without one it is in UTC, as those of NumPy and pandas are."""
+    """A date of `datetime` with a zone; one without counts as in UTC, as those of NumPy and pandas do: all of them then have none."""
     return moment if moment.tzinfo is not None else moment.replace(tzinfo=timezone.utc)
 
 
@@ -99,17 +131,18 @@ def _is_fine(dates: NDArray[np.datetime64] | np.datetime64) -> bool:
     return np.datetime_data(dates.dtype)[0] in ("ns", "ps", "fs", "as")
 
 
-def first_date_ns(times: Any) -> int | None:
-    """The first date of a column of times in ns since 1970; None of a column of others."""
+def first_date(times: Any) -> tuple[int, bool] | None:
+    """The first date of a column of times in ns since 1970, and whether it has a time zone; None of a column of others."""
     if isinstance(times, np.ndarray) and times.dtype.kind == "f":
         return None
+    values = _units.in_si(times, "time_s")
     try:
-        column = np.asarray(_units.in_si(times, "time_s"))
+        column = np.asarray(values)
     except ValueError:
         # What reads the column says what is wrong with it.
         return None
-    dates = _dates(column) if column.ndim == 1 and column.size else None
-    return None if dates is None else _ns(_first(dates))
+    dates = _dates(column, "time_s") if column.ndim == 1 and column.size else None
+    return None if dates is None else (_ns(_first(dates)), bool(_has_zone(values, column)))
 
 
 def _ns(date: np.datetime64) -> int:
@@ -119,10 +152,10 @@ def _ns(date: np.datetime64) -> int:
     return 1000 * int(date.astype("datetime64[us]").astype(np.int64))
 
 
-def at_times(values: Any, name: str, first_ns: int | None) -> tuple[NDArray[np.float64], bool]:
+def at_times(values: Any, name: str, first: tuple[int, bool] | None) -> tuple[NDArray[np.float64], bool]:
     """Times to evaluate at in s, and whether it is a single one.
 
-    They are on the clock of samples whose first date is `first_ns` (ns since 1970); without it dates are refused.
+    They are on the clock of samples whose `first` date is this (ns since 1970, and whether it has a time zone); without it dates are refused.
     """
     values = _units.in_si(values, name)
     try:
@@ -133,18 +166,23 @@ def at_times(values: Any, name: str, first_ns: int | None) -> tuple[NDArray[np.f
     is_single = column.ndim == 0 and column.dtype.kind not in "USV"
     if is_single:
         values = column = column.reshape(1)
-    dates = _dates(column) if column.ndim == 1 else None
+    dates = _dates(column, name) if column.ndim == 1 else None
     if dates is None:
         return as_doubles(values, name), is_single
-    if first_ns is None:
+    if first is None:
         message = f"{name}: expected numbers in s or durations, as the samples have, found dates"
         raise OptionError(f"{message}\nhint: subtract the date at which their clock is 0")
+    first_ns, has_zone = first
+    if (found := _has_zone(values, column)) is not None and found != has_zone:
+        expected, other = ("with", "without") if has_zone else ("without", "with")
+        message = f"{name}: expected dates {expected} a time zone, as the samples have, found dates {other} one"
+        raise OptionError(f"{message}\n{_ZONE_HINT}")
     return as_doubles(_since(dates, first_ns), name), is_single
 
 
 def _seconds(array: NDArray[Any], name: str) -> NDArray[Any]:
     """Durations in s, and dates in s since the first; other columns as they are."""
-    dates = _dates(array)
+    dates = _dates(array, name)
     if dates is not None:
         if not name.endswith("time_s"):
             raise OptionError(f"{name}: expected numbers in s, found dates\nhint: subtract the first date of the samples")

@@ -162,11 +162,11 @@ def fit_hold(
     8.0
     """
     keywords = _keywords(law, response, fixed, bounds, loss, noise, confidence, log_spaced, intervals, nan, signal)
-    first_date_ns = _arrays.first_date_ns(time_s)
+    first_date = _arrays.first_date(time_s)
     if nan == "omit":
         time_s, signal = _arrays.as_doubles(time_s, "time_s", True), _arrays.as_doubles(signal, "signal", True)
         weights = None if weights is None else _arrays.as_doubles(weights, "weights", True)
-    return _palpate.fit_hold(time_s, signal, weights, keywords, first_date_ns)
+    return _palpate.fit_hold(time_s, signal, weights, keywords, first_date)
 
 
 @overload

@@ -1592,8 +1592,9 @@ class Fit(_Series):
         Parameters
         ----------
         time_s : float or array_like, shape (N,), optional
-            Time on the clock of the samples that were fitted, s, or a duration on it; dates where the samples had dates, without a zone in
-            UTC. Before the first sample the signal is that at the start, at inf it is the limit of the law, at NaN it is NaN. Without any, the times of the samples.
+            Time on the clock of the samples that were fitted, s, or a duration on it; dates where the samples had dates, with a
+            time zone where those had one. Before the first sample the signal is that at the start, at inf it is the limit of the law,
+            at NaN it is NaN. Without any, the times of the samples.
         elapsed_s : float or array_like, shape (N,), optional
             Instead of `time_s`: time since the first sample, s.
         interval : float, optional
@@ -1646,7 +1647,7 @@ class Fit(_Series):
     ) -> tuple[_Doubles, _Doubles, _Doubles]: ...
     bounds: Final[dict[str, tuple[float | None, float | None]]]
     """Bounds of parameters as they were given, by name: lower and upper end, None where it is open."""
-    _first_date_ns: Final[int | None]
+    _first_date: Final[tuple[int, bool] | None]
     def report(self) -> str:
         """The fit as text, in the manner of lmfit."""
         ...
@@ -1660,7 +1661,8 @@ class Fit(_Series):
         Parameters
         ----------
         time_s : float or array_like, shape (N,), optional
-            Time on the clock of the samples, s, a duration or, where the samples had dates, a date; the times of the samples if left out.
+            Time on the clock of the samples, s, a duration or, where the samples had dates, a date, as for `predict`; the times of the
+            samples if left out.
         parameters
             Values in place of those that were found: ``fit.eval(exponent=3)``.
 
@@ -2252,7 +2254,7 @@ def _card(
     terms_per_decade: float,
 ) -> str: ...
 def fit_hold(
-    time_s: ArrayLike, signal: ArrayLike, weights: ArrayLike | None, keywords: Mapping[str, Any], first_date_ns: int | None
+    time_s: ArrayLike, signal: ArrayLike, weights: ArrayLike | None, keywords: Mapping[str, Any], first_date: tuple[int, bool] | None
 ) -> Fit: ...
 def fit_many(
     time_s: Any,
@@ -2366,7 +2368,7 @@ def forecast(
         As for `fit_hold`.
     at_s : float or array_like
         Times to predict, on the clock of ``time_s``, none before its last: the hold itself is what was fitted. Durations are times on that
-        clock too, and so are dates where ``time_s`` has dates.
+        clock too, and so are dates where ``time_s`` has dates, with a time zone where those have one.
     laws
         Names of laws; if left out, all that suit.
     quantity

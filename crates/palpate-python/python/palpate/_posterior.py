@@ -159,7 +159,8 @@ def evaluate(self: Any, time_s: Any = None, **parameters: float) -> Any:
     Parameters
     ----------
     time_s : float or array_like, shape (N,), optional
-        Time on the clock of the samples, s, a duration or, where the samples had dates, a date; the times of the samples if left out.
+        Time on the clock of the samples, s, a duration or, where the samples had dates, a date, as for `predict`; the times of the
+        samples if left out.
     parameters
         Values in place of those that were found: ``fit.eval(exponent=3)``.
 
@@ -180,8 +181,8 @@ def evaluate(self: Any, time_s: Any = None, **parameters: float) -> Any:
         return self.predict(time_s)
     from palpate._arrays import at_times
 
-    times, is_single = (self.time_s, False) if time_s is None else at_times(time_s, "eval(time_s)", self._first_date_ns)
-    replaced = {name: number(value, name) for name, value in parameters.items()}
+    times, is_single = (self.time_s, False) if time_s is None else at_times(time_s, "eval(time_s)", self._first_date)
+    replaced = {name: parameter(name, value, name, self.signal) for name, value in parameters.items()}
     law = _creep if self.to_dict()["response"] == "creep" else _relaxation
     values = law(self, times - self.start_s, {**self.parameters, **replaced})
     return float(values[0]) if is_single else values

@@ -37,8 +37,11 @@ pub(crate) struct PyFit {
     fit: Fit,
     samples: Fitted,
     bounds: Vec<Bounds>,
-    first_date_ns: Option<i64>,
+    first_date: Option<FirstDate>,
 }
+
+/// A date in ns since 1970, and whether it has a time zone.
+pub(crate) type FirstDate = (i64, bool);
 
 /// Both ends of what a parameter could be, by its name; none where an end was open.
 type Bounds = (String, [Option<f64>; 2]);
@@ -59,7 +62,7 @@ struct Parts {
     #[serde(default)]
     bounds: Vec<Bounds>,
     #[serde(default)]
-    first_date_ns: Option<i64>,
+    first_date: Option<FirstDate>,
 }
 
 impl TryFrom<Parts> for PyFit {
@@ -70,7 +73,7 @@ impl TryFrom<Parts> for PyFit {
             fit,
             samples,
             bounds,
-            first_date_ns,
+            first_date,
         } = parts;
         let count = samples.times.len();
         let is_valid = samples.values.len() == count
@@ -81,7 +84,7 @@ impl TryFrom<Parts> for PyFit {
                 fit,
                 samples,
                 bounds,
-                first_date_ns,
+                first_date,
             })
         } else {
             Err("a time and a value for each sample of a fit")
@@ -103,7 +106,7 @@ impl PyFit {
             fit,
             samples,
             bounds: Vec::new(),
-            first_date_ns: None,
+            first_date: None,
         }
     }
 
@@ -237,8 +240,9 @@ shown! {
     /// Parameters
     /// ----------
     /// time_s : float or array_like, shape (N,), optional
-    ///     Time on the clock of the samples that were fitted, s, or a duration on it; dates where the samples had dates, without a zone in
-    ///     UTC. Before the first sample the signal is that at the start, at inf it is the limit of the law, at NaN it is NaN. Without any, the times of the samples.
+    ///     Time on the clock of the samples that were fitted, s, or a duration on it; dates where the samples had dates, with a
+    ///     time zone where those had one. Before the first sample the signal is that at the start, at inf it is the limit of the law,
+    ///     at NaN it is NaN. Without any, the times of the samples.
     /// elapsed_s : float or array_like, shape (N,), optional
     ///     Instead of `time_s`: time since the first sample, s.
     /// interval : float, optional
@@ -255,8 +259,8 @@ shown! {
     /// Raises
     /// ------
     /// OptionError
-    ///     A coverage outside 0 to 1, another word, both of `time_s` and `elapsed_s`; dates where the samples had none; an infinite time of a law
-    ///     without a limit.
+    ///     A coverage outside 0 to 1, another word, both of `time_s` and `elapsed_s`; dates where the samples had none, or with a time zone where
+    ///     those had none, and the other way; an infinite time of a law without a limit.
     #[pyo3(signature = (time_s=None, *, elapsed_s=None, interval=None, of="curve"))]
     fn predict<'py>(
         &self,
@@ -267,7 +271,7 @@ shown! {
         of: &str,
     ) -> PyResult<Bound<'py, PyAny>> {
         let ((mut elapsed, is_scalar), start) = match (time_s, elapsed_s) {
-            (Some(times), None) => (times_of(times, "predict(time_s)", self.first_date_ns)?, self.fit.start),
+            (Some(times), None) => (times_of(times, "predict(time_s)", self.first_date)?, self.fit.start),
             (None, Some(elapsed)) => (times_of(elapsed, "predict(elapsed_s)", None)?, 0.0),
             (None, None) => ((self.samples.times.clone(), false), self.fit.start),
             (Some(_), Some(_)) => {
@@ -321,10 +325,10 @@ shown! {
         Ok((value, low, high).into_pyobject(py)?.into_any())
     }
 
-    /// The first date of the samples in ns since 1970; None where their times were none.
+    /// The first date of the samples in ns since 1970, and whether it has a time zone; None where their times were none.
     #[getter]
-    fn _first_date_ns(&self) -> Option<i64> {
-        self.first_date_ns
+    fn _first_date(&self) -> Option<FirstDate> {
+        self.first_date
     }
 
     /// The fit as text, in the manner of lmfit.
@@ -357,13 +361,13 @@ shown! {
 pub(crate) fn times_of(
     values: &Bound<'_, PyAny>,
     name: &str,
-    first_date_ns: Option<i64>,
+    first_date: Option<FirstDate>,
 ) -> PyResult<(Vec<f64>, bool)> {
     if values.is_exact_instance_of::<PyArray1<f64>>() {
         return Ok((doubles(values, name)?, false));
     }
     let arrays = values.py().import("palpate._arrays")?;
-    let (times, is_scalar) = arrays.call_method1("at_times", (values, name, first_date_ns))?.extract()?;
+    let (times, is_scalar) = arrays.call_method1("at_times", (values, name, first_date))?.extract()?;
     Ok((doubles(&times, name)?, is_scalar))
 }
 
@@ -552,7 +556,7 @@ pub(crate) fn fit_hold<'py>(
     signal: &Bound<'py, PyAny>,
     weights: Option<&Bound<'py, PyAny>>,
     keywords: Keywords,
-    first_date_ns: Option<i64>,
+    first_date: Option<FirstDate>,
 ) -> PyResult<PyFit> {
     let (mut times, mut values) = (doubles(time_s, "time_s")?, doubles(signal, "signal")?);
     let requested = keywords.requested()?;
@@ -583,7 +587,7 @@ pub(crate) fn fit_hold<'py>(
             fit,
             samples,
             bounds: bounds.map(|(name, (low, high))| (name.clone(), [end(*low), end(*high)])).collect(),
-            first_date_ns,
+            first_date,
         })
     };
     let fit = match is_brief {

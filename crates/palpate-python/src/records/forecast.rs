@@ -8,7 +8,7 @@ use super::compare::quantity_of;
 use crate::arrays::doubles;
 use crate::errors::{FitError, OptionError, refused, refused_plainly};
 use crate::files::all_laws;
-use crate::fits::fit::{samples_of, standard_deviations_of, times_of};
+use crate::fits::fit::{FirstDate, samples_of, standard_deviations_of, times_of};
 use crate::listed::Listed;
 use crate::table::{Table, columns};
 use crate::work::at_length;
@@ -24,7 +24,7 @@ const SOME: usize = 1 << 14;
 ///     As for `fit_hold`.
 /// at_s : float or array_like
 ///     Times to predict, on the clock of ``time_s``, none before its last: the hold itself is what was fitted. Durations are times on that
-///     clock too, and so are dates where ``time_s`` has dates.
+///     clock too, and so are dates where ``time_s`` has dates, with a time zone where those have one.
 /// laws
 ///     Names of laws; if left out, all that suit.
 /// quantity
@@ -81,7 +81,7 @@ pub(crate) fn forecast(
     confidence: f64,
 ) -> PyResult<Table> {
     let (times, values) = (doubles(time_s, "time_s")?, doubles(signal, "signal")?);
-    let (at, _) = times_of(at_s, "at_s", first_date_ns(time_s)?)?;
+    let (at, _) = times_of(at_s, "at_s", first_date(time_s)?)?;
     let standard_deviations = standard_deviations_of(weights, false)?;
     let others: Vec<Hold> =
         others.as_deref().unwrap_or_default().iter().enumerate().map(hold_of).collect::<PyResult<_>>()?;
@@ -138,9 +138,9 @@ pub(crate) fn forecast(
     Table::of(columns!(rows, row => at_s = row.0, value = row.1.value, low = row.1.low, high = row.1.high))
 }
 
-/// The first date of a column of times in ns since 1970; none of numbers.
-fn first_date_ns(time_s: &Bound<'_, PyAny>) -> PyResult<Option<i64>> {
-    time_s.py().import("palpate._arrays")?.call_method1("first_date_ns", (time_s,))?.extract()
+/// The first date of a column of times; none of numbers.
+fn first_date(time_s: &Bound<'_, PyAny>) -> PyResult<Option<FirstDate>> {
+    time_s.py().import("palpate._arrays")?.call_method1("first_date", (time_s,))?.extract()
 }
 
 /// Times, s, and signal.
