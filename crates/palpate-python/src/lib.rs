@@ -68,7 +68,7 @@ mod _palpate {
         fits::fit::{PyFit, fit_hold},
         fits::fit_many::fit_many,
         fits::laws::{latency, law_names},
-        mappings::mapping_text,
+        mappings::{_unit_factor, mapping_text},
         materials::calibration::Calibration,
         materials::card::card,
         materials::grip::Grip,

@@ -75,3 +75,46 @@ def test_a_column_of_dates_has_one_kind_of_clock() -> None:
     with pytest.raises(palpate.OptionError, match="without a time zone everywhere, as the first has, found one with at index 1"):
         palpate.fit_hold([mixed[3], mixed[4]], Y[:2])
 
+
+def stated(values: Any, units: str) -> Any:
+    """An array of xarray that states its unit."""
+    return xarray.DataArray(values, dims="sample", attrs={"units": units})
+
+
+@pytest.mark.parametrize(("units", "of_one"), [("ms", 1e3), ("milliseconds", 1e3), ("min", 1 / 60), ("ms since 2024-01-01", 1e3), ("", 1.0), (" s ", 1.0)])
+def test_times_of_xarray_are_in_the_unit_that_they_state(units: str, of_one: float) -> None:
+    """"ms" beside seconds made times 1000 times too long, in silence."""
+    times = stated(T * of_one, units)
+    signal = xarray.DataArray(Y, dims="sample", coords={"sample": times})
+    fit = palpate.fit_hold(times, Y, law=LAW)
+    assert fit.parameters["time_constant_s"] == pytest.approx(FIT.parameters["time_constant_s"], rel=1e-9)
+    assert palpate.fit_hold(signal["sample"], signal, law=LAW) == fit
+    assert palpate.fit_many(times, signal, law=LAW)["time_constant_s"].tolist() == [fit.parameters["time_constant_s"]]
+    assert fit.predict(stated([20.0 * of_one], units))[0] == pytest.approx(fit.predict(20.0), rel=1e-9)
+    np.testing.assert_allclose(palpate.Record.from_arrays(time_s=times, force_n=Y).time_s, T, rtol=1e-12)
+    long = xarray.Dataset({"t": times, "y": ("sample", Y), "run": ("sample", ["a"] * T.size)})
+    assert palpate.fit_many(long, by="run", time="t", signal="y", law=LAW)["time_constant_s"].tolist() == [fit.parameters["time_constant_s"]]
+
+
+def test_columns_of_a_dataset_are_in_the_units_that_they_state() -> None:
+    of: dict[str, Any] = {"time_s": stated([0.0, 1000.0, 2000.0], "ms"), "force_n": stated([0.0, 1.5e3, 1e3], "mN"), "displacement_m": stated([0, 35, 35], "mm")}
+    record = palpate.Record.from_arrays(time_s=[0.0, 1.0, 2.0], force_n=[0.0, 1.5, 1.0], displacement_m=[0.0, 0.035, 0.035])
+    assert palpate.Record.from_arrow(xarray.Dataset(of)) == palpate.Record.from_arrays(xarray.Dataset(of)) == palpate.Record.from_arrays(**of) == record
+    assert palpate.Record.from_arrow(record.to_xarray()) == record
+    for name, units, accepted in (("time_s", "mm", "s, sec, ms"), ("force_n", "kg", "N, kN"), ("displacement_m", "days", "m, cm, mm"), ("time_s", "1", "s, sec")):
+        wrong = {**of, name: of[name].assign_attrs(units=units)}
+        message = rf'{name}: expected a unit such as {accepted}.* in the attribute "units" of the array, found \'{units}\'\nhint:'
+        with pytest.raises(palpate.OptionError, match=message):
+            palpate.Record.from_arrays(**wrong)
+        with pytest.raises((palpate.RecordError, palpate.OptionError), match=message):
+            palpate.Record.from_arrow(xarray.Dataset(wrong))
+    with pytest.raises(palpate.OptionError, match='time_s: expected a unit .* "units"'):
+        palpate.fit_many(stated(T, "mm"), [Y], law=LAW)
+
+
+def test_a_signal_of_xarray_stays_in_its_unit_and_dates_are_dates() -> None:
+    fit = palpate.fit_hold(T, stated(1e3 * Y, "mN"), law=LAW)
+    assert fit.parameters["equilibrium"] == pytest.approx(1e3 * FIT.parameters["equilibrium"], rel=1e-6)
+    assert palpate.fit_hold(stated(DATES, "ms"), Y, law=LAW).duration_s == pytest.approx(40.0)
+    assert palpate.fit_hold(xarray.DataArray(UNITS.Quantity(1e3 * T, "ms"), dims="sample"), Y, law=LAW).duration_s == pytest.approx(40.0)
+

@@ -55,8 +55,9 @@ fn synonyms(dimension: Dimension) -> impl Iterator<Item = (&'static str, &'stati
     tables.flat_map(|(_, table)| table.lines().filter_map(|line| line.trim().split_once(": ")))
 }
 
-/// The factor that turns a unit, as people and machines write it in a header, into SI.
-pub(crate) fn unit_factor(unit: &str, dimension: Dimension) -> Option<f64> {
+/// The factor that turns a unit, as people and machines write it in a header, into SI; `None` for what is no unit of `dimension`.
+#[must_use]
+pub fn unit_factor(unit: &str, dimension: Dimension) -> Option<f64> {
     let unit = unit.trim();
     units::factor(unit, dimension).or_else(|| {
         let word = unit.to_lowercase();

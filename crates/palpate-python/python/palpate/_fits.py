@@ -110,7 +110,8 @@ def fit_hold(
     Parameters
     ----------
     time_s : array_like, shape (N,)
-        Times in s, rising; the first is the start of the hold. Durations are times too, and so are dates: seconds since the first.
+        Times in s, rising; the first is the start of the hold. Durations are times too, and so are dates: seconds since the first. Times of
+        xarray are in the unit that their attribute ``units`` states.
     signal : array_like, shape (N,)
         Force, stress or strain (displacement or strain for creep), in any unit; quantities of pint are converted to SI.
     law
@@ -233,7 +234,8 @@ def fit_many(
     ----------
     time_s, signal, weights
         A list of arrays of any lengths, an array of shape (curves, samples), or a column of lists in Arrow (pyarrow, polars). An array of
-        xarray may have any number of dimensions beside that of the times; their coordinates are columns of the result. One column of times, or of weights, stands for all curves. With `by`, `time_s` is a long table of pandas,
+        xarray may have any number of dimensions beside that of the times; their coordinates are columns of the result, and the attribute
+        ``units`` of times is heeded. One column of times, or of weights, stands for all curves. With `by`, `time_s` is a long table of pandas,
         polars or pyarrow, a row a sample, and `time`, `signal` and `weights` are names of its columns.
     by
         Name of the column that tells the curves of a long table apart, or several names.
@@ -280,7 +282,8 @@ def fit_many(
         for name, found in names.items():
             if not isinstance(found, str) and not (name == "weights" and found is None):
                 raise OptionError(f"{name}: expected the name of a column beside by, found {type(found).__name__}")
-        labels, columns = _long.curves(time_s, by, [name for name in names.values() if name is not None])
+        arguments = {"time_s": time, "signal": signal, "weights": weights}
+        labels, columns = _long.curves(time_s, by, {name: column for name, column in arguments.items() if column is not None})
         time_s, signal, weights = (*columns, None)[:3]
     elif time is not None:
         raise OptionError("time: expected by beside it, the column that tells curves apart\nhint: by=\"...\"")

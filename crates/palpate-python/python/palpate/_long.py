@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from palpate._palpate import OptionError
+from palpate._units import in_si
 
 #: The labels of all curves under the name of their column.
 Labels = dict[str, list[Any]]
@@ -49,11 +50,11 @@ def check_ungrouped(values: Any, name: str) -> None:
         raise OptionError(f'{message}\nhint: pass the table itself: fit_many(table, by="specimen", time="t", signal="force")')
 
 
-def curves(table: Any, by: str | Sequence[str], columns: Sequence[str]) -> tuple[Labels, list[list[Any]]]:
+def curves(table: Any, by: str | Sequence[str], columns: Mapping[str, str]) -> tuple[Labels, list[list[Any]]]:
     """The curves of a long table, in the order in which they first appear.
 
-    Returns the labels of every curve under each column of `by`, and for each of `columns` the samples of every curve in the
-    order of the rows.
+    `columns` has the name of each column with that of the argument which it is for. Returns the labels of every curve under each column of
+    `by`, and for each of `columns` the samples of every curve in the order of the rows.
     """
     by = [by] if isinstance(by, str) else list(by)
     if not by:
@@ -69,13 +70,13 @@ def curves(table: Any, by: str | Sequence[str], columns: Sequence[str]) -> tuple
     order = np.argsort(of_row, kind="stable")
     ends = np.cumsum(np.bincount(of_row, minlength=len(numbers)))[:-1]
 
-    def split(name: str) -> list[Any]:
-        array = np.asarray(column(table, name))
+    def split(name: str, argument: str) -> list[Any]:
+        array = np.asarray(in_si(column(table, name), argument))
         if array.shape != of_row.shape:
             raise OptionError(f"{name}: expected {len(keys)} rows, found an array of shape {array.shape}")
         return np.split(array[order], ends) if numbers else []
 
-    return {name: [key[place] for key in numbers] for place, name in enumerate(by)}, [split(name) for name in columns]
+    return {name: [key[place] for key in numbers] for place, name in enumerate(by)}, [split(name, argument) for argument, name in columns.items()]
 
 
 def _plain(values: Any) -> list[Any]:

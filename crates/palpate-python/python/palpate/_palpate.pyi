@@ -28,6 +28,7 @@ __all__ = [
     "_found",
     "_run_slice",
     "_sliced",
+    "_unit_factor",
     "Analysis",
     "BackOff",
     "BatchResult",
@@ -232,7 +233,7 @@ class Record(_Series):
         displacement_m: ArrayLike | None = None,
         title: str = "record",
     ) -> Self:
-        """A record of arrays in SI, loading positive.
+        """A record of arrays in SI, loading positive; those of xarray are in the unit that their attribute ``units`` states.
 
         Parameters
         ----------
@@ -282,7 +283,8 @@ class Record(_Series):
         Parameters
         ----------
         table
-            Of polars, pandas, pyarrow, or anything else with ``__arrow_c_stream__``; a mapping or a Dataset of xarray, by the names of its columns.
+            Of polars, pandas, pyarrow, or anything else with ``__arrow_c_stream__``; a mapping or a Dataset of xarray, by the names of its
+            columns, and in the units that these state.
         time_s, force_n, displacement_m : str
             Names of the columns. Times may be durations, or dates, which are seconds since the first. A displacement is looked for under its
             own name if none is given, and may be missing.
@@ -2415,6 +2417,7 @@ def energy(
     path: _Path | None,
     text: str | None,
     driver: tuple[_Doubles, _Doubles | None, _Doubles] | None,
+def _unit_factor(unit: str, si: str) -> tuple[float | None, str]: ...
     drive_by: str,
     by: str,
 ) -> Table:

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from palpate._palpate import _SI_ENDINGS, OptionError
+from palpate._palpate import _SI_ENDINGS, OptionError, _unit_factor
 
 #: What a key or an argument may end in where it is a number in SI, or several, with the unit: ``radius_m`` is ``radius`` in m.
 ENDINGS = _SI_ENDINGS
@@ -24,7 +24,12 @@ def is_quantity(value: Any) -> bool:
 
 
 def in_si(values: Any, name: str) -> Any:
-    """The numbers of quantities: in the unit in which the name ends, or in the base units of SI; other values as they are."""
+    """The numbers of quantities: in the unit in which the name ends, or in the base units of SI; other values as they are.
+
+    Arrays of xarray are quantities too where their attribute ``units`` states one and the name ends in a unit: a signal may be in any.
+    """
+    if hasattr(values, "dims") and hasattr(values, "attrs"):
+        return _of_named_dimensions(values, name)
     if isinstance(values, (list, tuple)) and values and is_quantity(values[0]):
         bare = next((index for index, value in enumerate(values) if not is_quantity(value)), None)
         if bare is not None:
@@ -45,6 +50,27 @@ def in_si(values: Any, name: str) -> Any:
         if type(error).__name__ != "DimensionalityError":
             raise
         raise OptionError(f"{name}: expected a quantity in {unit}, found one in {values.units}") from None
+
+
+def _of_named_dimensions(values: Any, name: str) -> Any:
+    """The numbers of an array of xarray in the unit in which the name ends; dates and durations, and those of no such name, as they are."""
+    if is_quantity(getattr(values, "data", None)):
+        return in_si(values.data, name)
+    unit, stated = ENDINGS.get(ending(name.rstrip(")")), ""), str(values.attrs.get("units", "")).strip()
+    if not unit or not stated or getattr(values.dtype, "kind", "") not in "biuf":
+        return values
+    # Times of the conventions for climate and forecast count from a date: "seconds since 2000-01-01".
+    factor, accepted = _unit_factor(stated.partition(" since ")[0] if unit == "s" else stated, unit)
+    if factor is None:
+        message = f'{name}: expected a unit such as {accepted} in the attribute "units" of the array, found {stated!r}'
+        raise OptionError(f"{message}\nhint: convert it, or state the unit of SI: array.assign_attrs(units={unit!r})")
+    if factor == 1.0:
+        return values
+    # 35 mm are exactly the double 0.035, which 35 times 0.001 is not.
+    inverse = round(1.0 / factor)
+    is_inverse = inverse > 0 and abs(inverse * factor - 1.0) < 1e-12
+    numbers = np.asarray(values, dtype=np.float64)
+    return numbers / inverse if is_inverse else numbers * factor
 
 
 def number(quantity: Any, unit: str) -> float:

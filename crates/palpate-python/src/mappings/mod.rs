@@ -5,6 +5,8 @@ pub(crate) mod quantity;
 use std::fmt;
 
 use numpy::PyUntypedArray;
+use palpate::units::{Dimension, factor};
+use palpate_files::naming::unit_factor;
 use pyo3::prelude::*;
 use pyo3::types::{PyBool, PyDict, PyFloat, PyInt, PyList, PyMapping, PyRange, PyString, PyTuple};
 
@@ -21,6 +23,25 @@ pub(crate) const UNITS: [(&str, &str); 8] = [
     ("_s", "s"),
     ("_m", "m"),
 ];
+
+/// The dimensions of these units.
+const DIMENSIONS: [Dimension; 8] = [
+    Dimension::Speed,
+    Dimension::ForceRate,
+    Dimension::Rate,
+    Dimension::Pressure,
+    Dimension::Area,
+    Dimension::Force,
+    Dimension::Time,
+    Dimension::Length,
+];
+
+/// The factor from a unit, as people write it, to one of SI; None where it is none of its dimension. And the units that are.
+#[pyfunction]
+pub(crate) fn _unit_factor(unit: &str, si: &str) -> (Option<f64>, String) {
+    let dimension = DIMENSIONS.iter().find(|dimension| factor(si, **dimension) == Some(1.0));
+    dimension.map_or((None, si.to_owned()), |dimension| (unit_factor(unit, *dimension), dimension.accepted()))
+}
 
 /// Tables and lists inside each other.
 const DEEPEST: usize = 64;

@@ -170,7 +170,7 @@ shown! {
         corrections: Vec<String> = self.record.corrections().iter().map(ToString::to_string).collect(),
     }
 
-    /// A record of arrays in SI, loading positive.
+    /// A record of arrays in SI, loading positive; those of xarray are in the unit that their attribute ``units`` states.
     ///
     /// Parameters
     /// ----------
@@ -220,7 +220,8 @@ shown! {
     /// Parameters
     /// ----------
     /// table
-    ///     Of polars, pandas, pyarrow, or anything else with ``__arrow_c_stream__``; a mapping or a Dataset of xarray, by the names of its columns.
+    ///     Of polars, pandas, pyarrow, or anything else with ``__arrow_c_stream__``; a mapping or a Dataset of xarray, by the names of its
+    ///     columns, and in the units that these state.
     /// time_s, force_n, displacement_m : str
     ///     Names of the columns. Times may be durations, or dates, which are seconds since the first. A displacement is looked for under its
     ///     own name if none is given, and may be missing.
