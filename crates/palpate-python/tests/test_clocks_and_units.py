@@ -118,3 +118,81 @@ def test_a_signal_of_xarray_stays_in_its_unit_and_dates_are_dates() -> None:
     assert palpate.fit_hold(stated(DATES, "ms"), Y, law=LAW).duration_s == pytest.approx(40.0)
     assert palpate.fit_hold(xarray.DataArray(UNITS.Quantity(1e3 * T, "ms"), dims="sample"), Y, law=LAW).duration_s == pytest.approx(40.0)
 
+
+@pytest.mark.parametrize(("unit", "found"), [("M", r"months, timedelta64\[M\]"), ("Y", r"years, timedelta64\[Y\]"), ("", "timedelta64 without a unit")])
+def test_a_duration_of_no_fixed_length_is_no_time(unit: str, found: str) -> None:
+    """Months and years were a TypeError of NumPy, and what states no unit counted as seconds."""
+    durations = np.arange(400).astype(f"timedelta64[{unit}]" if unit else "timedelta64")
+    expected = f"expected durations in a unit of fixed length, found {found}\nhint:"
+    for read in (
+        lambda: palpate.fit_hold(durations, Y, law=LAW),
+        lambda: palpate.fit_many(durations, [Y], law=LAW),
+        lambda: palpate.Record.from_arrays(time_s=durations, force_n=Y),
+        lambda: FIT.predict(durations[3]),
+        lambda: palpate.forecast(T, Y, at_s=durations[-1]),
+        lambda: palpate.fit_hold(T, Y, law=LAW, fixed={"time_constant_s": durations[3]}),  # type: ignore[dict-item]
+        lambda: palpate.simulate({**PROTOCOL, "step": [{"to": "5 mm", "rate": "500 mm/min", "hold_s": durations[3]}]}),
+    ):
+        with pytest.raises(palpate.OptionError, match=expected):
+            read()
+
+
+def test_durations_in_a_mapping_are_times() -> None:
+    """One in nanoseconds was a whole number of seconds."""
+    expected = palpate.simulate(PROTOCOL)
+    ten: list[Any] = [np.timedelta64(10, "s"), np.timedelta64(10_000_000_000, "ns"), datetime.timedelta(seconds=10), pandas.Timedelta(10, "s")]
+    for duration in ten:
+        for key in ("hold", "hold_s"):
+            step = {"to": "5 mm", "rate": "500 mm/min", key: duration}
+            assert palpate.simulate({**PROTOCOL, "step": [step]}).time_s[-1] == expected.time_s[-1]
+    with pytest.raises(palpate.OptionError, match=r"specimen.radius_m: expected a number in m, found"):
+        palpate.simulate({**PROTOCOL, "specimen": {"shape": "ball", "radius_m": np.timedelta64(1, "ns"), "modulus": "28 kPa"}})
+    held = palpate.fit_hold(T, Y, law=LAW, fixed={"time_constant_s": datetime.timedelta(milliseconds=3000)})  # type: ignore[dict-item]
+    assert held.parameters["time_constant_s"] == pytest.approx(3.0)
+
+
+FRAME = pandas.DataFrame({"time_s": T, "force_n": Y})
+
+
+@pytest.mark.parametrize("table", [FRAME, polars.DataFrame(FRAME), polars.LazyFrame(FRAME), pyarrow.table(FRAME), FRAME.to_xarray(), T, palpate.Record.from_arrays(FRAME)])
+def test_a_table_is_no_protocol(table: Any) -> None:
+    """A raw TypeError named neither what was expected nor what helps."""
+    name = type(table).__name__
+    for of in (palpate.simulate, palpate.energy, lambda given: palpate.simulate_many(given, {})):
+        with pytest.raises(palpate.OptionError, match=rf"expected a description or its path, found a {name}\nhint: a measured motion drives a body"):
+            of(table)
+    with pytest.raises(palpate.OptionError, match="expected a description or its path, found a int\nhint: a mapping has"):
+        palpate.simulate(3)  # type: ignore[arg-type] # pyright: ignore
+
+
+def test_what_is_no_table_is_refused_with_what_helps() -> None:
+    lazy: Any = polars.LazyFrame(FRAME)
+    with pytest.raises(palpate.RecordError, match="expected a table of polars, pandas or pyarrow, or a mapping, found LazyFrame\nhint: table.collect()"):
+        palpate.Record.from_arrow(lazy)
+    numbers: Any = [1.0, 2.0]
+    with pytest.raises(palpate.RecordError, match="or a mapping, found list\nhint: Record.from_arrays"):
+        palpate.Record.from_arrow(numbers)
+    with pytest.raises(palpate.OptionError, match=r"time_s: expected a column of numbers, found LazyFrame\nhint: compute it, .collect\(\)"):
+        palpate.fit_hold(lazy, Y)
+    with pytest.raises(palpate.OptionError, match=r"signal: expected a list of curves, found LazyFrame\nhint: compute it, .collect\(\)"):
+        palpate.fit_many(T, lazy)
+
+
+def test_a_column_without_any_value_is_named() -> None:
+    """polars exports ``lit(None)`` as what Arrow cannot read, and the whole table failed for it."""
+    empty = polars.lit(None)
+    table = polars.DataFrame(FRAME)
+    for nothing in (table.with_columns(empty.alias("force_n")), pyarrow.table({"time_s": T, "force_n": pyarrow.nulls(T.size)})):
+        with pytest.raises(palpate.RecordError, match="force_n: expected a number .*, found none"):
+            palpate.Record.from_arrow(nothing)
+    with pytest.raises(palpate.RecordError, match="displacement_m: expected a number everywhere, found none at index 0"):
+        palpate.Record.from_arrow(table.with_columns(empty.alias("displacement_m")))
+    assert palpate.Record.from_arrow(table.with_columns(empty.alias("remark"))) == palpate.Record.from_arrow(table)
+    nulls: Any = table.select(polars.repeat(None, T.size).alias("y"))["y"]
+    for read in (lambda: palpate.fit_hold(T, nulls), lambda: palpate.fit_many(T, nulls)):
+        with pytest.raises(palpate.OptionError, match="signal: expected a number everywhere, found none at index 0"):
+            read()
+    assert palpate.fit_many(T, [nulls, Y])["error"][0] == "signal: expected a number everywhere, found none at index 0"
+    with pytest.raises(palpate.FitError, match="found 0"):
+        palpate.fit_hold(T, nulls, nan="omit")
+

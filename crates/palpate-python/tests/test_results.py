@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import copy
 import pickle
+import re
 import subprocess
 import sys
 import warnings
@@ -160,8 +161,12 @@ def test_a_hold_of_an_analysis_is_a_fit() -> None:
         again = palpate.fit_hold(fit.time_s, fit.signal, law=fit.law)
         assert again.parameters["equilibrium"] == pytest.approx(fit.parameters["equilibrium"], rel=1e-6)
     assert analysis.fit(law="latency:2").law == "latency:2" and pickle.loads(pickle.dumps(analysis)).fit() == analysis.fit()
-    with pytest.raises(palpate.OptionError, match="hold: expected a number from 1 to 5, found 0"):
-        analysis.fit(0)
+    wrong: Any
+    for wrong in (0, -1, 6, 1.5, 1.0, "1", True, None, [1]):
+        message = re.escape(f"hold: expected a whole number from 1 to 5, found {wrong!r}\nhint:")
+        with pytest.raises(palpate.OptionError, match=message):
+            analysis.fit(wrong)
+    assert analysis.fit(np.int64(2)) == analysis.fit(2)
     with pytest.raises(palpate.OptionError, match=r'law: expected one that was fitted to hold 1 \(latency, .*\), found "maxwell"\nhint:'):
         analysis.fit(law="maxwell")
     ax = analysis.plot(color="red")

@@ -22,6 +22,9 @@ def as_doubles(values: Any, name: str, omit_nan: bool = False) -> NDArray[np.flo
     missing, unless `omit_nan`: then it is NaN.
     """
     values = _units.in_si(values, name)
+    _check_not_lazy(values, name, "a column of numbers")
+    if not omit_nan:
+        _check_numbers(values, name)
     if isinstance(values, np.ma.MaskedArray) and np.ma.is_masked(values):
         if omit_nan:
             return as_doubles(np.ma.filled(values.astype(np.float64), np.nan), name)
@@ -50,6 +53,18 @@ def as_doubles(values: Any, name: str, omit_nan: bool = False) -> NDArray[np.flo
         return np.require(array, dtype=np.float64, requirements=("C", "A"))
     except (TypeError, ValueError):
         raise OptionError(f"{name}: expected numbers, found {_reported(array[0])}") from None
+
+
+def _check_not_lazy(values: Any, name: str, expected: str) -> None:
+    """Refuses a table or column that is yet to be computed, of polars and dask."""
+    if hasattr(values, "collect") and not hasattr(values, "__array__"):
+        raise OptionError(f"{name}: expected {expected}, found {type(values).__name__}\nhint: compute it, .collect(), and pass a column of it")
+
+
+def _check_numbers(values: Any, name: str) -> None:
+    """Refuses a column of polars without any value, which as an array of NumPy is one of NaN."""
+    if str(getattr(values, "dtype", "")) == "Null" and len(values):
+        raise OptionError(f"{name}: expected a number everywhere, found none at index 0")
 
 
 def _dates(array: NDArray[Any], name: str) -> NDArray[np.datetime64] | None:
@@ -190,6 +205,7 @@ def _seconds(array: NDArray[Any], name: str) -> NDArray[Any]:
     elif array.dtype.kind == "O" and isinstance(array[0], timedelta):
         array = array.astype("timedelta64[ns]")
     if array.dtype.kind == "m" and name.rstrip(")").endswith("_s"):
+        _units.check_duration(array, name)
         return np.where(np.isnat(array), np.nan, array / np.timedelta64(1, "s"))
     return array
 
@@ -211,6 +227,9 @@ def as_ragged(curves: Any, name: str, omit_nan: bool = False) -> tuple[NDArray[n
     A column of numbers is one curve; the rows of an array of two dimensions are one each.
     """
     curves = _units.in_si(curves, name)
+    _check_not_lazy(curves, name, "a list of curves")
+    if not omit_nan:
+        _check_numbers(curves, name)
     if hasattr(curves, "columns"):
         # To go through a table of pandas is to go through the names of its columns.
         hint = 'hint: pass one column, such as table["force_n"], or the rows of table.to_numpy()'

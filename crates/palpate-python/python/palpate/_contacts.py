@@ -67,7 +67,7 @@ def simulate(
     replaced = {"specimen": specimen, "law": law, "contact": contact, "output": output}
     replaced = {name: table for name, table in replaced.items() if table is not None}
     driver = _driver(drive, drive_by)
-    if isinstance(protocol, Mapping):
+    if isinstance(protocol, Mapping) and not hasattr(protocol, "data_vars"):
         return _palpate.simulate(None, toml({**protocol, **replaced}), *driver)
     path, text = described(protocol)
     if replaced:

@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from typing import Any, Union
 
 from palpate import _units
-from palpate._palpate import Material, OptionError, Trajectory, mapping_text
+from palpate._palpate import Material, OptionError, Record, Trajectory, mapping_text
 from palpate.protocols import Step
 
 Description = Union[str, os.PathLike[str], Mapping[str, Any], Material, None]
@@ -15,7 +15,7 @@ Description = Union[str, os.PathLike[str], Mapping[str, Any], Material, None]
 
 def described(test: Description) -> tuple[str | os.PathLike[str] | None, str | None]:
     """A description as a path or as the text of one; a mapping has the tables of the file."""
-    if isinstance(test, Mapping):
+    if isinstance(test, Mapping) and not hasattr(test, "data_vars"):
         return None, toml(test)
     if isinstance(test, Trajectory):
         raise OptionError("expected a protocol or its path, found a Trajectory\nhint: pass the protocol that it was simulated from")
@@ -24,6 +24,11 @@ def described(test: Description) -> tuple[str | os.PathLike[str] | None, str | N
         raise OptionError(f"expected a description or its path, found a {type(test).__name__}\nhint: {hint}")
     if isinstance(test, Material):
         return None, test.to_toml()
+    if test is not None and not isinstance(test, (str, bytes, os.PathLike)):
+        hint = "a mapping has the tables of the file"
+        if isinstance(test, Record) or any(hasattr(type(test), name) for name in ("columns", "data_vars", "__array__", "__arrow_c_stream__")):
+            hint = "a measured motion drives a body: simulate(protocol, drive=palpate.Record.from_arrays(table))"
+        raise OptionError(f"expected a description or its path, found a {type(test).__name__}\nhint: {hint}")
     return test, None
 
 

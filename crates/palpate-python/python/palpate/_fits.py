@@ -3,7 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from datetime import timedelta
 from typing import Any, Union, overload
+
+import numpy as np
 
 from palpate import _arrays, _long, _palpate, _units
 from palpate._options import Intervals, LawName, Loss, Missing, Noise, Response
@@ -18,7 +21,7 @@ _PURE = "exponent", "stretching", "order", "log_ratio"
 
 def number(value: Any, name: str) -> float:
     """A number of Python, or of anything that becomes one."""
-    if isinstance(value, (bool, str)) or not hasattr(value, "__float__"):
+    if isinstance(value, (bool, str, np.timedelta64)) or not hasattr(value, "__float__"):
         raise OptionError(f"{name}: expected a number, found {value!r}")
     try:
         return float(value)
@@ -34,9 +37,14 @@ def _named(values: Any, name: str, example: str) -> list[tuple[str, Any]]:
 
 def _parameter(name: str, value: Any, place: str, signal: Any) -> float:
     """A parameter in the unit of a fit; quantities of pint are converted to it, which for some parameters is that of the signal."""
+    end = _units.ending(name)
+    if isinstance(value, (timedelta, np.timedelta64)) and end == "_s":
+        try:
+            return float(_units.seconds(value) or 0.0)
+        except OptionError as error:
+            raise OptionError(f"{place}: {error}") from None
     if not _units.is_quantity(value):
         return number(value, place)
-    end = _units.ending(name)
     try:
         if end or name in _PURE:
             return _units.number(value, _units.ENDINGS.get(end, ""))

@@ -6,6 +6,7 @@ from datetime import timedelta
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from palpate._palpate import _SI_ENDINGS, OptionError, _unit_factor
 
@@ -95,7 +96,19 @@ def seconds(value: Any) -> float | None:
     """A duration of `datetime`, pandas or NumPy in s; None of anything else."""
     if isinstance(value, timedelta):
         return value.total_seconds()
-    return float(value / np.timedelta64(1, "s")) if isinstance(value, np.timedelta64) else None
+    if not isinstance(value, np.timedelta64):
+        return None
+    check_duration(value)
+    return float(value / np.timedelta64(1, "s"))
+
+
+def check_duration(value: np.timedelta64 | NDArray[Any], name: str = "") -> None:
+    """Refuses durations of NumPy that are no certain time: months and years differ in length, and some state no unit."""
+    unit = np.datetime_data(value.dtype)[0]
+    if unit in ("M", "Y", "generic"):
+        found = {"M": "months, timedelta64[M]", "Y": "years, timedelta64[Y]", "generic": "timedelta64 without a unit"}[unit]
+        message = f"expected durations in a unit of fixed length, found {found}"
+        raise OptionError(f'{name + ": " if name else ""}{message}\nhint: state one, such as np.timedelta64(30, "D")')
 
 
 def stated(quantity: Any, key: str) -> str | float:

@@ -42,8 +42,9 @@ fn ragged(curves: &Bound<'_, PyAny>, name: &str, omit_nan: bool) -> PyResult<Rag
     let arrays = curves.py().import("palpate._arrays")?;
     let is_of_arrow = curves.hasattr("__arrow_c_stream__")? || curves.hasattr("__arrow_c_array__")?;
     if is_of_arrow && !arrays.call_method1("is_of_numpy", (curves,))?.is_truthy()? {
-        let column = curves.extract::<AnyArray>()?.into_chunked_array()?;
-        if !column.data_type().is_temporal() {
+        // A column of polars that is none at all cannot be read: NumPy says so.
+        let column = curves.extract::<AnyArray>().ok().and_then(|curves| curves.into_chunked_array().ok());
+        if let Some(column) = column.filter(|column| !column.data_type().is_temporal()) {
             return of_arrow(&column, name, omit_nan);
         }
     }

@@ -162,6 +162,8 @@ fn write_value(text: &mut String, value: &Bound<'_, PyAny>, place: &Place<'_>) -
         text.push('}');
     } else if value.is_instance_of::<PyList>() || value.is_instance_of::<PyTuple>() {
         write_list(text, value, place, |text, entry, place| write_value(text, entry, place))?;
+    } else if let Some(seconds) = duration(value)? {
+        write_string(text, &format!("{:?} s", finite(seconds, place)?));
     } else if value.is_instance_of::<PyBool>() || is_of(value, "numpy", "bool_")? {
         text.push_str(if value.is_truthy()? { "true" } else { "false" });
     } else if value.is_instance_of::<PyInt>() || is_of(value, "numbers", "Integral")? {
@@ -196,7 +198,11 @@ fn write_quantity(
         let in_si = units(value)?.call_method1("in_si", (value, place.to_string()))?;
         return write_quantity(text, &in_si, unit, (bare, place));
     }
-    let number = if value.is_instance_of::<PyBool>() { None } else { real(value)? };
+    let number = match unit {
+        _ if value.is_instance_of::<PyBool>() => None,
+        "s" => duration(value)?.map_or_else(|| real(value), |seconds| Ok(Some(seconds)))?,
+        _ => real(value)?,
+    };
     if number.is_none()
         && place.depth < DEEPEST
         && let Some(list) = listed(value)?
@@ -249,15 +255,32 @@ fn listed<'py>(value: &Bound<'py, PyAny>) -> PyResult<Option<Bound<'py, PyAny>>>
     }
     let array = value.py().import("numpy")?.call_method1("asarray", (value,))?;
     let is_column = array.getattr("ndim")?.eq(1)?;
-    is_column.then(|| array.call_method0("tolist")).transpose()
+    // NumPy lists durations in nanoseconds as whole numbers: as a list of its own they keep their unit.
+    let of_durations = array.getattr("dtype")?.getattr("kind")?.eq("m")?;
+    let list = || {
+        if of_durations {
+            Ok(PyList::new(value.py(), array.try_iter()?.collect::<PyResult<Vec<_>>>()?)?.into_any())
+        } else {
+            array.call_method0("tolist")
+        }
+    };
+    is_column.then(list).transpose()
 }
 
-/// A real number that is no truth value.
+/// A duration of `datetime`, pandas or NumPy in s; none of anything else.
+fn duration(value: &Bound<'_, PyAny>) -> PyResult<Option<f64>> {
+    match value.is_exact_instance_of::<PyFloat>() || value.is_exact_instance_of::<PyInt>() {
+        true => Ok(None),
+        false => units(value)?.call_method1("seconds", (value,))?.extract(),
+    }
+}
+
+/// A real number that is neither a truth value nor a duration.
 fn real(value: &Bound<'_, PyAny>) -> PyResult<Option<f64>> {
     if let Ok(number) = value.cast_exact::<PyFloat>() {
         return Ok(Some(number.value()));
     }
-    match is_of(value, "numbers", "Real")? {
+    match is_of(value, "numbers", "Real")? && !is_of(value, "numpy", "timedelta64")? {
         true => Ok(Some(value.call_method0("__float__")?.extract()?)),
         false => Ok(None),
     }

@@ -25,7 +25,7 @@ use crate::fits::fit::PyFit;
 use crate::html::framed;
 use crate::listed::Listed;
 use crate::pickles::{Made, Piece, Pieces, made_again, unpickled};
-use crate::records::hold_fit::{Curve, curves, fit_of};
+use crate::records::hold_fit::{Curve, HoldNumber, curves, fit_of};
 use crate::records::kept::Kept;
 use crate::report_files::file_options;
 use crate::shown::shown;
@@ -297,8 +297,8 @@ shown! {
     /// >>> fit = record.analyze().fit(1, law="standard-linear-solid")
     /// >>> round(fit.parameters["time_constant_s"], 3)
     /// 8.0
-    #[pyo3(signature = (hold=1, *, law=None))]
-    fn fit(&self, py: Python<'_>, hold: i64, law: Option<&str>) -> PyResult<PyFit> {
+    #[pyo3(signature = (hold=HoldNumber::FIRST, *, law=None), text_signature = "($self, hold=1, *, law=None)")]
+    fn fit(&self, py: Python<'_>, hold: HoldNumber, law: Option<&str>) -> PyResult<PyFit> {
         fit_of(&self.done(py)?.result.analysis, hold, law)
     }
 

@@ -22,18 +22,44 @@ pub(super) fn of_table(
     displacement_m: Option<&str>,
 ) -> PyResult<Columns> {
     if is_by_names(table)? {
-        let column = |argument: &str, name: &str| doubles(&column_of(table, name)?, argument);
-        let displacement = match displacement_m {
-            None if !table.contains("displacement_m")? => None,
-            name => Some(column("displacement_m", name.unwrap_or("displacement_m"))?),
-        };
-        return Ok((column("time_s", time_s)?, displacement, column("force_n", force_n)?));
+        return by_names(table, time_s, force_n, displacement_m);
     }
-    let table: PyTable = table.extract()?;
+    let Ok(table) = table.extract::<PyTable>() else {
+        // What is no table to Arrow may be one by the names of its columns: polars exports columns that are none at all as nothing can read.
+        let is_table = !table.hasattr("collect")? && table.hasattr("columns")?;
+        return match is_table {
+            true => by_names(table, time_s, force_n, displacement_m).map_err(|error| of_record(table.py(), error)),
+            false => Err(no_table(table)?),
+        };
+    };
     let known = |name: &str| table.batches().first().is_none_or(|batch| batch.column_by_name(name).is_some());
     let usual = Some("displacement_m").filter(|name| known(name));
     let displacement = displacement_m.or(usual).map(|name| column(&table, name, false)).transpose()?;
     Ok((column(&table, time_s, true)?, displacement, column(&table, force_n, false)?))
+}
+
+/// The columns of a table that is read by their names.
+fn by_names(table: &Bound<'_, PyAny>, time_s: &str, force_n: &str, displacement_m: Option<&str>) -> PyResult<Columns> {
+    let column = |argument: &str, name: &str| doubles(&column_of(table, name)?, argument);
+    let names = if table.hasattr("columns")? { table.getattr("columns")? } else { table.clone() };
+    let displacement = match displacement_m {
+        None if !names.contains("displacement_m")? => None,
+        name => Some(column("displacement_m", name.unwrap_or("displacement_m"))?),
+    };
+    Ok((column("time_s", time_s)?, displacement, column("force_n", force_n)?))
+}
+
+/// Why something is no table.
+fn no_table(found: &Bound<'_, PyAny>) -> PyResult<PyErr> {
+    let message =
+        format!("expected a table of polars, pandas or pyarrow, or a mapping, found {}", found.get_type().name()?);
+    let is_lazy = found.hasattr("collect")?;
+    let help = if is_lazy {
+        "table.collect()"
+    } else {
+        "Record.from_arrays(time_s=..., force_n=...) takes columns"
+    };
+    Ok(refused::<RecordError>(message, Some(help)))
 }
 
 /// The name of a column that is given beside a table.
@@ -59,7 +85,7 @@ fn column(table: &PyTable, name: &str, is_of_times: bool) -> PyResult<Vec<f64>> 
             let message = format!("expected a column called {name:?}, found {}", names.join(", "));
             return Err(refused::<RecordError>(message, Some(NAMED)));
         };
-        if column.null_count() > 0 {
+        if column.null_count() > 0 || (*column.data_type() == DataType::Null && !column.is_empty()) {
             let row = (0..column.len()).find(|row| column.is_null(*row)).unwrap_or(0);
             let message = format!("{name}: expected a number in every row, found none in row {}", values.len() + row);
             return Err(refused_plainly::<RecordError>(message));
@@ -100,8 +126,13 @@ fn is_by_names(table: &Bound<'_, PyAny>) -> PyResult<bool> {
 /// A column of a mapping or a Dataset.
 fn column_of<'py>(table: &Bound<'py, PyAny>, name: &str) -> PyResult<Bound<'py, PyAny>> {
     let found = table.py().import("palpate._long")?.call_method1("column", (table, name));
-    found.map_err(|error| match error.is_instance_of::<OptionError>(table.py()) {
-        true => refused_plainly::<RecordError>(error.value(table.py())),
+    found.map_err(|error| of_record(table.py(), error))
+}
+
+/// What is wrong with a column as something that is wrong with a record.
+fn of_record(py: Python<'_>, error: PyErr) -> PyErr {
+    match error.is_instance_of::<OptionError>(py) {
+        true => refused_plainly::<RecordError>(error.value(py)),
         false => error,
-    })
+    }
 }

@@ -3,7 +3,9 @@
 use palpate::analysis::{Analysis, HoldAnalysis};
 use palpate::fit::Fit;
 use palpate::laws::Law;
+use pyo3::Borrowed;
 use pyo3::prelude::*;
+use pyo3::types::PyBool;
 
 use crate::errors::{FitError, OptionError, refused, refused_plainly};
 use crate::fits::fit::PyFit;
@@ -26,12 +28,32 @@ fn with_samples(hold: &HoldAnalysis, fit: &Fit) -> PyFit {
     PyFit::since(hold.fit_start, fit, &hold.times[..hold.fitted], &hold.values[..hold.fitted])
 }
 
+/// The number of a hold as a call states it: a whole number, or what it is instead.
+pub(super) struct HoldNumber(Result<i64, String>);
+
+impl HoldNumber {
+    pub(super) const FIRST: Self = Self(Ok(1));
+}
+
+impl FromPyObject<'_, '_> for HoldNumber {
+    type Error = PyErr;
+
+    fn extract(value: Borrowed<'_, '_, PyAny>) -> PyResult<Self> {
+        let number = if value.is_instance_of::<PyBool>() { None } else { value.extract().ok() };
+        let found = || Ok::<_, PyErr>(value.repr()?.to_string());
+        Ok(Self(number.map_or_else(|| found().map(Err), |number| Ok(Ok(number)))?))
+    }
+}
+
 /// The fit of a law to the hold with this number; of the recommended law without a name.
-pub(super) fn fit_of(analysis: &Analysis, number: i64, law: Option<&str>) -> PyResult<PyFit> {
-    let Some(hold) = analysis.holds.iter().find(|hold| usize::try_from(number) == Ok(hold.number)) else {
-        let message = format!("hold: expected a number from 1 to {}, found {number}", analysis.holds.len());
-        return Err(refused_plainly::<OptionError>(message));
+pub(super) fn fit_of(analysis: &Analysis, HoldNumber(number): HoldNumber, law: Option<&str>) -> PyResult<PyFit> {
+    let numbered = |number: i64| analysis.holds.iter().find(|hold| usize::try_from(number) == Ok(hold.number));
+    let Some(hold) = number.as_ref().ok().and_then(|number| numbered(*number)) else {
+        let found = number.map_or_else(|found| found, |number| number.to_string());
+        let message = format!("hold: expected a whole number from 1 to {}, found {found}", analysis.holds.len());
+        return Err(refused::<OptionError>(message, Some("analysis.holds lists the holds; index is their number")));
     };
+    let number = hold.number;
     let Some(best) = recommended(hold) else {
         let message = format!("hold {number}: expected a force that relaxes, found no law fitted to it");
         return Err(refused::<FitError>(message, Some("its findings say why: analysis.findings")));
