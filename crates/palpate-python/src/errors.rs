@@ -63,6 +63,7 @@ pub(crate) fn unfitted(error: palpate::fit::FitError) -> PyErr {
         Refused::NoForm { .. }
         | Refused::UnknownParameter { .. }
         | Refused::FixedParameter { .. }
+        | Refused::FixedOutsideBounds { .. }
         | Refused::HeldAmplitude { .. }
         | Refused::Bounds { .. }
         | Refused::Exponent { .. }

@@ -273,6 +273,16 @@ def test_an_estimate_is_formatted_with_its_error() -> None:
         f"{one:x}"
 
 
+def test_what_is_held_outside_of_its_bounds_is_refused() -> None:
+    """It was held there, and ``bounds`` of the fit were a lie."""
+    t, y = relaxation(noise=1e-3)
+    message = "exponent cannot be fixed at 5, outside of its bounds, 1 to 3; give one of both"
+    wrong: Any = {"fixed": {"exponent": 5}, "bounds": {"exponent": (1, 3)}}
+    for fit in (lambda: palpate.fit_hold(t, y, **wrong), lambda: palpate.fit_many(t, [y], **wrong)):
+        with pytest.raises(palpate.OptionError, match=message):
+            fit()
+
+
 def test_numbered_terms_keep_their_bounds() -> None:
     """``amplitude_1`` between 0 and 0.5 was 0.98 with an interval from 0.95 to 0.5, and the fit was good."""
     t = np.linspace(0.0, 40.0, 400)

@@ -58,6 +58,18 @@ pub enum FitError {
         /// What was given.
         found: f64,
     },
+    /// A parameter held at a value that its bounds exclude.
+    #[error("{name} cannot be fixed at {found}, outside of its bounds, {low} to {high}; give one of both")]
+    FixedOutsideBounds {
+        /// Which.
+        name: String,
+        /// What it was to be held at.
+        found: f64,
+        /// Lower bound.
+        low: f64,
+        /// Upper bound.
+        high: f64,
+    },
     /// An amplitude that is to be held.
     #[error("{name} cannot be fixed, only {held}; give it bounds instead")]
     HeldAmplitude {

@@ -86,8 +86,25 @@ pub(crate) fn suits(form: &Form, options: &LawOptions) -> Result<(), FitError> {
                 found: *value,
             });
         }
+        within(name, *value, options)?;
     }
-    Ok(())
+    match options.constant {
+        ConstantChoice::Fixed(value) if options.held(constant).is_none() => within(constant, value, options),
+        ConstantChoice::AsLaw | ConstantChoice::Free | ConstantChoice::Fixed(_) => Ok(()),
+    }
+}
+
+/// Refuses a value to hold a parameter at that its bounds exclude.
+fn within(name: &str, value: f64, options: &LawOptions) -> Result<(), FitError> {
+    match options.bounds.iter().find(|(bounded, _)| bounded == name) {
+        Some((_, (low, high))) if value < *low || value > *high => Err(FitError::FixedOutsideBounds {
+            name: name.to_owned(),
+            found: value,
+            low: *low,
+            high: *high,
+        }),
+        _ => Ok(()),
+    }
 }
 
 fn parameters(

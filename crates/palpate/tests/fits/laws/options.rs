@@ -85,6 +85,35 @@ fn what_cannot_be_held_is_refused_and_never_passed_over() {
 }
 
 #[test]
+fn what_is_held_outside_of_its_bounds_is_refused() {
+    for (law, name, value) in
+        [("sls", "time_constant_s", 4.0), ("sls", "equilibrium", 2.0), ("latency", "exponent", 3.0)]
+    {
+        let held = |low: f64, high: f64| LawOptions {
+            fixed: vec![(name.to_owned(), value)],
+            ..bounded(name, low, high)
+        };
+        for (low, high) in [(value + 0.5, f64::INFINITY), (f64::NEG_INFINITY, value - 0.5), (0.1, 0.2)] {
+            let error = fit(law, &held(low, high), 1e-3).unwrap_err();
+            assert_eq!(held(low, high).suit(law.parse().unwrap()), Err(error.clone()));
+            assert_eq!(
+                error.to_string(),
+                format!("{name} cannot be fixed at {value}, outside of its bounds, {low} to {high}; give one of both")
+            );
+        }
+        for (low, high) in [(value, value + 1.0), (value - 1.0, value), (f64::NEG_INFINITY, f64::INFINITY)] {
+            let found = fit(law, &held(low, high), 1e-3).unwrap().value(name).unwrap();
+            assert!((found / value - 1.0).abs() < 1e-12, "{law} {low} {high}: {found}");
+        }
+    }
+    let constant = LawOptions {
+        constant: ConstantChoice::Fixed(2.0),
+        ..bounded("equilibrium", 3.0, 4.0)
+    };
+    assert!(matches!(fit("sls", &constant, 1e-3), Err(FitError::FixedOutsideBounds { found: 2.0, .. })));
+}
+
+#[test]
 fn an_end_of_a_bound_may_be_left_open() {
     let free = fit("latency", &LawOptions::default(), 1e-3).unwrap();
     for (low, high) in [(f64::NEG_INFINITY, f64::INFINITY), (0.5, f64::INFINITY), (f64::NEG_INFINITY, 20.0)] {
