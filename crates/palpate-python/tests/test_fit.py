@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import copy
+import json
 import multiprocessing
 import pickle
 from typing import Any
@@ -281,6 +282,18 @@ def test_what_is_held_outside_of_its_bounds_is_refused() -> None:
     for fit in (lambda: palpate.fit_hold(t, y, **wrong), lambda: palpate.fit_many(t, [y], **wrong)):
         with pytest.raises(palpate.OptionError, match=message):
             fit()
+
+
+def test_a_fit_as_objects_has_its_bounds_and_what_was_held() -> None:
+    t, y = relaxation(noise=1e-3)
+    fit = palpate.fit_hold(t, y, fixed={"exponent": 5}, bounds={"equilibrium": (0.0, None), "exponent": (1, 10)})
+    found = fit.to_dict()
+    assert found["bounds"] == {"equilibrium": [0.0, None], "exponent": [1.0, 10.0]} and found["fixed"] == fit.fixed == {"exponent": 5.0}
+    assert json.loads(json.dumps(found)) == found
+    again = pickle.loads(pickle.dumps(fit))
+    assert again == fit and again.to_dict() == found
+    free = palpate.fit_hold(t, y)
+    assert free.to_dict()["bounds"] == free.to_dict()["fixed"] == free.fixed == {}
 
 
 def test_numbered_terms_keep_their_bounds() -> None:

@@ -1652,9 +1652,11 @@ class Fit(_Series):
     _first_date: Final[tuple[int, bool] | None]
     def report(self) -> str:
         """The fit as text, in the manner of lmfit."""
+    fixed: Final[dict[str, float]]
+    """Values that parameters were held at with `fixed`, by name."""
         ...
     def to_dict(self) -> dict[str, Any]:
-        """Everything about the fit but its samples as plain objects."""
+        """Everything about the fit but its samples as plain objects: also ``bounds``, both ends by name, and ``fixed``, values by name."""
         ...
     @overload
     def eval(self, time_s: _Time, **parameters: float) -> float:  # pyright: ignore[reportOverlappingOverload]

@@ -11,7 +11,7 @@ use palpate::number::significant;
 use palpate::watch::{Unwatched, Watch};
 use palpate_report::result::word;
 use pyo3::prelude::*;
-use pyo3::types::{IntoPyDict, PyDict};
+use pyo3::types::{IntoPyDict, PyDict, PyList};
 use serde::{Deserialize, Serialize};
 
 use crate::arrays::{array, doubles};
@@ -37,6 +37,7 @@ pub(crate) struct PyFit {
     fit: Fit,
     samples: Fitted,
     bounds: Vec<Bounds>,
+    fixed: Vec<(String, f64)>,
     first_date: Option<FirstDate>,
 }
 
@@ -62,6 +63,8 @@ struct Parts {
     #[serde(default)]
     bounds: Vec<Bounds>,
     #[serde(default)]
+    fixed: Vec<(String, f64)>,
+    #[serde(default)]
     first_date: Option<FirstDate>,
 }
 
@@ -73,6 +76,7 @@ impl TryFrom<Parts> for PyFit {
             fit,
             samples,
             bounds,
+            fixed,
             first_date,
         } = parts;
         let count = samples.times.len();
@@ -84,6 +88,7 @@ impl TryFrom<Parts> for PyFit {
                 fit,
                 samples,
                 bounds,
+                fixed,
                 first_date,
             })
         } else {
@@ -106,6 +111,7 @@ impl PyFit {
             fit,
             samples,
             bounds: Vec::new(),
+            fixed: Vec::new(),
             first_date: None,
         }
     }
@@ -224,6 +230,9 @@ shown! {
         /// Bounds of parameters as they were given, by name: lower and upper end, None where it is open.
         bounds<'py>(py): PyResult<Bound<'py, PyDict>> =
             self.bounds.iter().map(|(name, [low, high])| (name, (*low, *high))).into_py_dict(py),
+        /// Values that parameters were held at with `fixed`, by name.
+        fixed<'py>(py): PyResult<Bound<'py, PyDict>> =
+            self.fixed.iter().map(|(name, value)| (name, *value)).into_py_dict(py),
         /// Covariance of `searched` for residuals that correlate as they do; None where the data leave a parameter open.
         covariance<'py>(py): PyResult<Option<Bound<'py, PyArray2<f64>>>> =
             self.fit.covariance().map(|rows| square(py, rows)).transpose(),
@@ -345,9 +354,14 @@ shown! {
         Table::of(self.columns())
     }
 
-    /// Everything about the fit but its samples as plain objects.
+    /// Everything about the fit but its samples as plain objects: also ``bounds``, both ends by name, and ``fixed``, values by name.
     fn to_dict<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
-        plain(py, &self.fit)
+        let all = plain(py, &self.fit)?;
+        let ends = |[low, high]: &[Option<f64>; 2]| PyList::new(py, [*low, *high]);
+        let bounds = self.bounds.iter().map(|(name, pair)| Ok((name, ends(pair)?)));
+        all.set_item("bounds", bounds.collect::<PyResult<Vec<_>>>()?.into_py_dict(py)?)?;
+        all.set_item("fixed", self.fixed.iter().map(|(name, value)| (name, *value)).into_py_dict(py)?)?;
+        Ok(all)
     }
 
     fn __repr__(&self) -> String {
@@ -582,11 +596,12 @@ pub(crate) fn fit_hold<'py>(
         let weights = standard_deviations.map(|found| found.iter().map(|deviation| deviation.recip()).collect());
         let samples = Fitted { times, values, weights };
         let end = |end: f64| Some(end).filter(|end| end.is_finite());
-        let bounds = requested.options.bounds.iter();
+        let LawOptions { bounds, fixed, .. } = &requested.options;
         Ok(PyFit {
             fit,
             samples,
-            bounds: bounds.map(|(name, (low, high))| (name.clone(), [end(*low), end(*high)])).collect(),
+            fixed: fixed.clone(),
+            bounds: bounds.iter().map(|(name, (low, high))| (name.clone(), [end(*low), end(*high)])).collect(),
             first_date,
         })
     };
