@@ -128,7 +128,20 @@ pub(crate) fn parameter_columns(rows: &[ParameterRow]) -> Vec<(&'static str, Arr
         ParameterColumn::Number(of) => Column::column(rows.iter().map(of)),
         ParameterColumn::Flag(of) => Column::column(rows.iter().map(of)),
     };
-    PARAMETER_COLUMNS.iter().map(|(name, of)| (*name, column(*of))).collect()
+    // In files an end that is open is missing; as a number it is infinite, as that of an estimate is.
+    let ends = |number: usize| Column::column(rows.iter().map(|row| end(row.parameter.interval, number)));
+    let named = |(name, of): &(&'static str, ParameterColumn)| match *name {
+        "low" => (*name, ends(0)),
+        "high" => (*name, ends(1)),
+        _ => (*name, column(*of)),
+    };
+    PARAMETER_COLUMNS.iter().map(named).collect()
+}
+
+/// An end of an interval, infinite where it is open; none without an interval.
+pub(crate) fn end(interval: Option<[Option<f64>; 2]>, number: usize) -> Option<f64> {
+    let open = [f64::NEG_INFINITY, f64::INFINITY];
+    interval.map(|ends| ends[number].unwrap_or(open[number]))
 }
 
 /// The columns of uncertainty budgets: a row for each input quantity of each result.

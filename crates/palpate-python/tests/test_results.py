@@ -149,6 +149,24 @@ def test_a_comparison_of_a_record_states_its_law() -> None:
     pyplot.close("all")
 
 
+def test_open_ends_of_intervals_are_infinite_in_a_table_of_parameters() -> None:
+    """They were NaN, as where there is no interval."""
+    t = np.linspace(0.0, 60.0, 600)
+    force = np.where(t < 10.0, 0.3 * t, 1 + 2 * np.exp(-(t - 10.0) / 40)) + np.random.default_rng(0).normal(0.0, 0.1, 600)
+    record = palpate.Record.from_arrays(time_s=t, force_n=force, displacement_m=np.minimum(t, 10.0) * 1e-3)
+    analysis = record.analyze(intervals="profile", exponents=[1.0, 2.0], compare=False)
+    rows = [row for row in analysis.parameter_table if row["role"] == "estimated" and row["domain"] == "time" and np.isfinite(row["value"] or np.nan)]
+    assert any(row["high"] == np.inf for row in rows)
+    for row in rows:
+        estimate = analysis.fit(1, law=row["law"]).estimates[row["parameter"]]
+        assert estimate.interval is None or (row["low"], row["high"]) == pytest.approx(estimate.interval)
+    for frame in (analysis.parameter_table.to_pandas(), analysis.parameter_table.to_polars().to_pandas()):
+        given = frame[frame["role"] == "given"]
+        assert np.isinf(frame["high"]).any() and len(given) and given["high"].isna().all()
+    # Documents and files have no word for infinity.
+    assert "Infinity" not in analysis.to_json()
+
+
 def test_a_hold_of_an_analysis_is_a_fit() -> None:
     """From the holds of an analysis no way led to a Fit with its samples."""
     analysis = RESULTS["Analysis"]

@@ -639,7 +639,9 @@ class Analysis(_Summed, _Reported):
     """
     parameter_table: Final[Table]
     """Every parameter of every law on every hold, a row each: ``record``, ``part``, ``hold``, ``law``, ``parameter``, ``unit``, ``value``,
-    ``standard_error``, ``low``, ``high``, ``termination``, ``white_standard_error``, ``role``, ``domain``, ``recommended``.
+    ``standard_error``, ``low``, ``high``, ``termination``, ``white_standard_error``, ``role``, ``domain``, ``recommended``. An
+    end of an interval that is open is infinite, or 0 below a parameter that is never negative, as in `Fit.estimates`; without an
+    interval both are missing.
     """
     budgets: Final[Table]
     """Uncertainty budgets (JCGM 100) of the parameters of the law of the record, a row for each input quantity of each: ``hold``, ``law``,
@@ -779,7 +781,8 @@ class Calibration(_Series, _Reported):
     """
     parameter_table: Final[Table]
     """The parameters of the law that was requested, with the columns of `Analysis.parameter_table` and, where profiles were requested,
-    ``profile_low`` and ``profile_high``, NaN where the record leaves them open.
+    ``profile_low`` and ``profile_high``, 0 and inf where the record leaves
+    them open: no parameter is below 0.
     """
     budgets: Final[Table]
     """Uncertainty budgets (JCGM 100) of the parameters of the law that was requested, with the columns of `Analysis.budgets`."""
@@ -844,7 +847,7 @@ class SeveralCalibrations(_Reported):
     """The material of each record."""
     parameter_table: Final[Table]
     """The parameters of the batch, a row each: ``parameter``, ``unit``, ``between`` ("shared", "own" or "given"), ``value`` (of own ones the
-    geometric mean), ``standard_error``, ``low``, ``high``; of own ones the standard deviation of the logarithm between specimens,
+    geometric mean), ``standard_error``, ``low``, ``high``, infinite where an end is open; of own ones the standard deviation of the logarithm between specimens,
     ``spread``, ``spread_low``, ``spread_high``; of shared ones ``one_value_p``, the probability that records of one value differ as
     much as these do when calibrated alone.
     """
@@ -1613,8 +1616,8 @@ class Fit(_Series):
         Raises
         ------
         OptionError
-            A coverage outside 0 to 1, another word, both of `time_s` and `elapsed_s`; dates where the samples had none; an infinite time of a law
-            without a limit.
+            A coverage outside 0 to 1, another word, both of `time_s` and `elapsed_s`; dates where the samples had none, or of which only some have a time
+            zone; an infinite time of a law without a limit.
         """
         ...
     @overload

@@ -122,7 +122,8 @@ shown! {
             Table::of(columns)
         },
         /// The parameters of the law that was requested, with the columns of `Analysis.parameter_table` and, where profiles were requested,
-        /// ``profile_low`` and ``profile_high``, NaN where the record leaves them open.
+        /// ``profile_low`` and ``profile_high``, 0 and inf where the record leaves
+        /// them open: no parameter is below 0.
         parameter_table: PyResult<Table> = {
             let parameters = &self.requested().parameters;
             let rows: Vec<ParameterRow> =
@@ -130,8 +131,8 @@ shown! {
             let mut columns = parameter_columns(&rows);
             if parameters.iter().any(|parameter| parameter.profile.is_some()) {
                 columns.extend(columns!(parameters, parameter =>
-                    profile_low = parameter.profile.as_ref().and_then(|profile| profile.low),
-                    profile_high = parameter.profile.as_ref().and_then(|profile| profile.high)
+                    profile_low = parameter.profile.as_ref().map(|profile| profile.low.unwrap_or(0.0)),
+                    profile_high = parameter.profile.as_ref().map(|profile| profile.high.unwrap_or(f64::INFINITY))
                 ));
             }
             Table::of(columns)

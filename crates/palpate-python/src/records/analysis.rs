@@ -197,7 +197,9 @@ shown! {
             Table::of(columns)
         },
         /// Every parameter of every law on every hold, a row each: ``record``, ``part``, ``hold``, ``law``, ``parameter``, ``unit``, ``value``,
-        /// ``standard_error``, ``low``, ``high``, ``termination``, ``white_standard_error``, ``role``, ``domain``, ``recommended``.
+        /// ``standard_error``, ``low``, ``high``, ``termination``, ``white_standard_error``, ``role``, ``domain``, ``recommended``. An
+        /// end of an interval that is open is infinite, or 0 below a parameter that is never negative, as in `Fit.estimates`; without an
+        /// interval both are missing.
         parameter_table: PyResult<Table> = Table::of(parameter_columns(&self.document.parameter_rows())),
         /// Uncertainty budgets (JCGM 100) of the parameters of the law of the record, a row for each input quantity of each: ``hold``, ``law``,
         /// ``parameter``, ``unit``, ``value``, ``combined_standard_uncertainty``, ``expanded_uncertainty``, ``input``, ``input_unit``, ``evaluation``,

@@ -4,7 +4,7 @@ use palpate::calibrate::Sharing;
 use palpate_files::description::MaterialFile;
 use palpate_jobs::input::Measurement;
 use palpate_jobs::{CalibrateSeveral, Results};
-use palpate_report::document::{BatchParameterDocument, SeveralCalibrationsDocument, SpecimenDocument};
+use palpate_report::document::{SeveralCalibrationsDocument, SpecimenDocument};
 use palpate_report::study::batch_page;
 use pyo3::prelude::*;
 use serde::{Deserialize, Serialize};
@@ -16,7 +16,7 @@ use crate::listed::Listed;
 use crate::materials::material::Material;
 use crate::records::record::Record;
 use crate::shown::shown;
-use crate::table::{Table, columns};
+use crate::table::{Table, columns, end};
 use crate::work::{job, plain, printed};
 
 /// Several records of one body or one batch in one calibration: shared and own parameters, and the spread between specimens.
@@ -129,16 +129,15 @@ shown! {
         /// The material of each record.
         materials: PyResult<Vec<Material>> = self.materials.iter().map(|text| Material::parsed(text)).collect(),
         /// The parameters of the batch, a row each: ``parameter``, ``unit``, ``between`` ("shared", "own" or "given"), ``value`` (of own ones the
-        /// geometric mean), ``standard_error``, ``low``, ``high``; of own ones the standard deviation of the logarithm between specimens,
-        /// ``spread``, ``spread_low``, ``spread_high``; of shared ones ``one_value_p``, the probability that records of one value differ as
-        /// much as these do when calibrated alone.
+        /// geometric mean), ``standard_error``, ``low``, ``high``, infinite where an end is open; of own ones the standard
+        /// deviation of the logarithm between specimens, ``spread``, ``spread_low``, ``spread_high``; of shared ones ``one_value_p``, the
+        /// probability that records of one value differ as much as these do when calibrated alone.
         parameter_table: PyResult<Table> = {
-            let end = |parameter: &BatchParameterDocument, end: usize| parameter.parameter.interval.and_then(|ends| ends[end]);
             Table::of(columns!(self.document.parameters, parameter =>
                 parameter = parameter.name.clone(), unit = parameter.parameter.unit.clone(),
                 between = parameter.between.clone(), value = parameter.parameter.value,
                 standard_error = parameter.parameter.standard_error,
-                low = end(parameter, 0), high = end(parameter, 1),
+                low = end(parameter.parameter.interval, 0), high = end(parameter.parameter.interval, 1),
                 spread = parameter.spread.as_ref().map(|spread| spread.deviation),
                 spread_low = parameter.spread.as_ref().map(|spread| spread.low),
                 spread_high = parameter.spread.as_ref().map(|spread| spread.high),
