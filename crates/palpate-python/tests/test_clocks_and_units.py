@@ -196,3 +196,20 @@ def test_a_column_without_any_value_is_named() -> None:
     with pytest.raises(palpate.FitError, match="found 0"):
         palpate.fit_hold(T, nulls, nan="omit")
 
+
+def test_quantities_evaluate_a_law_by_their_unit() -> None:
+    """``eval`` raised an error of pint."""
+    expected = FIT.eval(20.0, time_constant_s=3.0)
+    for three in (3000 * UNITS.ms, datetime.timedelta(seconds=3), np.timedelta64(3000, "ms")):
+        assert FIT.eval(20.0 * UNITS.s, time_constant_s=three) == FIT.eval(1 / 3 * UNITS.min, time_constant_s=three) == pytest.approx(expected, rel=1e-12)
+    stretched = palpate.fit_hold(T, Y, law="stretched")
+    assert stretched.eval(5.0, stretching=50 * UNITS.percent) == stretched.eval(5.0, stretching=0.5)
+    for parameters, message in (
+        ({"time_constant_s": 3 * UNITS.mm}, "time_constant_s: expected a quantity in s, found one in mm"),
+        ({"equilibrium": 3 * UNITS.N}, "equilibrium: expected a number in the unit of the signal, which states none, found a quantity in newton\nhint: give the number"),
+        ({"equilibrium": np.timedelta64(3, "s")}, "equilibrium: expected a number, found"),
+    ):
+        with pytest.raises(palpate.OptionError, match=message):
+            FIT.eval(20.0, **parameters)
+    with pytest.raises(palpate.OptionError, match=r"eval\(time_s\): expected a quantity in s, found one in millimeter"):
+        FIT.eval(20.0 * UNITS.mm, equilibrium=0.2)

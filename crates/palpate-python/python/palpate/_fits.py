@@ -35,7 +35,7 @@ def _named(values: Any, name: str, example: str) -> list[tuple[str, Any]]:
     return [(str(key), value) for key, value in values.items()]
 
 
-def _parameter(name: str, value: Any, place: str, signal: Any) -> float:
+def parameter(name: str, value: Any, place: str, signal: Any) -> float:
     """A parameter in the unit of a fit; quantities of pint are converted to it, which for some parameters is that of the signal."""
     end = _units.ending(name)
     if isinstance(value, (timedelta, np.timedelta64)) and end == "_s":
@@ -59,8 +59,8 @@ def _ends(name: str, pair: Any, place: str, signal: Any) -> tuple[float, float]:
         raise OptionError(f"{place}: expected a lower and an upper end, found {pair!r}")
     low, high = pair
     return (
-        float("-inf") if low is None else _parameter(name, low, place, signal),
-        float("inf") if high is None else _parameter(name, high, place, signal),
+        float("-inf") if low is None else parameter(name, low, place, signal),
+        float("inf") if high is None else parameter(name, high, place, signal),
     )
 
 
@@ -87,7 +87,7 @@ def _keywords(
         raise OptionError(f"log_spaced: expected a number of samples, found {log_spaced!r}")
     return {
         **words,
-        "fixed": held and [(name, _parameter(name, value, f'fixed["{name}"]', signal)) for name, value in held],
+        "fixed": held and [(name, parameter(name, value, f'fixed["{name}"]', signal)) for name, value in held],
         "bounds": bounded and [(name, _ends(name, pair, f'bounds["{name}"]', signal)) for name, pair in bounded],
         "confidence": number(confidence, "confidence"),
         "log_spaced": log_spaced,

@@ -1671,7 +1671,8 @@ class Fit(_Series):
             Time on the clock of the samples, s, a duration or, where the samples had dates, a date, as for `predict`; the times of the
             samples if left out.
         parameters
-            Values in place of those that were found: ``fit.eval(exponent=3)``.
+            Values in place of those that were found: ``fit.eval(exponent=3)``. Quantities of pint and durations are converted; parameters in the
+            unit of the signal, which a fit does not state, are numbers alone.
 
         Returns
         -------

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from palpate import laws
 from palpate._convert import needed
-from palpate._fits import number
+from palpate._fits import parameter
 from palpate._palpate import FitError, OptionError
 
 #: How a parameter follows from what was searched, by the scale that its name begins with, and back.
@@ -162,7 +162,8 @@ def evaluate(self: Any, time_s: Any = None, **parameters: float) -> Any:
         Time on the clock of the samples, s, a duration or, where the samples had dates, a date, as for `predict`; the times of the
         samples if left out.
     parameters
-        Values in place of those that were found: ``fit.eval(exponent=3)``.
+        Values in place of those that were found: ``fit.eval(exponent=3)``. Quantities of pint and durations are converted; parameters in the
+        unit of the signal, which a fit does not state, are numbers alone.
 
     Returns
     -------

@@ -86,7 +86,7 @@ def number_like(quantity: Any, column: Any) -> float:
     first: Any = column[0] if isinstance(column, (list, tuple)) and column else column
     if not is_quantity(first):
         message = f"expected a number in the unit of the signal, which states none, found a quantity in {quantity.units}"
-        raise OptionError(f"{message}\nhint: give the signal as a quantity too, or the number alone")
+        raise OptionError(f"{message}\nhint: give the number alone, in that unit; or fit a signal that is a quantity too, and give both then")
     if not quantity.is_compatible_with(first.units):
         raise OptionError(f"expected a quantity in {first.units}, the unit of the signal, found one in {quantity.units}")
     return float(quantity.to_base_units().magnitude)
