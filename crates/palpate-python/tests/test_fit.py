@@ -296,6 +296,21 @@ def test_a_fit_as_objects_has_its_bounds_and_what_was_held() -> None:
     assert free.to_dict()["bounds"] == free.to_dict()["fixed"] == free.fixed == {}
 
 
+def test_residuals_of_no_noise_are_stated_with_the_fit() -> None:
+    """Only an analysis stated it; the intervals of a fit may then be too narrow."""
+    t = np.linspace(0.0, 40.0, 400)
+    noise = np.random.default_rng(0).normal(0.0, 0.01, 400)
+    good = palpate.fit_hold(t, 1 + 2 * np.exp(-t / 8) + noise, law="standard-linear-solid")
+    poor = palpate.fit_hold(t, 1 + 2 * np.exp(-t / 8) + 0.02 * np.sin(3 * t) + 0.1 * noise, law="standard-linear-solid")
+    assert good.noise_p_value is not None and good.noise_p_value > 1e-3 and poor.noise_p_value is not None and poor.noise_p_value < 1e-3
+    sentence = f"no noise model describes the residuals of standard-linear-solid: the closest is {poor.noise}, p "
+    texts = (lambda fit: repr(fit), lambda fit: str(fit), palpate.Fit.summary, palpate.Fit._repr_html_, palpate.Fit.report)
+    for text in texts:
+        shown = text(poor).replace("&lt;", "<")
+        assert sentence in shown and "no noise model" not in text(good)
+        assert ("the intervals may be too narrow" in shown) == (text(poor) != repr(poor))
+
+
 def test_numbered_terms_keep_their_bounds() -> None:
     """``amplitude_1`` between 0 and 0.5 was 0.98 with an interval from 0.95 to 0.5, and the fit was good."""
     t = np.linspace(0.0, 40.0, 400)

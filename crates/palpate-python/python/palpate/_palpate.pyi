@@ -1652,11 +1652,12 @@ class Fit(_Series):
     ) -> tuple[_Doubles, _Doubles, _Doubles]: ...
     bounds: Final[dict[str, tuple[float | None, float | None]]]
     """Bounds of parameters as they were given, by name: lower and upper end, None where it is open."""
-    _first_date: Final[tuple[int, bool] | None]
-    def report(self) -> str:
-        """The fit as text, in the manner of lmfit."""
     fixed: Final[dict[str, float]]
     """Values that parameters were held at with `fixed`, by name."""
+    _first_date: Final[tuple[int, bool] | None]
+    _noise_remark: Final[tuple[str, str] | None]
+    def report(self) -> str:
+        """The fit as text, in the manner of lmfit."""
         ...
     def to_dict(self) -> dict[str, Any]:
         """Everything about the fit but its samples as plain objects: also ``bounds``, both ends by name, and ``fixed``, values by name."""
@@ -2416,6 +2417,7 @@ def forecast(
     (1.33, 1.33)
     """
     ...
+def _unit_factor(unit: str, si: str) -> tuple[float | None, str]: ...
 def mapping_text(table: Mapping[str, Any]) -> str:
     """A mapping with the tables of a description as its text in TOML."""
     ...
@@ -2423,7 +2425,6 @@ def energy(
     path: _Path | None,
     text: str | None,
     driver: tuple[_Doubles, _Doubles | None, _Doubles] | None,
-def _unit_factor(unit: str, si: str) -> tuple[float | None, str]: ...
     drive_by: str,
     by: str,
 ) -> Table:

@@ -43,6 +43,12 @@ def _heading(result: Any) -> str:
     return repr(result).strip("<>").removeprefix("palpate.")
 
 
+def _remarks(result: Any) -> list[str]:
+    """What is to be heeded beside the numbers, in sentences."""
+    remark = result._noise_remark if isinstance(result, _palpate.Fit) else None
+    return [] if remark is None else ["; ".join(remark)]
+
+
 def summary(self: Any) -> str:
     """What this result comes to, as text."""
     if "__str__" in vars(type(self)):
@@ -50,7 +56,7 @@ def summary(self: Any) -> str:
     rows = _texts(_rows(self))
     widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
     lines = ("  ".join(cell.ljust(width) for cell, width in zip(row, widths, strict=True)).rstrip() for row in rows)
-    return "\n".join([_heading(self), *lines]) + "\n"
+    return "\n".join([_heading(self), *lines, *_remarks(self)]) + "\n"
 
 
 def _repr_html_(self: Any) -> str:
@@ -61,7 +67,8 @@ def _repr_html_(self: Any) -> str:
         return "<tr>" + "".join(f"<{tag}>{escape(cell)}</{tag}>" for cell in row) + "</tr>"
 
     rows = "".join(cells(row, "td") for row in body)
-    return f"<p>{escape(_heading(self))}</p><table><thead>{cells(head, 'th')}</thead><tbody>{rows}</tbody></table>"
+    remarks = "".join(f"<p>{escape(remark)}</p>" for remark in _remarks(self))
+    return f"<p>{escape(_heading(self))}</p><table><thead>{cells(head, 'th')}</thead><tbody>{rows}</tbody></table>{remarks}"
 
 
 #: The parts of a format of numbers: what pads the whole, and what each number is written by.

@@ -1,6 +1,7 @@
 //! Laws fitted to holds.
 
 use numpy::{PyArray1, PyArray2};
+use palpate::analysis::unexplained_noise;
 use palpate::fit::{
     BootstrapOptions, Estimate, Fit, IntervalMethod, LawOptions, Loss, NoiseChoice, Parameter, ParameterRole,
     SampleChoice, Samples, fit_law_watched,
@@ -364,10 +365,17 @@ shown! {
         Ok(all)
     }
 
+    /// What is to be heeded where no noise model describes the residuals, and what it means; None otherwise.
+    #[getter]
+    fn _noise_remark(&self) -> Option<(String, &'static str)> {
+        unexplained_noise(&self.fit)
+    }
+
     fn __repr__(&self) -> String {
         let parameter = |parameter: &Parameter| format!("{}={}", parameter.name, reported(&parameter.estimate, 4));
         let parameters: Vec<String> = self.fit.parameters.iter().map(parameter).collect();
-        format!("<palpate.Fit {}: {}; {}>", self.fit.law, parameters.join(", "), word(self.fit.termination))
+        let remark = unexplained_noise(&self.fit).map_or_else(String::new, |(observed, _)| format!("; {observed}"));
+        format!("<palpate.Fit {}: {}; {}{remark}>", self.fit.law, parameters.join(", "), word(self.fit.termination))
     }
 }
 
@@ -408,6 +416,9 @@ fn report(fit: &Fit) -> String {
             None => String::new(),
         };
         out.push_str(&format!("    {name:<width$} {value}{error}\n"));
+    }
+    if let Some((observed, meaning)) = unexplained_noise(fit) {
+        out.push_str(&format!("[[Noise]]\n    {observed}; {meaning}\n"));
     }
     if let Some(rows) = fit.correlation() {
         let mut pairs: Vec<(f64, String)> = Vec::new();

@@ -4,7 +4,7 @@ mod text;
 
 use serde::{Deserialize, Serialize};
 
-use crate::fit::TrendVerdict;
+use crate::fit::{Fit, TrendVerdict, UNEXPLAINED};
 use crate::laws::Law;
 use crate::record::Column;
 use crate::segment::{LabelCheck, Ripple, Rupture, TouchMethod};
@@ -425,6 +425,36 @@ impl Finding {
     pub fn remedy(&self) -> &'static str {
         self.text().4
     }
+}
+
+impl Finding {
+    /// That no noise model describes the residuals of a fit of the latency law.
+    pub(crate) fn of_noise(fit: &Fit) -> Option<Self> {
+        let p_value = fit.noise_p_value.filter(|p_value| *p_value < UNEXPLAINED)?;
+        Some(Self::NoiseUnexplained {
+            noise: fit.noise_in_words(),
+            p_value,
+        })
+    }
+}
+
+/// The observation and the meaning of [`Finding::NoiseUnexplained`] for a fit of any law; `None` where the residuals are of a known noise.
+///
+/// ```
+/// use palpate::analysis::unexplained_noise;
+/// use palpate::fit::{LawOptions, Samples, fit_law};
+/// use palpate::laws::Law;
+/// let times: Vec<f64> = (0..400).map(|i| 0.1 * f64::from(i)).collect();
+/// let values: Vec<f64> = times.iter().map(|t| 1.0 + (-t / 8.0).exp() + 0.01 * (2.0 * t).sin()).collect();
+/// let fit = fit_law(&Samples::new(&times, &values), Law::StandardLinearSolid, &LawOptions::default())?;
+/// assert!(unexplained_noise(&fit).is_some_and(|(observed, _)| observed.contains("standard-linear-solid")));
+/// # Ok::<(), palpate::fit::FitError>(())
+/// ```
+#[must_use]
+pub fn unexplained_noise(fit: &Fit) -> Option<(String, &'static str)> {
+    let p_value = fit.noise_p_value.filter(|p_value| *p_value < UNEXPLAINED)?;
+    let observed = text::no_noise_model(&fit.law.to_string(), &fit.noise_in_words(), p_value);
+    Some((observed, text::NOISE_UNEXPLAINED))
 }
 
 #[cfg(test)]

@@ -29,7 +29,7 @@ mod together;
 
 pub use conditions::Conditions;
 pub use error::AnalysisError;
-pub use finding::{Finding, Severity};
+pub use finding::{Finding, Severity, unexplained_noise};
 pub use holds::{CreepError, CreepHold, HoldAnalysis, HoldoutError, RateBias, Signal, creep_holds};
 pub use options::{AnalysisOptions, Geometry, LayersChoice};
 pub use pipeline::{Analysis, analyze, analyze_watched, examine};

@@ -204,11 +204,8 @@ impl Finding {
             ),
             Self::NoiseUnexplained { noise, p_value } => caution(
                 "noise_unexplained",
-                format!(
-                    "no noise model describes the residuals of the latency law: the closest is {noise}, {}",
-                    probability(*p_value)
-                ),
-                "the law misses part of the shape, or a vibration, steps or a controller act on the force; the intervals may be too narrow",
+                no_noise_model("the latency law", noise, *p_value),
+                NOISE_UNEXPLAINED,
                 "inspect the residuals in the report; compare the intervals with those by bootstrap",
             ),
             Self::NoRelaxation { change, standard_error } => info(
@@ -557,6 +554,15 @@ impl Finding {
 fn with_standard_error(value: f64, error: f64) -> String {
     let half = coverage_factor(0.95, f64::INFINITY) * error;
     with_interval(value, (value - half, value + half))
+}
+
+/// What residuals mean that no noise model describes.
+pub(super) const NOISE_UNEXPLAINED: &str = "the law misses part of the shape, or a vibration, \
+    steps or a controller act on the force; the intervals may be too narrow";
+
+/// That no noise model describes the residuals of a law.
+pub(super) fn no_noise_model(law: &str, noise: &str, p_value: f64) -> String {
+    format!("no noise model describes the residuals of {law}: the closest is {noise}, {}", probability(p_value))
 }
 
 /// A small probability of a test.

@@ -377,12 +377,7 @@ fn judge(hold: &mut HoldAnalysis) {
             independent: best.effective_samples(),
         });
     }
-    if let Some(p_value) = best.noise_p_value.filter(|p_value| *p_value < UNEXPLAINED) {
-        hold.findings.push(Finding::NoiseUnexplained {
-            noise: best.noise_in_words(),
-            p_value,
-        });
-    }
+    hold.findings.extend(Finding::of_noise(&best));
 }
 
 /// Correlation of exponent and equilibrium, if it is close to one and the exponent is not known well for all that.
