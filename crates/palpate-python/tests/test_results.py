@@ -155,7 +155,8 @@ def test_open_ends_of_intervals_are_infinite_in_a_table_of_parameters() -> None:
     force = np.where(t < 10.0, 0.3 * t, 1 + 2 * np.exp(-(t - 10.0) / 40)) + np.random.default_rng(0).normal(0.0, 0.1, 600)
     record = palpate.Record.from_arrays(time_s=t, force_n=force, displacement_m=np.minimum(t, 10.0) * 1e-3)
     analysis = record.analyze(intervals="profile", exponents=[1.0, 2.0], compare=False)
-    rows = [row for row in analysis.parameter_table if row["role"] == "estimated" and row["domain"] == "time" and np.isfinite(row["value"] or np.nan)]
+    rows = [row for row in analysis.parameter_table if row["role"] == "estimated" and row["domain"] == "time"]
+    rows = [row for row in rows if np.isfinite(row["value"] or np.nan)]
     assert any(row["high"] == np.inf for row in rows)
     for row in rows:
         estimate = analysis.fit(1, law=row["law"]).estimates[row["parameter"]]

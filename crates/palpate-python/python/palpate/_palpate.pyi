@@ -847,9 +847,9 @@ class SeveralCalibrations(_Reported):
     """The material of each record."""
     parameter_table: Final[Table]
     """The parameters of the batch, a row each: ``parameter``, ``unit``, ``between`` ("shared", "own" or "given"), ``value`` (of own ones the
-    geometric mean), ``standard_error``, ``low``, ``high``, infinite where an end is open; of own ones the standard deviation of the logarithm between specimens,
-    ``spread``, ``spread_low``, ``spread_high``; of shared ones ``one_value_p``, the probability that records of one value differ as
-    much as these do when calibrated alone.
+    geometric mean), ``standard_error``, ``low``, ``high``, infinite where an end is open; of own ones the standard
+    deviation of the logarithm between specimens, ``spread``, ``spread_low``, ``spread_high``; of shared ones ``one_value_p``, the
+    probability that records of one value differ as much as these do when calibrated alone.
     """
     record_table: Final[Table]
     """The records, a row each: ``record``, ``rmse_n``, ``rmse_alone_n``, ``relative``, and a column for each parameter."""
@@ -1616,8 +1616,8 @@ class Fit(_Series):
         Raises
         ------
         OptionError
-            A coverage outside 0 to 1, another word, both of `time_s` and `elapsed_s`; dates where the samples had none, or of which only some have a time
-            zone; an infinite time of a law without a limit.
+            A coverage outside 0 to 1, another word, both of `time_s` and `elapsed_s`; dates where the samples had none, or with a time zone where
+            those had none, and the other way; an infinite time of a law without a limit.
         """
         ...
     @overload
