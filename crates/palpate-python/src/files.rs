@@ -20,7 +20,7 @@ use pyo3::types::{IntoPyDict, PyDict, PyMapping};
 use serde::{Deserialize, Serialize};
 
 use crate::errors::{OptionError, PalpateError, failed, of_mapping, refused_plainly, undescribed};
-use crate::fits::fit;
+use crate::fits::fit_hold;
 use crate::listed::{Listed, Threads};
 use crate::mappings::quantity;
 use crate::report_files::{csv_locale as readers, file_options};
@@ -279,7 +279,7 @@ pub(crate) fn batch(
     let (files, described) = (record_files(paths)?, described_with(test, None, columns)?);
     let question = Batch {
         laws: laws.map(|laws| all_laws(&laws)).transpose()?,
-        intervals: intervals.map(fit::intervals).transpose()?,
+        intervals: intervals.map(fit_hold::intervals).transpose()?,
         fit_until_s,
         hold_start: hold_start.map(start_of_holds).transpose()?,
         map: map.unwrap_or_default(),

@@ -9,7 +9,7 @@ use pyo3::prelude::*;
 
 use crate::errors::{OptionError, failed, refused_plainly};
 use crate::files::{BatchResult, FileOfPython, Given, all_laws, described_with, named, shard};
-use crate::fits::fit;
+use crate::fits::fit_hold;
 use crate::listed::Listed;
 use crate::mappings::quantity;
 use crate::report_files::csv_locale as readers;
@@ -100,7 +100,7 @@ fn question(
 ) -> PyResult<(Batch, Described)> {
     let question = Batch {
         laws: laws.map(|laws| all_laws(&laws)).transpose()?,
-        intervals: intervals.map(fit::intervals).transpose()?,
+        intervals: intervals.map(fit_hold::intervals).transpose()?,
         fit_until_s,
         ..Batch::default()
     };

@@ -21,7 +21,7 @@ use rayon::prelude::*;
 
 use crate::arrays::doubles;
 use crate::errors::{OptionError, PalpateError, refused, refused_plainly, unfitted};
-use crate::fits::fit::{Keywords, Requested, fitted, standard_deviations, without_nan};
+use crate::fits::fit_hold::{Keywords, Requested, fitted, standard_deviations, without_nan};
 use crate::table::{Column, Table};
 use crate::work::{Heard, at_length_reported, in_parallel};
 

@@ -2,5 +2,6 @@
 
 pub(crate) mod estimate;
 pub(crate) mod fit;
+pub(crate) mod fit_hold;
 pub(crate) mod fit_many;
 pub(crate) mod laws;

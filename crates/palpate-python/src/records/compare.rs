@@ -14,7 +14,7 @@ use serde::{Deserialize, Serialize};
 use crate::arrays::doubles;
 use crate::errors::{FitError, OptionError, refused_plainly};
 use crate::files::all_laws;
-use crate::fits::fit::{samples_of, standard_deviations_of};
+use crate::fits::fit_hold::{samples_of, standard_deviations_of};
 use crate::listed::Listed;
 use crate::shown::shown;
 use crate::table::{Table, columns};

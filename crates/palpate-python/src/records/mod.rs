@@ -6,6 +6,8 @@ pub(crate) mod compare;
 pub(crate) mod forecast;
 mod hold_fit;
 pub(crate) mod kept;
+mod keywords;
 pub(crate) mod read;
 pub(crate) mod record;
+mod record_of;
 pub(crate) mod several;

@@ -2,25 +2,19 @@
 
 use numpy::PyArray1;
 use palpate::analysis::corrected_watched;
-use palpate::calibrate::CalibrateError;
-use palpate::record::{Record as Measured, RecordError as Unlike};
-use palpate::segment::ContactChoice;
-use palpate::simulate::SimulateError;
-use palpate::watch::{Unwatched, Watch};
-use palpate_files::description::parse_touch;
-use palpate_jobs::input::{Described, Measurement, record_sha256};
-use palpate_jobs::{Analyze, Calibrate, Compare, ErrorKind, JobError, typed};
+use palpate::record::Record as Measured;
+use palpate_jobs::input::{Described, Measurement};
+use palpate_jobs::{Analyze, Calibrate, Compare, typed};
 use palpate_report::result::{Input, word};
 use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
-use pyo3::pybacked::PyBackedStr;
 use pyo3::types::PyType;
 use serde::{Deserialize, Serialize};
 
 use crate::arrays::{array, doubles};
-use crate::errors::{OptionError, PalpateError, RecordError, choice, refused, refused_plainly};
+use crate::errors::{OptionError, RecordError, choice, refused, refused_plainly};
 use crate::files::{self, Given, all_laws, described, read_or_parsed, start_of_holds};
-use crate::fits::fit;
+use crate::fits::fit_hold;
 use crate::listed::Listed;
 use crate::mappings::quantity;
 use crate::materials::calibration::Calibration;
@@ -28,12 +22,14 @@ use crate::materials::material::{Material, rising_times};
 use crate::materials::prediction::Prediction;
 use crate::pickles::{Made, Piece, Pieces, made_again, unpickled};
 use crate::records::analysis::Analysis;
-use crate::records::columns::{column_name, of_table};
+use crate::records::columns::{Columns, column_name, of_table};
 use crate::records::compare::RecordComparison;
 use crate::records::kept::Kept;
+use crate::records::keywords::{first_touch, not_so, other_laws, unpredicted};
+use crate::records::record_of::record_of;
 use crate::shown::shown;
 use crate::table::{Column, Table, columns};
-use crate::work::{at_length, briefly, job};
+use crate::work::{at_length, job};
 
 /// A record of time, force and, if there is one, displacement, in SI, checked; loading is positive.
 ///
@@ -69,12 +65,6 @@ impl PartialEq for Record {
     }
 }
 
-/// Samples that are checked and digested in a few milliseconds.
-const BRIEF: usize = 100_000;
-
-/// The title of a record of arrays that has none, the default of `title`.
-const UNTITLED: &str = "record";
-
 impl Record {
     /// A record that was read, as it is described.
     pub(super) fn new(record: Measured, input: Input, described: Described) -> Self {
@@ -85,45 +75,10 @@ impl Record {
         }
     }
 
-    /// A record of columns of Python: time, displacement, force.
-    fn checked(
-        py: Python<'_>,
-        (time, displacement, force): (Vec<f64>, Option<Vec<f64>>, Vec<f64>),
-        title: &str,
-    ) -> PyResult<Self> {
-        let is_brief = time.len() <= BRIEF;
-        let make = move |watch: &mut dyn Watch| {
-            let record = Measured::new(time, displacement, force)?;
-            let sha256 = record_sha256(&record, watch);
-            Ok((record, sha256))
-        };
-        let made = match is_brief {
-            true => briefly(py, move || make(&mut Unwatched))?,
-            false => at_length(py, move |mut heard| make(&mut heard))?,
-        };
-        let (record, sha256) = made.map_err(|error: Unlike| refused::<RecordError>(&error, Some(error.hint())))?;
-        let input = Input {
-            path: "arrays".to_owned(),
-            // What tells one of several from the others.
-            part: Some(title.to_owned()).filter(|title| title != UNTITLED),
-            sha256: sha256.map_err(refused_plainly::<PalpateError>)?,
-            test_sha256: None,
-            air_run_sha256: None,
-            then_sha256: None,
-            depends_on_sha256: None,
-            rows: record.len(),
-            rows_averaged: 1,
-            x_m: None,
-            y_m: None,
-            map_index: None,
-            test: None,
-            title: title.to_owned(),
-        };
-        Ok(Self {
-            record,
-            input,
-            described: Described::default(),
-        })
+    /// A record of columns of Python.
+    fn checked(py: Python<'_>, columns: Columns, title: &str) -> PyResult<Self> {
+        let (record, input) = record_of(py, columns, title)?;
+        Ok(Self::new(record, input, Described::default()))
     }
 
     /// What jobs take of it, described as it is or by `test`.
@@ -362,7 +317,7 @@ shown! {
             exponents: exponents.map(|listed| listed.0),
             free_exponent,
             confidence,
-            intervals: intervals.map(fit::intervals).transpose()?,
+            intervals: intervals.map(fit_hold::intervals).transpose()?,
             fit_until_s,
             hold_start: hold_start.map(start_of_holds).transpose()?,
             touch: touch.map(first_touch).transpose()?,
@@ -461,15 +416,7 @@ shown! {
     ) -> PyResult<Calibration> {
         let usual = Calibrate::default();
         let law = files::law(law)?;
-        let alternatives = match alternatives {
-            Some(alternatives) => {
-                let names = alternatives.extract::<Vec<String>>().map_err(|_| {
-                    refused_plainly::<OptionError>(format!("alternatives: expected a list of laws, found {alternatives:?}"))
-                })?;
-                all_laws(&names)?
-            }
-            None => usual.alternatives,
-        };
+        let alternatives = alternatives.map_or(Ok(usual.alternatives), other_laws)?;
         let job = Calibrate {
             law,
             alternatives: alternatives.into_iter().filter(|alternative| *alternative != law).collect(),
@@ -501,14 +448,7 @@ shown! {
             return Err(refused_plainly::<OptionError>(message));
         }
         let predicted = job(py, move |watch| {
-            body.predict_record(&record, &options, &at, confidence, watch).map_err(|error| {
-                let kind = match error {
-                    CalibrateError::Cancelled(_) | CalibrateError::Simulate(SimulateError::Cancelled(_)) => ErrorKind::Cancelled,
-                    CalibrateError::NoDisplacement | CalibrateError::Analysis(_) => ErrorKind::Record,
-                    _ => ErrorKind::Model,
-                };
-                JobError::new(kind, &error, error.hint())
-            })
+            body.predict_record(&record, &options, &at, confidence, watch).map_err(|error| unpredicted(&error))
         })?;
         Prediction::of(py, predicted)
     }
@@ -565,9 +505,9 @@ shown! {
             laws: laws.map(|laws| all_laws(&laws)).transpose()?,
             cuts: cuts.map(|listed| listed.0),
             creep,
-            intervals: intervals.map(fit::intervals).transpose()?,
+            intervals: intervals.map(fit_hold::intervals).transpose()?,
             fit_until_s,
-            loss: fit::loss(loss)?,
+            loss: fit_hold::loss(loss)?,
             samples: typed::samples(samples).map_err(|message| not_so("samples", &message, samples))?,
             ramps: choice("ramps", &["step", "measured"], ramps)?,
         };
@@ -603,23 +543,4 @@ shown! {
             self.record.len()
         )
     }
-}
-
-/// First touch as a keyword says it: a displacement (m), or a text.
-fn first_touch(touch: &Bound<'_, PyAny>) -> PyResult<ContactChoice> {
-    match touch.extract::<PyBackedStr>() {
-        Ok(text) => parse_touch(&text).map_err(|error| refused_plainly::<OptionError>(format!("touch: {error}"))),
-        Err(_) => quantity::metres(touch).map(ContactChoice::Displacement).map_err(|error| {
-            let message = format!("touch: expected a text or a displacement in m, found {}", touch.get_type());
-            if error.is_instance_of::<PyTypeError>(touch.py()) {
-                refused_plainly::<OptionError>(message)
-            } else {
-                error
-            }
-        }),
-    }
-}
-
-fn not_so(option: &str, message: &str, found: &str) -> PyErr {
-    refused_plainly::<OptionError>(format!("{option}: {message}, found {found:?}"))
 }
