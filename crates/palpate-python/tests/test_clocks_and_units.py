@@ -228,7 +228,7 @@ def test_quantities_evaluate_a_law_by_their_unit() -> None:
     assert stretched.eval(5.0, stretching=50 * UNITS.percent) == stretched.eval(5.0, stretching=0.5)
     for parameters, message in (
         ({"time_constant_s": 3 * UNITS.mm}, "time_constant_s: expected a quantity in s, found one in mm"),
-        ({"equilibrium": 3 * UNITS.N}, "equilibrium: expected a number in the unit of the signal, which states none, found a quantity in newton"),
+        ({"equilibrium": 3 * UNITS.N}, "unit of the signal, which a fit does not state, found a quantity in newton\nhint: give the number alone"),
         ({"equilibrium": np.timedelta64(3, "s")}, "equilibrium: expected a number, found"),
     ):
         with pytest.raises(palpate.OptionError, match=message):

@@ -39,10 +39,7 @@ def parameter(name: str, value: Any, place: str, signal: Any) -> float:
     """A parameter in the unit of a fit; quantities of pint are converted to it, which for some parameters is that of the signal."""
     end = _units.ending(name)
     if isinstance(value, (timedelta, np.timedelta64)) and end == "_s":
-        try:
-            return float(_units.seconds(value) or 0.0)
-        except OptionError as error:
-            raise OptionError(f"{place}: {error}") from None
+        return float(_units.seconds(value, place) or 0.0)
     if not _units.is_quantity(value):
         return number(value, place)
     try:

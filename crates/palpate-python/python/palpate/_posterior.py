@@ -183,7 +183,7 @@ def evaluate(self: Any, time_s: Any = None, **parameters: float) -> Any:
     from palpate._arrays import at_times
 
     times, is_single = (self.time_s, False) if time_s is None else at_times(time_s, "eval(time_s)", self._first_date)
-    replaced = {name: parameter(name, value, name, self.signal) for name, value in parameters.items()}
+    replaced = {name: parameter(name, value, name, None) for name, value in parameters.items()}
     law = _creep if self.to_dict()["response"] == "creep" else _relaxation
     values = law(self, times - self.start_s, {**self.parameters, **replaced})
     return float(values[0]) if is_single else values

@@ -82,23 +82,26 @@ def number(quantity: Any, unit: str) -> float:
 
 
 def number_like(quantity: Any, column: Any) -> float:
-    """One quantity in the base units of SI, where a column has the same dimension."""
+    """One quantity in the base units of SI, where a column has the same dimension; without a column none has."""
+    if column is None:
+        message = f"expected a number in the unit of the signal, which a fit does not state, found a quantity in {quantity.units}"
+        raise OptionError(f"{message}\nhint: give the number alone")
     first: Any = column[0] if isinstance(column, (list, tuple)) and column else column
     if not is_quantity(first):
         message = f"expected a number in the unit of the signal, which states none, found a quantity in {quantity.units}"
-        raise OptionError(f"{message}\nhint: give the number alone, in that unit; or fit a signal that is a quantity too, and give both then")
+        raise OptionError(f"{message}\nhint: give the signal as a quantity too, or the number alone")
     if not quantity.is_compatible_with(first.units):
         raise OptionError(f"expected a quantity in {first.units}, the unit of the signal, found one in {quantity.units}")
     return float(quantity.to_base_units().magnitude)
 
 
-def seconds(value: Any) -> float | None:
-    """A duration of `datetime`, pandas or NumPy in s; None of anything else."""
+def seconds(value: Any, name: str = "") -> float | None:
+    """A duration of `datetime`, pandas or NumPy in s; None of anything else. The name is that of its place, for messages."""
     if isinstance(value, timedelta):
         return value.total_seconds()
     if not isinstance(value, np.timedelta64):
         return None
-    check_duration(value)
+    check_duration(value, name)
     return float(value / np.timedelta64(1, "s"))
 
 

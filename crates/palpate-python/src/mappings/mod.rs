@@ -162,7 +162,7 @@ fn write_value(text: &mut String, value: &Bound<'_, PyAny>, place: &Place<'_>) -
         text.push('}');
     } else if value.is_instance_of::<PyList>() || value.is_instance_of::<PyTuple>() {
         write_list(text, value, place, |text, entry, place| write_value(text, entry, place))?;
-    } else if let Some(seconds) = duration(value)? {
+    } else if let Some(seconds) = duration(value, place)? {
         write_string(text, &format!("{:?} s", finite(seconds, place)?));
     } else if value.is_instance_of::<PyBool>() || is_of(value, "numpy", "bool_")? {
         text.push_str(if value.is_truthy()? { "true" } else { "false" });
@@ -200,7 +200,7 @@ fn write_quantity(
     }
     let number = match unit {
         _ if value.is_instance_of::<PyBool>() => None,
-        "s" => duration(value)?.map_or_else(|| real(value), |seconds| Ok(Some(seconds)))?,
+        "s" => duration(value, place)?.map_or_else(|| real(value), |seconds| Ok(Some(seconds)))?,
         _ => real(value)?,
     };
     if number.is_none()
@@ -268,10 +268,10 @@ fn listed<'py>(value: &Bound<'py, PyAny>) -> PyResult<Option<Bound<'py, PyAny>>>
 }
 
 /// A duration of `datetime`, pandas or NumPy in s; none of anything else.
-fn duration(value: &Bound<'_, PyAny>) -> PyResult<Option<f64>> {
+fn duration(value: &Bound<'_, PyAny>, place: &Place<'_>) -> PyResult<Option<f64>> {
     match value.is_exact_instance_of::<PyFloat>() || value.is_exact_instance_of::<PyInt>() {
         true => Ok(None),
-        false => units(value)?.call_method1("seconds", (value,))?.extract(),
+        false => units(value)?.call_method1("seconds", (value, place.to_string()))?.extract(),
     }
 }
 
