@@ -218,7 +218,7 @@ def test_a_column_without_any_value_is_named() -> None:
 
 
 def test_quantities_evaluate_a_law_by_their_unit() -> None:
-    """``eval`` raised an error of pint."""
+    """Quantities were refused as no numbers."""
     expected = FIT.eval(20.0, time_constant_s=3.0)
     three: Any
     for three in (3000 * UNITS.ms, datetime.timedelta(seconds=3), np.timedelta64(3000, "ms")):
