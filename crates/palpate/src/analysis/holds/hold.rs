@@ -7,9 +7,7 @@ use super::jump::force_step;
 use super::rate_bias::{RateBias, rate_bias};
 use crate::analysis::{AnalysisOptions, Finding};
 use crate::contact::{Shape, Specimen};
-use crate::fit::{
-    ExponentChoice, LatencyFit, LawOptions, OrderSelection, Samples, Termination, UNEXPLAINED, fitted, select_order,
-};
+use crate::fit::{ExponentChoice, LatencyFit, LawOptions, OrderSelection, Samples, Termination, fitted, select_order};
 use crate::forecast::{CompareOptions, Comparison, KnownFit, RampChoice, compare_laws_watched};
 use crate::laws::Loading;
 use crate::record::Record;
