@@ -25,6 +25,72 @@ const WORDS: &[&str] = &[
     "mj", "uj", "w", "mw", "tex", "dtex", "den",
 ];
 
+/// The same spelled out, in brackets alone: "Flow Meter" and "Zoll" may be names.
+const SPELLED_OUT: &[&str] = &[
+    "millimeter",
+    "millimeters",
+    "millimetre",
+    "millimetres",
+    "centimeter",
+    "centimeters",
+    "centimetre",
+    "centimetres",
+    "meter",
+    "meters",
+    "metre",
+    "metres",
+    "micrometer",
+    "micrometers",
+    "micrometre",
+    "micrometres",
+    "micron",
+    "microns",
+    "nanometer",
+    "nanometers",
+    "nanometre",
+    "nanometres",
+    "zoll",
+    "mils",
+    "millisecond",
+    "milliseconds",
+    "microsecond",
+    "microseconds",
+    "kilonewton",
+    "kilonewtons",
+    "millinewton",
+    "millinewtons",
+    "micronewton",
+    "micronewtons",
+    "nanonewton",
+    "nanonewtons",
+    "pound",
+    "pounds",
+    "pound-force",
+    "pounds-force",
+    "gram",
+    "grams",
+    "gram-force",
+    "grams-force",
+    "kilogram",
+    "kilograms",
+    "kilogram-force",
+    "kilograms-force",
+    "ounce",
+    "ounces",
+    "pascal",
+    "pascals",
+    "kilopascal",
+    "kilopascals",
+    "megapascal",
+    "megapascals",
+    "volt",
+    "volts",
+    "degree",
+    "degrees",
+    "radian",
+    "radians",
+];
+
 /// Units that are taken for one behind an underscore. Single letters that often number or label something else
 /// (`sensor_A`, `run_C`) are left out.
 const SUFFIXES: &[&str] = &[
@@ -116,7 +182,8 @@ fn bracketed(cell: &str) -> Option<(&str, &str)> {
         let (place, _) = opening?;
         let unit = body[place + open.len_utf8()..].trim();
         // Round brackets also hold remarks: "Strain (Extension)".
-        let remark = matches!(open, '(' | '（') && !is_known(unit) && unit != "-";
+        let known = is_known(unit) || is_one_of(SPELLED_OUT, unit);
+        let remark = matches!(open, '(' | '（') && !known && unit != "-";
         (!remark).then_some((&cell[..place], unit))
     })
 }
@@ -181,6 +248,8 @@ mod tests {
             ("試験力｛kN｝", "試験力", "kN"),
             ("Force, kN", "Force", "kN"),
             ("Temp (°C)", "Temp", "°C"),
+            ("Disp (Millimeters)", "Disp", "Millimeters"),
+            ("Load (pounds)", "Load", "pounds"),
             ("Weg in mm", "Weg", "mm"),
         ] {
             assert_eq!(split(cell), (Some(name.to_owned()), Some(unit.to_owned())));

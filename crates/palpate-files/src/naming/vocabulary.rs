@@ -25,7 +25,7 @@ pub(crate) const VOCABULARY: [Vocabulary; 4] = [
     Vocabulary {
         quantity: Quantity::Time,
         plain: "time zeit temps tiempo tempo",
-        loose: "elapsed seconds secondes sekunden timestamp stamp zeitstempel horodatage epoch durée duree secondi",
+        loose: "elapsed seconds secondes sekunden segundos minutes minuten minutos hours stunden heures timestamp stamp zeitstempel horodatage epoch durée duree secondi",
         endings: "zeit",
         characters: "时间 時間",
         letter: Some("t"),

@@ -105,7 +105,13 @@ impl Chooser<'_> {
             }
             self.refuse_contradiction(found)?;
             self.refuse_two_units(found)?;
-            let Some(unit) = found.unit.or(found.column.unit.as_deref()) else {
+            // A clock may be called by what it counts: "Seconds", "Minuten".
+            let counted = found
+                .column
+                .name
+                .as_deref()
+                .filter(|name| quantity == Quantity::Time && unit_factor(name, Dimension::Time).is_some());
+            let Some(unit) = found.unit.or(found.column.unit.as_deref()).or(counted) else {
                 without.push((found.key(), quantity.usual_unit(), found.column.into()));
                 continue;
             };

@@ -26,9 +26,24 @@ pub(crate) fn candidates(columns: &[ColumnInfo], quantity: Quantity) -> Vec<&Col
     let best = ranked.iter().map(|(rank, _)| *rank).min();
     let tied: Vec<&ColumnInfo> =
         ranked.into_iter().filter(|(rank, _)| Some(*rank) == best).map(|(_, column)| column).collect();
+    if let [one] = tied[..]
+        && quantity == Quantity::Displacement
+        && has_word(one, "deflection")
+    {
+        // Beside the height of a microscope it is how far the cantilever bends, and the indentation is what lies between them.
+        return std::iter::once(one).chain(columns.iter().filter(|column| is_height(column))).collect();
+    }
     // "Shear stress (sinusoidal)" is the shear stress with a remark: the one without goes before it.
     let plain = tied.iter().find(|plain| tied.iter().all(|other| remarks_on(other, plain)));
     plain.map_or(tied.clone(), |plain| vec![*plain])
+}
+
+/// Whether a column is where a microscope has its cantilever.
+fn is_height(column: &ColumnInfo) -> bool {
+    let is_length = column.unit.as_deref().is_some_and(|unit| unit_factor(unit, Dimension::Length).is_some());
+    column.kind == ColumnKind::Number
+        && is_length
+        && has_word(column, "height piezo z zsensor zsnsr höhe hauteur altura")
 }
 
 /// Whether a column is another, or is named like it with a remark in brackets.
@@ -283,6 +298,9 @@ mod tests {
         let curve = [("force", Some("N")), ("cantilever deflection", Some("m")), ("vDeflection", Some("V"))];
         assert!(found(&curve, Quantity::Displacement).is_empty());
         assert_eq!(found(&[("Beam deflection", Some("mm"))], Quantity::Displacement), [1]);
+        // With its height beside it nobody knows which is meant: the deflection of 40 nm was taken for the indentation.
+        let table = [("Piezo", Some("um")), ("Deflection", Some("nm")), ("Force", Some("nN"))];
+        assert_eq!(found(&table, Quantity::Displacement), [2, 1]);
     }
 
     #[test]

@@ -97,6 +97,7 @@ _File: TypeAlias = _Path | bytes | bytearray | memoryview | _Readable | Abstract
 _Described: TypeAlias = _Path | Mapping[str, Any] | Material
 _Columns: TypeAlias = str | Mapping[str, str]
 # One time: in s, a duration, or a date.
+_Parameter: TypeAlias = float | datetime.timedelta | np.timedelta64
 _Time: TypeAlias = float | datetime.datetime | datetime.timedelta | np.datetime64 | np.timedelta64
 # Numbers are arrays, texts and truths are lists; which of them only the name of the column tells.
 _Cells: TypeAlias = Any
@@ -1663,7 +1664,7 @@ class Fit(_Series):
         """Everything about the fit but its samples as plain objects: also ``bounds``, both ends by name, and ``fixed``, values by name."""
         ...
     @overload
-    def eval(self, time_s: _Time, **parameters: float) -> float:  # pyright: ignore[reportOverlappingOverload]
+    def eval(self, time_s: _Time, **parameters: _Parameter) -> float:  # pyright: ignore[reportOverlappingOverload]
         """The law at times of the record, with some of the parameters replaced, in relaxation or creep as it was fitted.
 
         Parameters
@@ -1687,7 +1688,7 @@ class Fit(_Series):
         """
         ...
     @overload
-    def eval(self, time_s: ArrayLike | Sequence[_Time] | None = None, **parameters: float) -> _Doubles: ...
+    def eval(self, time_s: ArrayLike | Sequence[_Time] | None = None, **parameters: _Parameter) -> _Doubles: ...
     def sample(self, n: int = 1000, *, seed: int | None = None) -> dict[str, _Doubles]:
         """Draw sets of parameters from the distribution that the fit leaves for them.
 

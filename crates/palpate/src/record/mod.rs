@@ -32,4 +32,4 @@ pub use measured::Record;
 pub use options::{CorrectionOptions, SkewChoice};
 pub use raw::RawColumns;
 pub use signals::{Gaps, Reversals, SampleInterval, Saturation, SignalReport, Stamps, Strays, Values, rounding_step};
-pub(crate) use signals::{absurd_rows, stray_rows};
+pub(crate) use signals::{absurd_rows, stray_rows, stray_runs};

@@ -550,3 +550,26 @@ fn a_hold_after_a_short_rest_and_a_short_ramp_begins_where_the_jaw_stops() {
         assert!((applied - ramp).abs() < 1e-9, "{rest} {ramp}: {applied}");
     }
 }
+
+/// Two rows of 0 N in a hold of a minute, and a spike of three times the force, hid the hold: the displacement stands there all the time.
+#[test]
+fn a_few_rows_of_force_that_stray_hide_no_hold() {
+    let time: Vec<f64> = (0..1300).map(|i| 0.05 * f64::from(i)).collect();
+    let displacement = time
+        .iter()
+        .map(|t| 5e-3 * (t - 1.0).clamp(0.0, 1.0) * (63.0 - t).clamp(0.0, 1.0))
+        .collect::<Vec<f64>>();
+    let mut random = Rng::new(1);
+    let force: Vec<f64> = time
+        .iter()
+        .zip(&displacement)
+        .map(|(t, d)| d / 5e-3 * (6.0 + 4.0 * (-(t - 2.0).max(0.0) / 8.0).exp()) + 0.01 * random.normal())
+        .collect();
+    for (rows, value) in [(600..602, 0.0), (600..601, 30.0), (600..605, 100.0), (10..11, 30.0), (300..301, -50.0)] {
+        let mut stray = force.clone();
+        stray[rows.clone()].fill(value);
+        let record = Record::new(time.clone(), Some(displacement.clone()), stray).unwrap();
+        let hold = phases(&record).unwrap().holds().next().map(|hold| (time[hold.start], time[hold.end - 1])).unwrap();
+        assert!((hold.0 - 2.0).abs() < 0.2 && (hold.1 - 62.0).abs() < 0.2, "{rows:?} of {value} N: {hold:?}");
+    }
+}

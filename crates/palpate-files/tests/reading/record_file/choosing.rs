@@ -268,3 +268,14 @@ fn headers_in_italian_and_errors_of_a_spreadsheet_in_german() {
     let found = read(format!("Zeit (s);Kraft (N)\n{rows}"), "").unwrap();
     assert_eq!(found.record.time().len(), 79);
 }
+
+/// A column that is called by its unit needed one more: the hint was seconds for "Minutes".
+#[test]
+fn a_clock_called_by_what_it_counts_has_its_unit() {
+    for (name, last) in [("Minutes", 60.0), ("Sekunden", 1.0), ("Hours", 3600.0)] {
+        let text = format!("{name},Disp (millimeters),Force (N)\n0,0,0\n0.5,1,2\n1,2,3\n");
+        let found = read(text, "").unwrap().record;
+        assert_eq!(found.time()[2] - found.time()[0], last, "{name}");
+        assert_eq!(found.displacement().unwrap()[2], 2e-3, "{name}");
+    }
+}

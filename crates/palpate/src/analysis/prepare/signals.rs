@@ -1,7 +1,7 @@
 //! What the columns of a record, and what was done to them, give cause to say.
 
 use crate::analysis::{Corrected, Finding, Prepared};
-use crate::record::{Column, Correction, Record, SignalReport, Values, absurd_rows, stray_rows};
+use crate::record::{Column, Correction, Record, SignalReport, Values, absurd_rows, stray_rows, stray_runs};
 use crate::segment::{ContactChoice, ContactPoint, HoldMode, Segment, SegmentOptions, Segmentation, find_phases};
 use crate::statistics::{median, noise};
 
@@ -158,6 +158,7 @@ fn holds_above_start(values: &[f64], found: &Segmentation) -> bool {
 fn rows_astray(record: &Record) -> Option<Finding> {
     let mut rows = stray_rows(record.force());
     rows.extend(absurd_rows(record.force()));
+    rows.extend(stray_runs(record.force()).into_iter().flatten());
     rows.sort_unstable();
     rows.dedup();
     let first = *rows.first()?;

@@ -1,6 +1,8 @@
 //! Single rows that strayed, replaced by the mean of their neighbours.
 
-use crate::record::signals::{lost_rows, stray_rows};
+use std::borrow::Cow;
+
+use crate::record::signals::{lost_rows, stray_rows, stray_runs};
 use crate::record::{Column, Correction, Record};
 
 impl Record {
@@ -18,6 +20,23 @@ impl Record {
             .corrections
             .extend(done.map(|(column, count)| Correction::DropoutsReplaced { column, count }));
         record
+    }
+}
+
+impl Record {
+    /// The record in which phases are searched: a few rows of the force that stray by themselves say nothing of what is held, and they are not in it.
+    /// Nothing else has them replaced.
+    pub(crate) fn without_strays(&self) -> Cow<'_, Self> {
+        let runs = if self.displacement.is_some() { stray_runs(&self.force) } else { Vec::new() };
+        if runs.is_empty() {
+            return Cow::Borrowed(self);
+        }
+        let mut record = self.clone();
+        for run in runs {
+            let (before, after) = (record.force[run.start - 1], record.force[run.end]);
+            record.force[run].fill(0.5 * (before + after));
+        }
+        Cow::Owned(record)
     }
 }
 

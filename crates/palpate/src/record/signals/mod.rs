@@ -16,7 +16,7 @@ pub(super) use stamps::gap_rows;
 pub use stamps::{Gaps, Reversals, SampleInterval, Stamps};
 pub(super) use values::lost_rows;
 pub use values::{Saturation, Strays, Values};
-pub(crate) use values::{absurd_rows, stray_rows};
+pub(crate) use values::{absurd_rows, stray_rows, stray_runs};
 
 use std::convert::Infallible;
 

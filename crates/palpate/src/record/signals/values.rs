@@ -1,5 +1,7 @@
 //! Measured columns: rows that stray alone, saturation, rounding.
 
+use std::ops::Range;
+
 use serde::{Deserialize, Serialize};
 
 use super::{Column, rounding_step_heard};
@@ -115,6 +117,51 @@ pub(crate) fn stray_rows(values: &[f64]) -> Vec<usize> {
         before = if alone { 0.5 * (before + after) } else { here };
     }
     rows
+}
+
+/// Up to five successive rows that stray from all about them, as those of [`stray_rows`] do alone, by a tenth of the range or more.
+pub(crate) fn stray_runs(values: &[f64]) -> Vec<Range<usize>> {
+    const LONGEST: usize = 5;
+    const ENOUGH: usize = 50;
+    if values.len() < ENOUGH {
+        return Vec::new();
+    }
+    // Of most rows: those that stray are not to decide how far that is.
+    let mut sorted = values.to_vec();
+    let reach = quantile(&mut sorted, 0.98) - quantile(&mut sorted, 0.02);
+    let least = (0.1 * reach).max(20.0 * noise(values));
+    let mut runs: Vec<Range<usize>> = Vec::new();
+    let mut row = 1;
+    while row + 1 < values.len() {
+        let before = values[row - 1];
+        let strays = |length: &usize| {
+            let Some(after) = values.get(row + length) else {
+                return false;
+            };
+            let off = |value: &f64| (value - before).abs().min((value - after).abs());
+            let run = &values[row..row + length];
+            let (nearest, farthest) =
+                run.iter().map(off).fold((f64::MAX, 0.0f64), |(least, most), off| (least.min(off), most.max(off)));
+            let one_side = run.iter().all(|value| (*value > before) == (run[0] > before));
+            // What comes and goes within more samples than these is a wave.
+            let is_calm = |outside: Option<usize>, beside: f64| {
+                let farther = outside.and_then(|outside| values.get(outside));
+                farther.is_none_or(|value| (value - beside).abs() < 0.25 * nearest)
+            };
+            let is_abrupt = is_calm(row.checked_sub(2), before) && is_calm(Some(row + length + 1), *after);
+            // What grows row by row is a peak.
+            let at_once = nearest > 0.5 * farthest;
+            nearest > least && at_once && one_side && (after - before).abs() < 0.1 * nearest && is_abrupt
+        };
+        match (1..=LONGEST).find(strays) {
+            Some(length) => {
+                runs.push(row..row + length);
+                row += length + 1;
+            }
+            None => row += 1,
+        }
+    }
+    runs
 }
 
 /// Successive rows, few of all, that stand tens of times farther off than nearly all others reach and begin and end at once: what a load

@@ -19,7 +19,7 @@ const NEEDED: usize = 8;
 /// # Errors
 /// [`SegmentError`] when nothing moves, or when no standstill after a ramp is long enough to be a hold.
 pub fn find_phases(record: &Record, options: &SegmentOptions) -> Result<Segmentation, SegmentError> {
-    found(record, options, &mut Unwatched)
+    phases_watched(record, options, &[], &mut Unwatched)
 }
 
 fn found(record: &Record, options: &SegmentOptions, watch: &mut dyn Watch) -> Result<Segmentation, SegmentError> {
@@ -74,9 +74,10 @@ pub fn phases_watched(
     given: &[GivenHold],
     watch: &mut dyn Watch,
 ) -> Result<Segmentation, SegmentError> {
+    let record = record.without_strays();
     if given.is_empty() {
-        found(record, options, watch)
+        found(&record, options, watch)
     } else {
-        with_given(record, options, given, watch)
+        with_given(&record, options, given, watch)
     }
 }
