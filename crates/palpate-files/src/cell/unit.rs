@@ -4,6 +4,8 @@
 
 use palpate::units::{self, Dimension};
 
+use crate::naming::is_unit_in_words;
+
 /// Words that units are made of, in lower case.
 const WORDS: &[&str] = &[
     // time and frequency
@@ -23,72 +25,6 @@ const WORDS: &[&str] = &[
     "°c", "℃", "degc", "c", "°f", "degf", "f", "k", "°k", // electricity, work, textiles
     "v", "mv", "uv", "µv", "μv", "ma", "ua", "ohm", "ohms", "ω", "kω", "mω", "kohm", "pf", "nf", "uf", "µf", "μf", "j",
     "mj", "uj", "w", "mw", "tex", "dtex", "den",
-];
-
-/// The same spelled out, in brackets alone: "Flow Meter" and "Zoll" may be names.
-const SPELLED_OUT: &[&str] = &[
-    "millimeter",
-    "millimeters",
-    "millimetre",
-    "millimetres",
-    "centimeter",
-    "centimeters",
-    "centimetre",
-    "centimetres",
-    "meter",
-    "meters",
-    "metre",
-    "metres",
-    "micrometer",
-    "micrometers",
-    "micrometre",
-    "micrometres",
-    "micron",
-    "microns",
-    "nanometer",
-    "nanometers",
-    "nanometre",
-    "nanometres",
-    "zoll",
-    "mils",
-    "millisecond",
-    "milliseconds",
-    "microsecond",
-    "microseconds",
-    "kilonewton",
-    "kilonewtons",
-    "millinewton",
-    "millinewtons",
-    "micronewton",
-    "micronewtons",
-    "nanonewton",
-    "nanonewtons",
-    "pound",
-    "pounds",
-    "pound-force",
-    "pounds-force",
-    "gram",
-    "grams",
-    "gram-force",
-    "grams-force",
-    "kilogram",
-    "kilograms",
-    "kilogram-force",
-    "kilograms-force",
-    "ounce",
-    "ounces",
-    "pascal",
-    "pascals",
-    "kilopascal",
-    "kilopascals",
-    "megapascal",
-    "megapascals",
-    "volt",
-    "volts",
-    "degree",
-    "degrees",
-    "radian",
-    "radians",
 ];
 
 /// Units that are taken for one behind an underscore. Single letters that often number or label something else
@@ -182,7 +118,7 @@ fn bracketed(cell: &str) -> Option<(&str, &str)> {
         let (place, _) = opening?;
         let unit = body[place + open.len_utf8()..].trim();
         // Round brackets also hold remarks: "Strain (Extension)".
-        let known = is_known(unit) || is_one_of(SPELLED_OUT, unit);
+        let known = is_known(unit) || is_unit_in_words(unit);
         let remark = matches!(open, '(' | '（') && !known && unit != "-";
         (!remark).then_some((&cell[..place], unit))
     })
@@ -250,6 +186,7 @@ mod tests {
             ("Temp (°C)", "Temp", "°C"),
             ("Disp (Millimeters)", "Disp", "Millimeters"),
             ("Load (pounds)", "Load", "pounds"),
+            ("Kraft (Kilonewton)", "Kraft", "Kilonewton"),
             ("Weg in mm", "Weg", "mm"),
         ] {
             assert_eq!(split(cell), (Some(name.to_owned()), Some(unit.to_owned())));

@@ -22,7 +22,7 @@ pub(crate) use names::{
 pub use quantity::Quantity;
 pub(crate) use rheometry::rank_in_rheometry;
 pub use unit_words::unit_factor;
-pub(crate) use unit_words::volts_are;
+pub(crate) use unit_words::{is_unit_in_words, volts_are};
 pub(crate) use vocabulary::{
     AXIAL, BENDING, COUNTS, OTHER, OTHER_CHARACTERS, RATES_OF_SHEAR, SHEAR, SHEAR_RATES, SIGNS_OF_LENGTH, STORAGE,
     STRAINS, UNCALIBRATED, VOCABULARY, is_listed,

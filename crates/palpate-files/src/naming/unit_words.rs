@@ -2,6 +2,7 @@
 
 use palpate::units::{self, Dimension};
 
+use super::quantity::Quantity;
 use super::vocabulary::is_listed;
 
 /// Words and spellings that machines write for a unit: a line a unit. Compared in lower case, so that none is here whose
@@ -86,6 +87,20 @@ pub fn unit_factor(unit: &str, dimension: Dimension) -> Option<f64> {
         let (symbol, _) = synonyms(dimension).find(|(_, words)| is_listed(&word, words))?;
         units::factor(symbol, dimension)
     })
+}
+
+/// Whether a text is a unit of time, length, force, pressure, voltage or angle in words, or one of mass, which many write for a force.
+pub(crate) fn is_unit_in_words(text: &str) -> bool {
+    const DIMENSIONS: [Dimension; 6] = [
+        Dimension::Time,
+        Dimension::Length,
+        Dimension::Force,
+        Dimension::Pressure,
+        Dimension::Voltage,
+        Dimension::Angle,
+    ];
+    let is_mass = || Quantity::Force.unit_meant(text) != Quantity::Force.usual_unit();
+    DIMENSIONS.iter().any(|dimension| unit_factor(text, *dimension).is_some()) || is_mass()
 }
 
 /// What a scale such as `12.5 N/V` makes of one volt, in SI; `None` for any other text.

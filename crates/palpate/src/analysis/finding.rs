@@ -425,16 +425,10 @@ impl Finding {
     pub fn remedy(&self) -> &'static str {
         self.text().4
     }
-}
 
-impl Finding {
     /// That no noise model describes the residuals of a fit of the latency law.
     pub(crate) fn of_noise(fit: &Fit) -> Option<Self> {
-        let p_value = fit.noise_p_value.filter(|p_value| *p_value < UNEXPLAINED)?;
-        Some(Self::NoiseUnexplained {
-            noise: fit.noise_in_words(),
-            p_value,
-        })
+        refused(fit).map(|(noise, p_value)| Self::NoiseUnexplained { noise, p_value })
     }
 }
 
@@ -452,9 +446,15 @@ impl Finding {
 /// ```
 #[must_use]
 pub fn unexplained_noise(fit: &Fit) -> Option<(String, &'static str)> {
-    let p_value = fit.noise_p_value.filter(|p_value| *p_value < UNEXPLAINED)?;
-    let observed = text::no_noise_model(&fit.law.to_string(), &fit.noise_in_words(), p_value);
+    let (noise, p_value) = refused(fit)?;
+    let observed = text::no_noise_model(&fit.law.to_string(), &noise, p_value);
     Some((observed, text::NOISE_UNEXPLAINED))
+}
+
+/// The closest noise model of a fit with its p-value, where it does not describe the residuals.
+fn refused(fit: &Fit) -> Option<(String, f64)> {
+    let p_value = fit.noise_p_value.filter(|p_value| *p_value < UNEXPLAINED)?;
+    Some((fit.noise_in_words(), p_value))
 }
 
 #[cfg(test)]

@@ -18,6 +18,10 @@
 //! count ([`Uncertainty`]). White residuals cost little: other kinds are tried where neighbours correlate, or where sums over blocks drift. Two
 //! kinds are always there, because residuals rarely rule them out: a random walk below white noise, as probable before as 0.3 times white
 //! noise alone, its steps evenly spaced in ln q; and for up to 40 samples AR(1) of any correlation (or in time), 1.5 times as probable.
+//! Of up to 150 samples that correlate a walk and an autoregression of one order more are tried whatever they show.
+//!
+//! Where innovations still correlate by the most likely model (Ljung and Box, p below 0.001), covariances are multiplied by the mean ratio of
+//! variances from sums over blocks to their own, where it is above 1.
 //!
 //! Where squares of residuals follow the fitted values or time, the noise has another size from sample to sample: V = σ² D R D with D the
 //! standard deviations, and R estimated from residuals over D; for R = 1 the squares of the residuals themselves stand for D² (HC3).
