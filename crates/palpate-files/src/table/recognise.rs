@@ -30,8 +30,9 @@ pub(crate) fn candidates(columns: &[ColumnInfo], quantity: Quantity) -> Vec<&Col
         && quantity == Quantity::Displacement
         && has_word(one, "deflection")
     {
-        // Beside the height of a microscope it is how far the cantilever bends, and the indentation is what lies between them.
-        return std::iter::once(one).chain(columns.iter().filter(|column| is_height(column))).collect();
+        // Beside the height of a microscope it is how far the cantilever bends, and the indentation is what lies between them: the height,
+        // which is proposed, is nearer to it.
+        return columns.iter().filter(|column| is_height(column)).chain([one]).collect();
     }
     // "Shear stress (sinusoidal)" is the shear stress with a remark: the one without goes before it.
     let plain = tied.iter().find(|plain| tied.iter().all(|other| remarks_on(other, plain)));
@@ -300,7 +301,7 @@ mod tests {
         assert_eq!(found(&[("Beam deflection", Some("mm"))], Quantity::Displacement), [1]);
         // With its height beside it nobody knows which is meant: the deflection of 40 nm was taken for the indentation.
         let table = [("Piezo", Some("um")), ("Deflection", Some("nm")), ("Force", Some("nN"))];
-        assert_eq!(found(&table, Quantity::Displacement), [2, 1]);
+        assert_eq!(found(&table, Quantity::Displacement), [1, 2]);
     }
 
     #[test]
