@@ -1,23 +1,15 @@
 //! One candidate fitted to a whole record.
 
-use super::displacement::from_displacement;
 use super::prepared::Prepared;
-use super::problem::Problem;
 use super::search::search;
-use super::systematic::systematic_effects;
-use super::{
-    CalibrateError, CalibrationData, CalibrationRange, Candidate, Material, MaterialParameter, MaterialParts,
-    MaterialUncertainty,
-};
+use super::uncertainty::AssessedMaterial;
+use super::{CalibrateError, CalibrationData, CalibrationRange, Candidate, Material, MaterialParts};
 use crate::analysis::HoldoutError;
-use crate::fit::{Assessed, Estimate, NoiseModel, Scale, Termination};
+use crate::fit::{NoiseModel, Termination};
 use crate::forecast::{Criteria, criteria};
 use crate::simulate::simulate_force;
-use crate::statistics::{normal_factor, rms};
+use crate::statistics::rms;
 use crate::watch::{Stages, Watch};
-
-/// Distance from the best value, as a logarithm, beyond which an end counts as open: a factor of a million.
-pub(super) const FARTHEST: f64 = 14.0;
 
 /// A candidate fitted to the whole of a record, ramps and holds alike.
 #[derive(Debug, Clone, PartialEq)]
@@ -95,141 +87,51 @@ pub fn calibrate(
     }
     let mut stages = Stages::new(format!("calibrating {candidate}"), watch);
     let found = search(&prepared, data, &mut stages)?;
-    let problem = Problem::of(&prepared, data);
+    let assessed = AssessedMaterial::new(&prepared, data, &found, confidence, &mut stages)?;
     let contact = prepared.contact(&found.theta).ok_or(CalibrateError::NoStiffness)?;
     let simulated = simulate_force(data.motion(), &contact, data.times())?;
-    // A parameter at its bound has no error, the others have theirs beside it.
-    let open: Vec<usize> = (0..free)
-        .filter(|i| found.theta[*i] > prepared.searched[*i].low && found.theta[*i] < prepared.searched[*i].high)
-        .collect();
-    let jacobian = problem.jacobian(&found.theta, &found.residuals);
-    if let (Some(missing), Some(factor)) =
-        (candidate.rate.needs(), jacobian.as_ref().and_then(|columns| columns.last()))
-        && factor.iter().all(|slope| *slope == 0.0)
-    {
-        return Err(CalibrateError::FactorUnseen { missing });
-    }
-    let gradients = gradients(&prepared, &found.theta, &open);
-    let (assessed, systematic) = match &jacobian {
-        Some(jacobian) => {
-            let columns: Vec<Vec<f64>> = open.iter().map(|i| jacobian[*i].clone()).collect();
-            let of_displacement = from_displacement(&problem, data, &found, &columns, &mut stages)?;
-            let systematic = systematic_effects(&problem, data, &found, (&columns, &gradients), &mut stages)?;
-            let mut assessed =
-                Assessed::of_columns(columns, (&data.forces()[..data.fitted()], found.residuals.clone()), confidence)?;
-            of_displacement.iter().for_each(|covariance| assessed.add(covariance));
-            (Some(assessed), systematic)
-        }
-        None => (None, Vec::new()),
-    };
-    let is_reported = assessed.as_ref().is_some_and(|assessed| assessed.uncertainty.is_some());
-    let termination = match found.termination {
-        Termination::Converged
-            if !is_reported && prepared.searched.iter().any(|searched| searched.name == "rate_2") =>
-        {
-            Termination::TermsMerged
-        }
-        Termination::Converged if !is_reported => Termination::Singular,
-        other => other,
-    };
-    let values = prepared.values(&found.theta);
-    let is_found = termination == Termination::Converged;
-    let estimate = |index: usize, name: &str| match &assessed {
-        Some(assessed) if is_found && !Material::is_given(candidate, name) => {
-            let of_instrument: f64 = systematic.iter().map(|effect| (values[index] * effect.logs[index]).powi(2)).sum();
-            let estimate = assessed.estimate(values[index], &gradients[index], Scale::Log);
-            let estimate = estimate.beside(of_instrument, normal_factor(confidence));
-            match estimate.interval {
-                Some((_, high)) if (high / values[index]).ln() < FARTHEST => estimate,
-                _ => Estimate::fixed(values[index]),
-            }
-        }
-        _ => Estimate::fixed(values[index]),
-    };
-    let names = Material::names(candidate, prepared.body.levels.len());
-    let parameters: Vec<MaterialParameter> = names
-        .into_iter()
-        .enumerate()
-        .map(|(index, (name, unit))| MaterialParameter {
-            estimate: estimate(index, &name),
-            name,
-            unit,
-        })
-        .collect();
-    let uncertainty = assessed.as_ref().filter(|_| is_found).and_then(|assessed| {
-        let uncertainty = assessed.uncertainty.as_ref()?;
-        let mut covariance = transformed(&uncertainty.covariance, &gradients);
-        systematic.iter().for_each(|effect| effect.add_to(&mut covariance));
-        Some(MaterialUncertainty {
-            confidence,
-            freedom: uncertainty.freedom,
-            covariance,
-            systematic: systematic.clone(),
-        })
-    });
-    let noise = assessed.as_ref().map_or(NoiseModel::White, |assessed| assessed.noise);
-    let largest = data.forces().iter().fold(0.0, |most: f64, force| most.max(force.abs()));
-    let holdout = (data.fitted() < data.times().len()).then(|| {
-        let rest = data.fitted()..;
-        let rmse = rms(&data.forces()[rest.clone()], &simulated[rest]);
-        HoldoutError {
-            rmse,
-            relative: rmse / largest,
-            samples: data.times().len() - data.fitted(),
-        }
-    });
     let rmse = (found.square / data.fitted() as f64).sqrt();
     stages.finish()?;
     Ok(Calibration {
         material: Material::new(MaterialParts {
             body: prepared.body.clone(),
             candidate,
-            parameters,
-            uncertainty,
+            parameters: assessed.parameters(),
+            uncertainty: assessed.uncertainty(),
             noise: (found.square / (data.fitted() - free) as f64).sqrt(),
             range: range(data),
         })?,
-        simulated,
         free_parameters: free,
         rmse,
-        relative: rmse / largest,
-        noise,
+        relative: rmse / largest(data.forces()),
+        noise: assessed.noise(),
         criteria: criteria(found.square, data.fitted() as f64, free as f64),
-        holdout,
-        termination,
+        holdout: holdout(data, &simulated),
+        termination: assessed.termination,
+        simulated,
         simulations: found.simulations,
         theta: found.theta,
     })
 }
 
-/// Derivatives of the logarithms of the parameters by the open searched ones: rows of parameters.
-fn gradients(prepared: &Prepared, theta: &[f64], open: &[usize]) -> Vec<Vec<f64>> {
-    /// Both are logarithms: all but the layer thickness are straight.
-    const STEP: f64 = 1e-5;
-    let logs = |i: usize, by: f64| -> Vec<f64> {
-        let mut beside = theta.to_vec();
-        beside[i] += by;
-        prepared.values(&beside).into_iter().map(f64::ln).collect()
-    };
-    let columns: Vec<(Vec<f64>, Vec<f64>)> = open.iter().map(|i| (logs(*i, -STEP), logs(*i, STEP))).collect();
-    let count = prepared.values(theta).len();
-    let row = |k: usize| columns.iter().map(|(low, high)| (high[k] - low[k]) / (2.0 * STEP)).collect();
-    (0..count).map(row).collect()
+/// The error behind the fitted part.
+fn holdout(data: &CalibrationData, simulated: &[f64]) -> Option<HoldoutError> {
+    let forces = &data.forces()[data.fitted()..];
+    (!forces.is_empty()).then(|| {
+        let rmse = rms(forces, &simulated[data.fitted()..]);
+        HoldoutError {
+            rmse,
+            relative: rmse / largest(data.forces()),
+            samples: forces.len(),
+        }
+    })
 }
 
-/// G C Gᵀ.
-fn transformed(covariance: &[Vec<f64>], gradients: &[Vec<f64>]) -> Vec<Vec<f64>> {
-    let product = |a: &[f64], b: &[f64]| -> f64 {
-        let row = |(entry, by): (&Vec<f64>, &f64)| by * entry.iter().zip(b).map(|(c, g)| c * g).sum::<f64>();
-        covariance.iter().zip(a).map(row).sum()
-    };
-    let entry = |i: usize, j: usize| product(&gradients[i.min(j)], &gradients[i.max(j)]);
-    let size = gradients.len();
-    (0..size).map(|i| (0..size).map(|j| entry(i, j)).collect()).collect()
+fn largest(forces: &[f64]) -> f64 {
+    forces.iter().fold(0.0, |most, force| most.max(force.abs()))
 }
 
 /// What the fitted part of the record has shown.
 fn range(data: &CalibrationData) -> CalibrationRange {
-    let largest_force = data.forces()[..data.fitted()].iter().fold(0.0, |most: f64, force| most.max(force.abs()));
-    CalibrationRange::of(data.motion(), data.times()[data.fitted() - 1], largest_force)
+    CalibrationRange::of(data.motion(), data.times()[data.fitted() - 1], largest(&data.forces()[..data.fitted()]))
 }

@@ -8,8 +8,7 @@
 //! | `candidate.rs` | a law of the layer and one of the equilibrium force | (10), (11) |
 //! | `prepared.rs` | the parameters of a candidate that are searched | |
 //! | `search.rs`, `problem.rs` | a grid, then damped steps | |
-//! | `displacement.rs` | what the noise of the displacement adds to their errors | |
-//! | `systematic.rs` | what the uncertainty of the instrument and of the body adds |
+//! | `uncertainty/` | their errors and intervals | |
 //! | `fit.rs` | from there to parameters with intervals | |
 //! | `profile.rs` | intervals by the profile of the residual sum of squares | |
 //! | `material.rs` | the body with its parameters | |
@@ -20,7 +19,6 @@
 
 mod candidate;
 mod data;
-mod displacement;
 mod error;
 mod extrapolation;
 mod fit;
@@ -32,7 +30,7 @@ mod profile;
 mod range;
 mod search;
 mod several;
-mod systematic;
+mod uncertainty;
 
 pub use candidate::{Candidate, EquilibriumLaw, RateLaw};
 pub use data::CalibrationData;

@@ -12,9 +12,10 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::fit::{Calibration, FARTHEST};
+use super::fit::Calibration;
 use super::prepared::Prepared;
 use super::problem::{Held, Problem, sum_of_squares};
+use super::uncertainty::FARTHEST;
 use super::{CalibrateError, CalibrationData, Material, MaterialParameter};
 use crate::fit::Interval;
 use crate::watch::{Cancelled, Stages, Watch};

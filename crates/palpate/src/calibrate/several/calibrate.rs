@@ -8,9 +8,9 @@ use super::specimen::{Another, range_of};
 use super::spread::{Spread, one_value_p};
 use super::start::{is_determined, log_of, log_variance, start};
 use super::{SeveralError, Sharing};
-use crate::calibrate::fit::FARTHEST;
 use crate::calibrate::prepared::Prepared;
 use crate::calibrate::problem::sum_of_squares;
+use crate::calibrate::uncertainty::FARTHEST;
 use crate::calibrate::{
     Calibration, CalibrationData, Candidate, EquilibriumLaw, Material, MaterialParameter, MaterialParts,
     MaterialUncertainty, SystematicEffect, calibrate,

@@ -13,8 +13,8 @@
 use super::SeveralError;
 use super::joint::{Joint, Optimum};
 use crate::calibrate::CalibrationData;
-use crate::calibrate::displacement::from_displacement;
 use crate::calibrate::problem::{Found, dot, sum_of_squares};
+use crate::calibrate::uncertainty::from_displacement;
 use crate::fit::{Assessed, NoiseModel, Termination};
 use crate::optimise::Cholesky;
 use crate::watch::Stages;

@@ -1,8 +1,8 @@
 //! What the uncertainty of the instrument and of the body adds to the errors of the parameters.
 
-use super::prepared::Prepared;
-use super::problem::{Found, Problem, Response, dot};
-use super::{CalibrationData, MaterialUnit, SystematicEffect};
+use crate::calibrate::prepared::Prepared;
+use crate::calibrate::problem::{Found, Problem, Response, dot};
+use crate::calibrate::{CalibrationData, MaterialUnit, SystematicEffect};
 use crate::instrument::{Deviation, InstrumentInput, InstrumentQuantity};
 use crate::parallel::for_each;
 use crate::simulate::Motion;

@@ -1,7 +1,7 @@
 //! What the noise of the measured displacement adds to the errors of the parameters.
 
-use super::CalibrationData;
-use super::problem::{Found, Problem, Response};
+use crate::calibrate::CalibrationData;
+use crate::calibrate::problem::{Found, Problem, Response};
 use crate::simulate::Motion;
 use crate::watch::{Cancelled, Stages};
 
@@ -13,7 +13,7 @@ const STEP: f64 = 1e-4;
 
 /// Covariance of the searched parameters `open` from the errors of the knots of the motion: A C Aᵀ with C the covariance of the knots,
 /// A = (JᵀJ)⁻¹ Jᵀ K, and K the derivatives of the simulated forces by the knots. `None` for a motion that is exact.
-pub(super) fn from_displacement(
+pub(crate) fn from_displacement(
     problem: &Problem<'_>,
     data: &CalibrationData,
     found: &Found,

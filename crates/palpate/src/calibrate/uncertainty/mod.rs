@@ -1,0 +1,14 @@
+//! Errors and intervals of a material.
+//!
+//! | file | what |
+//! |---|---|
+//! | `assessed.rs` | parameters with their errors, from the noise and all that follows |
+//! | `displacement.rs` | what the noise of the displacement adds |
+//! | `systematic.rs` | what the uncertainty of the instrument and of the body adds |
+
+mod assessed;
+mod displacement;
+mod systematic;
+
+pub(super) use assessed::{AssessedMaterial, FARTHEST};
+pub(super) use displacement::from_displacement;
