@@ -1,10 +1,9 @@
 //! Which noise left the residuals of a fit.
 
 use super::autoregression::{MOST_ORDER, innovations};
-use super::lagged::{Lagged, first_order, partial};
-use super::likelihood::{Kind, Likelihood, Slow};
-use super::markov::Beside;
-use super::model::{Lags, Likely, Noise, NoiseModel};
+use super::likelihood::{Beside, Kind, Lagged, Likelihood, Slow, first_order};
+use super::model::{Likely, Noise, NoiseModel};
+use super::residuals::Residuals;
 use crate::statistics::dot;
 use crate::vector::block_sums;
 
@@ -38,17 +37,17 @@ impl Noise {
     /// unevenly: models have their unit.
     ///
     /// Of a long series stretches, evenly spread, say how it correlates; its size comes from all samples.
-    pub(crate) fn of(jacobian: &[&[f64]], residuals: &[f64], lags: &Lags, times: Option<&[f64]>) -> Self {
+    pub(crate) fn of(jacobian: &[&[f64]], left: &Residuals<'_>, times: Option<&[f64]>) -> Self {
+        let (residuals, partial) = (left.values, &left.partial);
         let (samples, parameters) = (residuals.len(), jacobian.len());
-        let white = Self::white(lags, (samples - parameters) as f64);
-        if samples < 8 || lags.square <= f64::MIN_POSITIVE * 1e20 {
+        let white = Self::white(left.square / (samples - parameters) as f64);
+        if samples < 8 || left.square <= f64::MIN_POSITIVE * 1e20 {
             return white;
         }
-        let (partial, lasts) = partial(lags, samples, parameters);
-        let is_slow = lasts
+        let is_slow = left.lasts
             || match partial.is_empty() {
                 true => drifts(residuals, parameters),
-                false => drifts(&innovations(residuals, &partial), parameters),
+                false => drifts(&innovations(residuals, partial), parameters),
             };
         let is_short = samples <= STRETCHES * STRETCH;
         if samples <= FEW {
@@ -65,7 +64,7 @@ impl Noise {
                 length: samples,
                 samples,
             };
-            return series.noise(&partial, is_slow, times).unwrap_or(white);
+            return series.noise(partial, is_slow, times).unwrap_or(white);
         }
         let few: Vec<Vec<f64>> = jacobian.iter().copied().chain([residuals]).map(stretches).collect();
         let columns: Vec<&[f64]> = few[..parameters].iter().map(Vec::as_slice).collect();
@@ -76,7 +75,7 @@ impl Noise {
             length: STRETCH,
             samples,
         };
-        let Some(mut noise) = series.noise(&partial, is_slow, None) else {
+        let Some(mut noise) = series.noise(partial, is_slow, None) else {
             return white;
         };
         let scale = white.variance(samples) / (dot(left, left) / (left.len() - parameters) as f64);
@@ -279,7 +278,7 @@ mod tests {
     use super::*;
     use crate::fit::NoiseModel;
     use crate::fit::noise::autoregression::Autoregression;
-    use crate::fit::noise::columns::Columns;
+    use crate::fit::noise::covariance::Columns;
     use crate::fit::noise::likelihood::Likelihood;
     use crate::optimise::Cholesky;
     use crate::vector::cross_products;
@@ -329,7 +328,7 @@ mod tests {
     fn found(noise: &[f64]) -> Noise {
         let columns = line(noise.len());
         let left = without_line(noise);
-        Noise::of(&[&columns[0], &columns[1]], &left, &Lags::of(&left), None)
+        Noise::of(&[&columns[0], &columns[1]], &Residuals::of(&left, 2), None)
     }
 
     /// All correlations, row by row, in series of `length` samples.
@@ -530,7 +529,7 @@ mod tests {
 
     #[test]
     fn residuals_that_are_nothing_are_white() {
-        let nothing = Noise::of(&[&[1.0; 20]], &[0.0; 20], &Lags::of(&[0.0; 20]), None);
+        let nothing = Noise::of(&[&[1.0; 20]], &Residuals::of(&[0.0; 20], 1), None);
         assert_eq!((nothing.model, nothing.variance(20)), (NoiseModel::White, 0.0));
         assert_eq!(NoiseModel::White.effective_samples(20), 20.0);
     }

@@ -26,39 +26,27 @@
 //! Where squares of residuals follow the fitted values or time, the noise has another size from sample to sample: V = σ² D R D with D the
 //! standard deviations, and R estimated from residuals over D; for R = 1 the squares of the residuals themselves stand for D² (HC3).
 //!
-//! | file | what |
+//! | part | what |
 //! |---|---|
-//! | `model.rs` | how noise correlates; a noise that was found, lags of residuals |
+//! | `model.rs` | how noise correlates; a noise that was found |
+//! | `residuals.rs` | residuals with their partial autocorrelations |
 //! | `autoregression.rs` | autoregressions: coefficients, predictions, products |
-//! | `filter.rs` | Kalman's filter of noise with slow parts |
-//! | `rows.rs` | sums over residuals and columns, as they are or filtered |
-//! | `columns.rs` | products of the columns of a fit with the correlations between them |
-//! | `likelihood.rs` | the restricted likelihood, and noise with slow parts |
-//! | `lagged.rs` | that of autoregressions |
-//! | `markov.rs` | white noise beside a random walk, or beside noise in time |
+//! | `likelihood/` | the restricted likelihood, and the best noise of each kind |
 //! | `estimation.rs` | which noise left the residuals |
 //! | `portmanteau.rs` | whether it accounts for them |
-//! | `mixture.rs` | intervals of many numbers where several models are likely |
-//! | `blocks.rs` | how it sums up over blocks of neighbours, where no model describes it |
 //! | `spread.rs` | noise whose size changes along the hold |
-//! | `uncertainty.rs` | errors and intervals that follow |
+//! | `covariance/` | covariances, errors and intervals that follow |
 
 mod autoregression;
-mod blocks;
-mod columns;
+mod covariance;
 mod estimation;
-mod filter;
-mod lagged;
 mod likelihood;
-mod markov;
-mod mixture;
-pub(crate) mod model;
+mod model;
 mod portmanteau;
-mod rows;
+mod residuals;
 mod spread;
-pub(crate) mod uncertainty;
 
+pub(crate) use covariance::{Assessed, Scale, Trust, variance_of};
+pub use covariance::{ModelCovariance, Uncertainty};
 pub use model::NoiseModel;
 pub(crate) use portmanteau::UNEXPLAINED;
-pub(crate) use uncertainty::{Assessed, Scale, Trust};
-pub use uncertainty::{ModelCovariance, Uncertainty};

@@ -6,7 +6,6 @@ use serde::{Deserialize, Serialize};
 use smallvec::SmallVec;
 
 use super::autoregression::{Autoregression, MOST_ORDER};
-use crate::statistics::dot;
 
 /// Most parts of a noise.
 pub(crate) const MOST_PARTS: usize = 8;
@@ -201,28 +200,6 @@ impl NoiseModel {
 /// Shares in the variance and correlations of neighbours.
 pub(crate) type Parts = SmallVec<[(f64, f64); MOST_PARTS]>;
 
-/// Sums of products of residuals with those after them.
-pub(crate) struct Lags {
-    /// Σ rᵢ².
-    pub(crate) square: f64,
-    /// Σ rᵢ rᵢ₊ₖ over it, for k from 1.
-    pub(crate) correlations: [f64; MOST_ORDER],
-}
-
-impl Lags {
-    pub(crate) fn of(residuals: &[f64]) -> Self {
-        let square = dot(residuals, residuals);
-        let correlation = |lag: usize| match residuals.get(lag..) {
-            Some(later) if square > 0.0 => (dot(later, &residuals[..later.len()]) / square).clamp(-1.0, 1.0),
-            _ => 0.0,
-        };
-        Self {
-            square,
-            correlations: std::array::from_fn(|index| correlation(index + 1)),
-        }
-    }
-}
-
 /// The noise of a fit: models of it, and how likely each is.
 #[derive(Debug, Clone)]
 pub(crate) struct Noise {
@@ -242,10 +219,9 @@ pub(crate) struct Likely {
 }
 
 impl Noise {
-    /// White noise that left these residuals.
-    pub(crate) fn white(lags: &Lags, freedom: f64) -> Self {
-        let model = NoiseModel::White;
-        let (variance, probability) = (lags.square / freedom, 1.0);
+    /// White noise of this variance.
+    pub(crate) fn white(variance: f64) -> Self {
+        let (model, probability) = (NoiseModel::White, 1.0);
         Self {
             model,
             likely: vec![Likely {

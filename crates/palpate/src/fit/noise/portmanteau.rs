@@ -88,13 +88,14 @@ fn innovations(residuals: &[f64], predictor: &[f64]) -> Vec<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::fit::noise::model::{Lags, Noise};
+    use crate::fit::noise::model::Noise;
+    use crate::fit::noise::residuals::Residuals;
     use crate::test_problems::Rng;
 
     fn found(noise: &[f64]) -> f64 {
         let mean = noise.iter().sum::<f64>() / noise.len() as f64;
         let left: Vec<f64> = noise.iter().map(|value| value - mean).collect();
-        let model = Noise::of(&[&vec![1.0; noise.len()]], &left, &Lags::of(&left), None).model;
+        let model = Noise::of(&[&vec![1.0; noise.len()]], &Residuals::of(&left, 1), None).model;
         p_value(&left, model).unwrap()
     }
 

@@ -17,7 +17,7 @@
 mod path;
 
 use super::quantity::Quantity;
-use crate::fit::noise::uncertainty::variance_of;
+use crate::fit::noise::variance_of;
 use crate::fit::{
     Condensed, Fit, FitError, Fitted, Interval, IntervalMethod, LawOptions, Parameter, ParameterKind, ParameterRole,
     ParameterUnit, ProfileCurves, RedundantTerm, Samples, Scale, Uncertainty, condense,

@@ -1,14 +1,14 @@
 //! White noise beside one Markov process: a random walk, or noise whose correlation fades in time.
 
 use super::filter::MarkovStep;
-use super::likelihood::{Kind, Likelihood};
-use super::model::NoiseModel;
+use super::kind::{Kind, Likelihood};
 use super::rows::Rows;
+use crate::fit::noise::model::NoiseModel;
 use crate::optimise::{Few, minimise};
 use crate::vector::{LANES, block_sums, cross_products, normal_equations, shifted};
 
 /// The covariance of a noise over σ²: y_i = x_i + v_i, where v is white, and x_i is what is left of x_{i−1} and something new.
-pub(super) struct Markov {
+pub(crate) struct Markov {
     /// What is left of the process from the sample before.
     kept: Vec<f64>,
     /// Variances of the process.
@@ -19,7 +19,7 @@ pub(super) struct Markov {
 
 impl Markov {
     /// Noise of this correlation time at these times, with this share in the variance.
-    pub(super) fn in_time(correlation_time: f64, share: f64, times: &[f64]) -> Self {
+    pub(crate) fn in_time(correlation_time: f64, share: f64, times: &[f64]) -> Self {
         let kept = |pair: &[f64]| ((pair[0] - pair[1]) / correlation_time).exp();
         Self {
             kept: std::iter::once(0.0).chain(times.windows(2).map(kept)).collect(),
@@ -57,13 +57,13 @@ impl Markov {
     }
 
     /// JᵀF with F the products of the process at each sample with all before it, and half of that with itself.
-    pub(super) fn across(&self, rows: &Rows) -> Vec<f64> {
+    pub(crate) fn across(&self, rows: &Rows) -> Vec<f64> {
         rows.with_process_before(&self.kept, &self.variances)
     }
 }
 
 /// Mean times between samples from the first to this one.
-pub(super) fn steps_since(sample: usize, times: Option<&[f64]>) -> f64 {
+pub(crate) fn steps_since(sample: usize, times: Option<&[f64]>) -> f64 {
     match times {
         Some(times) => {
             let last = times.len() - 1;
@@ -80,7 +80,7 @@ fn correlation_times(times: &[f64]) -> (f64, f64) {
 }
 
 /// The model of this correlation time, in the unit of these times.
-pub(super) fn in_time(correlation_time_s: f64, share: f64, times: &[f64]) -> NoiseModel {
+pub(crate) fn in_time(correlation_time_s: f64, share: f64, times: &[f64]) -> NoiseModel {
     let (mut sum, mut before) = (0.0, 0.0);
     for pair in times.windows(2) {
         before = ((pair[0] - pair[1]) / correlation_time_s).exp() * (before + 1.0);
@@ -95,7 +95,7 @@ pub(super) fn in_time(correlation_time_s: f64, share: f64, times: &[f64]) -> Noi
 }
 
 /// Residuals beside the columns of a fit, for noise that is white beside a Markov process.
-pub(super) struct Beside<'a> {
+pub(crate) struct Beside<'a> {
     times: Option<&'a [f64]>,
     samples: usize,
     /// Neighbours that are taken together.
@@ -109,7 +109,7 @@ pub(super) struct Beside<'a> {
 
 impl<'a> Beside<'a> {
     /// Means of as many neighbours are taken as leave at most `most` of them.
-    pub(super) fn new(jacobian: &[&[f64]], residuals: &[f64], times: Option<&'a [f64]>, most: usize) -> Self {
+    pub(crate) fn new(jacobian: &[&[f64]], residuals: &[f64], times: Option<&'a [f64]>, most: usize) -> Self {
         let columns: Vec<&[f64]> = jacobian.iter().copied().chain([residuals]).collect();
         let samples = residuals.len();
         let together = samples.div_ceil(most);
@@ -169,7 +169,7 @@ impl<'a> Beside<'a> {
     }
 
     /// Noise whose correlation fades in time, alone or beside white noise, about the best.
-    pub(super) fn in_time(&self, alone: bool, deviance: f64) -> Option<Kind> {
+    pub(crate) fn in_time(&self, alone: bool, deviance: f64) -> Option<Kind> {
         let times = self.times.filter(|_| self.together == 1)?;
         let (low, high) = correlation_times(times);
         let model = |x: &[f64]| {
@@ -201,12 +201,12 @@ impl<'a> Beside<'a> {
     }
 
     /// White noise alone.
-    pub(super) fn white(&self) -> Option<Likelihood> {
+    pub(crate) fn white(&self) -> Option<Likelihood> {
         Likelihood::of(&self.whole, 0.0, self.samples)
     }
 
     /// Noise whose correlation fades in time, of correlation times evenly spaced in ln; none where samples are spaced evenly.
-    pub(super) fn fading(&self) -> Vec<(Likelihood, NoiseModel)> {
+    pub(crate) fn fading(&self) -> Vec<(Likelihood, NoiseModel)> {
         let Some(times) = self.times else { return Vec::new() };
         let (low, high) = correlation_times(times);
         let correlation_times = (0..=12).map(|i| (low + (high - low) * f64::from(i) / 12.0).exp());
@@ -216,7 +216,7 @@ impl<'a> Beside<'a> {
 
     /// Walks of sizes evenly spaced in ln, and their part of the sizes there may be: from what no series of this length could show to steps of
     /// three white deviations. Where one of them alone is likely, those about it; none where a few show that none comes near this deviance.
-    pub(super) fn walks(&self, deviance: f64) -> (Vec<(Likelihood, NoiseModel)>, f64) {
+    pub(crate) fn walks(&self, deviance: f64) -> (Vec<(Likelihood, NoiseModel)>, f64) {
         /// Largest step.
         const LARGEST: f64 = 3.0;
         /// From one ln of a step to the next.
@@ -265,14 +265,14 @@ impl<'a> Beside<'a> {
 }
 
 #[cfg(test)]
-pub(super) mod tests {
+pub(crate) mod tests {
     use super::*;
     use crate::optimise::Cholesky;
     use crate::statistics::dot;
     use crate::test_problems::Rng;
 
     /// R of noise, row by row.
-    pub(in super::super) fn dense(model: NoiseModel, times: &[f64]) -> Vec<f64> {
+    pub(crate) fn dense(model: NoiseModel, times: &[f64]) -> Vec<f64> {
         let count = times.len();
         let entry = |i: usize, j: usize| {
             let (first, own) = (i.min(j), f64::from(u8::from(i == j)));

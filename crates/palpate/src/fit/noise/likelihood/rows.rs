@@ -67,7 +67,7 @@ impl Rows {
     }
 
     /// ZᵀF with F_i = Σ_k cov(x_i, x_k) Z_k over the samples k before, and half of that with itself.
-    pub(super) fn with_process_before(&self, left_over: &[f64], variances: &[f64]) -> Vec<f64> {
+    pub(crate) fn with_process_before(&self, left_over: &[f64], variances: &[f64]) -> Vec<f64> {
         self.tiled(|left, right| {
             dispatch!(level(), simd => {
                 let (mut before, mut at) = (f64x8::splat(simd, 0.0), left_over.iter().zip(variances));

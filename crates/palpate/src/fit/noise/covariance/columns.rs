@@ -2,10 +2,9 @@
 
 use std::cell::OnceCell;
 
-use super::autoregression::quadratic;
-use super::markov::{Markov, steps_since};
-use super::model::NoiseModel;
-use super::rows::Rows;
+use crate::fit::noise::autoregression::quadratic;
+use crate::fit::noise::likelihood::{Markov, Rows, steps_since};
+use crate::fit::noise::model::NoiseModel;
 use crate::vector::cross_products;
 
 /// The columns of a Jacobian J, ready for products with correlations between them.
@@ -122,8 +121,7 @@ impl<'a> Columns<'a> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::fit::noise::markov::in_time;
-    use crate::fit::noise::markov::tests::dense;
+    use crate::fit::noise::likelihood::{dense, in_time};
     use crate::statistics::dot;
 
     #[test]

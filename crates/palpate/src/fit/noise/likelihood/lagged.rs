@@ -1,45 +1,10 @@
 //! The restricted likelihood of autoregressions.
 
-use super::autoregression::{Autoregression, MOST_ORDER};
-use super::likelihood::{Kind, Likelihood, slowest};
-use super::model::{Lags, NoiseModel};
+use super::kind::{Kind, Likelihood, slowest};
+use crate::fit::noise::autoregression::{Autoregression, MOST_ORDER};
+use crate::fit::noise::model::NoiseModel;
 use crate::optimise::{Few, Square, minimise};
 use crate::vector::cross_products;
-
-/// Fall of N ln σ² that a sample to look back at has to bring before it is tried: the last one, and each before it.
-const EVIDENCE: [f64; 2] = [4.0, 7.0];
-
-/// The partial autocorrelations of residuals, as many as speak for themselves; and whether those behind are above 0 together, by two standard
-/// deviations: then noise lasts longer than such an autoregression would.
-///
-/// Each fitted parameter pulls the correlations of residuals down by some 1/N, that of a sample with itself too: what adds it to the others
-/// alone makes correlations beyond 1 of smooth noise.
-pub(crate) fn partial(lags: &Lags, samples: usize, parameters: usize) -> (Few, bool) {
-    /// Partial autocorrelations behind the first that are looked at together.
-    const BEHIND: usize = 3;
-    let taken = parameters as f64 / samples as f64;
-    let lags = lags.correlations.map(|correlation| (correlation + taken) / (1.0 + taken));
-    let (mut kept, mut variance) = (Few::new(), 1.0);
-    let (mut all, mut best) = (Few::new(), (0.0, 0));
-    for (index, correlation) in lags.iter().enumerate() {
-        let predicted: f64 = kept.iter().zip(lags[..index].iter().rev()).map(|(by, r)| by * r).sum();
-        let by = (correlation - predicted) / variance;
-        if by.is_nan() || by.abs() >= 1.0 || samples <= 4 * (index + 1) {
-            break;
-        }
-        kept = kept.iter().zip(kept.iter().rev()).map(|(ahead, back)| ahead - by * back).chain([by]).collect();
-        variance *= 1.0 - by * by;
-        all.push(by);
-        let price = samples as f64 * variance.ln() + EVIDENCE[0] + EVIDENCE[1] * index as f64;
-        if price < best.0 {
-            best = (price, all.len());
-        }
-    }
-    let behind = all.iter().skip(best.1.max(1)).take(BEHIND);
-    let lasts = behind.clone().sum::<f64>() > 2.0 * (behind.len() as f64 / samples as f64).sqrt();
-    all.truncate(best.1);
-    (all, lasts)
-}
 
 /// The model of these partial autocorrelations.
 fn model(partial: &[f64]) -> NoiseModel {

@@ -1,0 +1,74 @@
+//! From the covariance of a noise to that of the parameters of a fit.
+
+use super::blocks::by_blocks;
+use super::columns::Columns;
+use crate::fit::NoiseModel;
+use crate::fit::noise::spread::by_residuals;
+
+/// A fit by least squares, ready for the covariances (JᵀJ)⁻¹ JᵀVJ (JᵀJ)⁻¹ of its parameters in the caller's units.
+pub(super) struct Sandwich<'a> {
+    /// J; the last of its columns are bare derivatives, which count times the amplitudes.
+    pub(super) columns: &'a [&'a [f64]],
+    pub(super) amplitudes: &'a [f64],
+    /// (JᵀJ)⁻¹.
+    pub(super) inverse: &'a [f64],
+    /// What brings each parameter to the caller's unit.
+    pub(super) units: &'a [f64],
+    pub(super) residuals: &'a [f64],
+    /// s² of the loss over that of squares: a robust loss has its own, and the noise of its residuals stands in the same ratio to it.
+    pub(super) ratio: f64,
+    /// Columns as noise weighs them, with products of them; where the noise is not white.
+    pub(super) correlated: Option<&'a Columns<'a>>,
+    /// Whether the size of the noise changes along the samples.
+    pub(super) is_uneven: bool,
+}
+
+impl Sandwich<'_> {
+    /// For noise of this model and variance; squares of the residuals stand for white noise whose size changes.
+    pub(super) fn covariance(&self, model: NoiseModel, variance: f64) -> Vec<Vec<f64>> {
+        match self.correlated {
+            _ if model == NoiseModel::White && self.is_uneven => {
+                let filling = by_residuals(self.columns, self.amplitudes, self.inverse, self.residuals);
+                self.filled(&filling, self.ratio)
+            }
+            Some(columns) if model != NoiseModel::White => {
+                self.filled(&with_amplitudes(columns.quadratic(model), self.amplitudes), self.ratio * variance)
+            }
+            _ => self.scaled(self.inverse, self.ratio * variance),
+        }
+    }
+
+    /// From sums over blocks of neighbours, whatever the model of the noise.
+    pub(super) fn by_blocks(&self) -> Option<Vec<Vec<f64>>> {
+        let filling = by_blocks(self.columns, self.residuals)?;
+        Some(self.filled(&with_amplitudes(filling, self.amplitudes), self.ratio))
+    }
+
+    /// (JᵀJ)⁻¹ M (JᵀJ)⁻¹ times a variance.
+    fn filled(&self, filling: &[f64], variance: f64) -> Vec<Vec<f64>> {
+        let size = self.units.len();
+        let product = |a: &[f64], b: &[f64]| -> Vec<f64> {
+            let entry = |i: usize, j: usize| (0..size).map(|k| a[i * size + k] * b[k * size + j]).sum();
+            (0..size * size).map(|at| entry(at / size, at % size)).collect()
+        };
+        self.scaled(&product(&product(self.inverse, filling), self.inverse), variance)
+    }
+
+    /// A matrix times a variance, in the caller's units.
+    pub(super) fn scaled(&self, matrix: &[f64], variance: f64) -> Vec<Vec<f64>> {
+        let (units, size) = (self.units, self.units.len());
+        let entry = |i: usize, j: usize| matrix[i * size + j] * variance * units[i] * units[j];
+        (0..size).map(|i| (0..size).map(|j| entry(i, j)).collect()).collect()
+    }
+}
+
+/// JᵀRJ from that of columns and bare derivatives: the latter count times their amplitudes.
+fn with_amplitudes(mut product: Vec<f64>, amplitudes: &[f64]) -> Vec<f64> {
+    let size = product.len().isqrt();
+    let linear = size - amplitudes.len();
+    let factor = |i: usize| if i < linear { 1.0 } else { amplitudes[i - linear] };
+    for (at, entry) in product.iter_mut().enumerate() {
+        *entry *= factor(at / size) * factor(at % size);
+    }
+    product
+}

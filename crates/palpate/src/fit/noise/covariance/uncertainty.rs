@@ -1,0 +1,106 @@
+//! Covariances of parameters, and what intervals are made of.
+
+use serde::{Deserialize, Serialize};
+
+use super::sandwich::Sandwich;
+use crate::fit::noise::model::{Likely, Noise};
+use crate::optimise::Effort;
+use crate::statistics::mean;
+use crate::watch::Cancelled;
+
+/// How a parameter is brought to its interval.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Scale {
+    /// Symmetric about the value.
+    Linear,
+    /// Symmetric about ln of the value, for rates and exponents.
+    Log,
+}
+
+/// The variance of Σ gᵢ pᵢ where p has this covariance: gᵀ C g.
+pub(crate) fn variance_of(gradient: &[f64], covariance: &[Vec<f64>]) -> f64 {
+    let row = |row: &Vec<f64>| row.iter().zip(gradient).map(|(entry, g)| entry * g).sum::<f64>();
+    covariance.iter().zip(gradient).map(|(entries, g)| g * row(entries)).sum()
+}
+
+/// What intervals are made of: covariances of the searched parameters for noise that correlates.
+///
+/// The fit is by least squares whatever the noise, so with J the Jacobian and V = σ² R the covariance of the noise that of
+/// the parameters is the sandwich (JᵀJ)⁻¹ JᵀVJ (JᵀJ)⁻¹. V is itself an estimate: models m that may have left the residuals have
+/// probabilities w_m, and an interval of coverage c is ±h with
+///
+/// ```text
+/// Σ_m w_m T(h/√v_m) = (1 + c)/2
+/// ```
+///
+/// where v_m is the parameter's variance for model m, and T the distribution of Student's t of N − p degrees of freedom.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Uncertainty {
+    /// Coverage of the intervals.
+    pub confidence: f64,
+    /// N − p.
+    pub freedom: f64,
+    /// Standard deviation of the noise in the unit of the signal; of a sample of mean weight if they have weights.
+    pub deviation: f64,
+    /// Covariance in the order of `parameters`: the mean over the models.
+    pub covariance: Vec<Vec<f64>>,
+    /// Models of the noise, if there are several.
+    pub models: Vec<ModelCovariance>,
+}
+
+/// What follows from one model of the noise.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct ModelCovariance {
+    /// w_m.
+    pub probability: f64,
+    /// Covariance of the parameters if this is the noise.
+    pub covariance: Vec<Vec<f64>>,
+}
+
+impl Uncertainty {
+    /// That of a fit whose residuals are this noise.
+    pub(super) fn of_noise(
+        fit: &Sandwich<'_>,
+        noise: &Noise,
+        (confidence, unit): (f64, f64),
+        effort: &Effort<'_>,
+    ) -> Result<Self, Cancelled> {
+        let of_model = |likely: &Likely| {
+            effort.hear()?;
+            Ok(ModelCovariance {
+                probability: likely.probability,
+                covariance: fit.covariance(likely.model, likely.variance),
+            })
+        };
+        let mut models: Vec<ModelCovariance> = noise.likely.iter().map(of_model).collect::<Result<_, Cancelled>>()?;
+        let size = fit.units.len();
+        let mut covariance = vec![vec![0.0; size]; size];
+        for model in &models {
+            for (sums, row) in covariance.iter_mut().zip(&model.covariance) {
+                sums.iter_mut().zip(row).for_each(|(sum, entry)| *sum += model.probability * entry);
+            }
+        }
+        if models.len() == 1 {
+            models.clear();
+        }
+        Ok(Self {
+            confidence,
+            freedom: (fit.residuals.len() - size) as f64,
+            deviation: noise.variance(fit.residuals.len()).sqrt() * unit,
+            covariance,
+            models,
+        })
+    }
+
+    /// Multiplies covariances by the mean ratio of these variances to those there are, where it is above 1.
+    pub(super) fn widen(&mut self, covariance: &[Vec<f64>]) {
+        let variances = |rows: &[Vec<f64>]| -> Vec<f64> { (0..rows.len()).map(|i| rows[i][i]).collect() };
+        let pairs = variances(covariance).into_iter().zip(variances(&self.covariance));
+        let ratio = mean(&pairs.map(|(other, own)| other / own).collect::<Vec<f64>>());
+        if ratio > 1.0 && ratio.is_finite() {
+            let models = self.models.iter_mut().map(|model| &mut model.covariance);
+            let entries = std::iter::once(&mut self.covariance).chain(models).flatten().flatten();
+            entries.for_each(|entry| *entry *= ratio);
+        }
+    }
+}
