@@ -1,9 +1,8 @@
 //! A whole record to one set of parameters: a material.
 
-use palpate::analysis::{AnalysisOptions, suspicious_signs, wrong_zero};
+use palpate::analysis::AnalysisOptions;
 use palpate::calibrate::{CalibrateError, CalibrationData, Candidate, EquilibriumLaw, RateLaw, calibrate, profile};
 use palpate::laws::Law;
-use palpate::segment::ContactChoice;
 use palpate::watch::Watch;
 use palpate_files::description::{MaterialFile, MaterialOrigin};
 use palpate_report::document::{CalibrationDocument, Software};
@@ -168,15 +167,8 @@ impl Calibrate {
             rows,
             profiles,
         };
-        let as_recorded = options.touch == ContactChoice::AsRecorded;
-        let shifted = as_recorded.then(|| wrong_zero(&measured)).flatten();
-        let doubts = suspicious_signs(&measured).into_iter().chain(shifted);
-        let doubts = doubts.flat_map(|found| {
-            let doubt = format!("{}: {}; {}", found.observation(), found.meaning(), found.remedy());
-            [Some(doubt), Measurement::sign_note(&turned, &found)]
-        });
-        let doubts = doubts.flatten();
-        let notes = doubts.chain(few).collect();
+        let signs = record.data.findings().iter().filter_map(|found| Measurement::sign_note(&turned, found));
+        let notes = signs.chain(few).collect();
         Ok(Outcome::of(Calibrated { record, confidence }).noted(notes))
     }
 }

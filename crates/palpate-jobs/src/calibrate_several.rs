@@ -88,10 +88,12 @@ impl CalibrateSeveral {
         let of_first = first.fit.confidence;
         let confidence = checked_confidence(self.confidence.unwrap_or(of_first))?;
         let (mut inputs, mut records): (Vec<Input>, Vec<BatchRecord>) = (Vec::new(), Vec::new());
+        let mut notes = Vec::new();
         for Measurement {
             record,
             mut input,
             options,
+            turned,
             ..
         } in measured
         {
@@ -100,6 +102,7 @@ impl CalibrateSeveral {
             let name = name(&input, &records);
             let data = CalibrationData::of_record(&record, &options)
                 .map_err(|error| JobError::new(kind_of(&error), &error, error.hint()).of(&name))?;
+            notes.extend(data.findings().iter().filter_map(|found| Measurement::sign_note(&turned, found)));
             inputs.push(input);
             records.push(BatchRecord { name, data });
         }
@@ -108,7 +111,8 @@ impl CalibrateSeveral {
         let data = records.into_iter().map(|record| record.data).collect();
         Ok(Outcome::of(CalibratedSeveral {
             batch: CalibratedBatch { inputs, data, found },
-        }))
+        })
+        .noted(notes))
     }
 }
 

@@ -6,6 +6,7 @@ use palpate::fit::Interval;
 
 use super::budget::BudgetDocument;
 use super::software::Software;
+use crate::page::Finding;
 use crate::result::{
     CalibratedRecord, Input, ParameterDocument, ParameterRow, budgets_of_material, formula_of_material,
     parameters_of_material, word,
@@ -106,6 +107,8 @@ documents! {
         confidence: f64 = confidence,
         /// The laws; the first is the requested one.
         laws: Vec<CalibratedLawDocument> = record.rows.iter().enumerate().map(law).collect(),
+        /// Findings on the record.
+        findings: Vec<Finding> = record.data.findings().iter().map(Finding::from).collect(),
         /// Remarks, in sentences.
         remarks: Vec<String> = record.remarks(),
     }

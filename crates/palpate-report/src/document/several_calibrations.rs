@@ -1,9 +1,10 @@
 //! `palpate.several-calibrations/1`: one calibration of several records.
 
-use palpate::calibrate::{BatchParameter, Between, CalibratedSpecimen, Spread};
+use palpate::calibrate::{BatchParameter, Between, CalibratedSpecimen, CalibrationData, Spread};
 use palpate::fit::{Estimate, ParameterRole};
 
 use super::software::Software;
+use crate::page::Finding;
 use crate::result::{CalibratedBatch, Input, ParameterDocument, formula_of_material, parameters_of_material, si_unit};
 
 documents! {
@@ -53,7 +54,7 @@ documents! {
     }
 
     /// A record of the batch.
-    SpecimenDocument(input: &Input, specimen: &CalibratedSpecimen) {
+    SpecimenDocument(input: &Input, specimen: &CalibratedSpecimen, data: &CalibrationData) {
         /// The record.
         input: Input = input.clone(),
         /// Root mean square residual over the fitted samples, N.
@@ -65,6 +66,8 @@ documents! {
         /// Its parameters, the shared ones among them.
         parameters: Vec<SpecimenParameterDocument> =
             parameters_of_material(&specimen.material, true).into_iter().map(SpecimenParameterDocument::new).collect(),
+        /// Its findings.
+        findings: Vec<Finding> = data.findings().iter().map(Finding::from).collect(),
     }
 
     /// The material of another specimen of the batch, or of the one body where all parameters are shared.
@@ -106,7 +109,8 @@ documents! {
             .inputs
             .iter()
             .zip(&batch.found.specimens)
-            .map(|(input, specimen)| SpecimenDocument::new(input, specimen))
+            .zip(&batch.data)
+            .map(|((input, specimen), data)| SpecimenDocument::new(input, specimen, data))
             .collect(),
         /// Another specimen; `null` for own parameters of two records.
         new_specimen: Option<NewSpecimenDocument> = batch.found.specimen.as_ref().map(NewSpecimenDocument::new),

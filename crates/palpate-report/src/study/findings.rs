@@ -80,6 +80,13 @@ pub(super) fn gathered(analysis: &Analysis, most: usize) -> Vec<Gathered> {
     merged(observed, most)
 }
 
+/// Findings of a calibrated record, of which `place` is the name among others.
+pub(super) fn gathered_at(place: &str, findings: &[RecordFinding]) -> Vec<Gathered> {
+    let mut list = merged(findings.iter().map(|finding| Observed::of(finding, None)).collect(), MOST_LINES);
+    list.iter_mut().flat_map(|one| &mut one.lines).for_each(|(at, _)| place.clone_into(at));
+    list
+}
+
 /// One entry for each code, the most severe first.
 fn merged(mut observed: Vec<Observed<'_>>, most: usize) -> Vec<Gathered> {
     observed.sort_by_key(|one| one.finding.rank());

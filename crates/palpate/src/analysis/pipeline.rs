@@ -2,7 +2,7 @@
 
 use super::effects::Causes;
 use super::holds::{HoldAnalysis, complete_hold, fit_exponents, forecast_holds, prepare_hold};
-use super::prepare::{ClockSkew, Prepared, corrected_watched, signal_findings, wrong_zero};
+use super::prepare::{ClockSkew, Prepared, corrected_watched, signal_findings};
 use super::together::{
     Across, EstimatedModulus, ImpliedModulus, LoadingModulus, ModulusSource, Overlay, across, changing_rate,
     exponent_not_listed, implied_modulus, loading_modulus, overlay,
@@ -133,10 +133,7 @@ fn examined(
     };
     let prepared = corrected.prepared(options, touch)?;
     hear("examining the columns")?;
-    let mut findings = signal_findings((record, &signals), &corrected, &prepared, options.touch);
-    if options.geometry.is_some() && options.touch == ContactChoice::AsRecorded {
-        findings.extend(wrong_zero(&prepared.record));
-    }
+    let mut findings = signal_findings((record, &signals), &corrected, &prepared, options);
     findings.extend(no_hold.as_ref().map(|error| Finding::NoHold {
         reason: error.to_string(),
     }));

@@ -1,7 +1,7 @@
 //! What a model is fitted to: the motion of the jaw and the force it met.
 
 use super::CalibrateError;
-use crate::analysis::{AnalysisOptions, Geometry, Prepared, measured_motion, prepared};
+use crate::analysis::{AnalysisOptions, Finding, Geometry, Prepared, corrected, measured_motion, signal_findings};
 use crate::contact::{Specimen, SpecimenError};
 use crate::instrument::Instrument;
 use crate::record::Record;
@@ -25,6 +25,8 @@ pub struct CalibrationData {
     samples: usize,
     /// Contact displacements (m) at which the jaw was held, rising.
     levels: Vec<f64>,
+    /// What the columns of the record give cause to say.
+    findings: Vec<Finding>,
 }
 
 /// Samples that are fitted at most; of more, evenly chosen ones.
@@ -106,6 +108,7 @@ impl CalibrationData {
             motion,
             measured: None,
             instrument: Instrument::default(),
+            findings: Vec::new(),
             times,
             forces,
             samples,
@@ -118,11 +121,14 @@ impl CalibrationData {
     /// Those of the corrections; [`CalibrateError::NoDisplacement`] and [`CalibrateError::NoGeometry`] for what has no model.
     pub fn of_record(record: &Record, options: &AnalysisOptions) -> Result<Self, CalibrateError> {
         let geometry = options.geometry.clone().ok_or(CalibrateError::NoGeometry)?;
+        let corrected = corrected(record, options)?;
+        let prepared = corrected.prepared(options, options.touch)?;
+        let findings = signal_findings((record, &record.signals()), &corrected, &prepared, options);
         let Prepared {
             record,
             segmentation,
             contact,
-        } = prepared(record, options)?;
+        } = prepared;
         let body = geometry.specimen(1.0)?;
         let measured = measured_motion(&record, &segmentation, &body, options.separation)
             .ok_or(CalibrateError::NoDisplacement)??;
@@ -137,6 +143,7 @@ impl CalibrationData {
         Ok(Self {
             measured: Some(measured),
             instrument: options.instrument.with_touch(contact.displacement_error),
+            findings,
             ..Self::new(geometry, options.separation, motion, times, forces, &held)?
         })
     }
@@ -217,6 +224,12 @@ impl CalibrationData {
             }
             (before, _) => self.forces[before.unwrap_or(0)],
         }
+    }
+
+    /// What the columns of the record give cause to say, as [`analyze`](crate::analysis::analyze) states it; empty for data of no record.
+    #[must_use]
+    pub fn findings(&self) -> &[Finding] {
+        &self.findings
     }
 
     /// Times of all samples, s.

@@ -3,7 +3,7 @@
 
 use std::time::{Duration, Instant};
 
-use palpate::analysis::{AnalysisOptions, Geometry};
+use palpate::analysis::{AnalysisOptions, Finding, Geometry, analyze};
 use palpate::calibrate::{
     CalibrateError, Calibration, CalibrationData, Candidate, EquilibriumLaw, Extrapolation, MaterialParameter,
     Prediction, RateLaw, calibrate, profile,
@@ -291,6 +291,31 @@ fn noise_of_the_displacement_does_not_move_the_layer_thickness() {
         off += found.material.estimate("layer_thickness_m").unwrap().value / truth[1].1 - 1.0;
     }
     assert!(covered.iter().all(|covered| *covered >= 8) && (off / 10.0).abs() < 5e-3, "{covered:?} {off}");
+}
+
+/// Saturation, gaps and repaired rows that an analysis states went into a material without a word.
+#[test]
+fn a_calibration_states_what_an_analysis_states_of_the_columns() {
+    let (motion, model) = (paper_test_a(), paper_ball(Separation::Unilateral));
+    let options = AnalysisOptions {
+        geometry: Some(ball()),
+        ..AnalysisOptions::default()
+    };
+    let inside = |t: &f64| *t <= motion.end() && !(20.0..24.0).contains(t);
+    let time: Vec<f64> = (0..800).map(|i| 0.1 * f64::from(i)).filter(inside).collect();
+    let mut force = simulate_force(&motion, &model, &time).unwrap();
+    let most = force.iter().copied().fold(0.0, f64::max);
+    force.iter_mut().for_each(|force| *force = force.min(0.8 * most));
+    force[150] = 0.0;
+    let displacement = time.iter().map(|t| motion.displacement_at(*t)).collect();
+    let record = Record::new(time, Some(displacement), force).unwrap();
+    let data = CalibrationData::of_record(&record, &options).unwrap();
+    let codes: Vec<&str> = data.findings().iter().map(Finding::code).collect();
+    for code in ["saturated", "gaps", "dropouts_repaired"] {
+        assert!(codes.contains(&code), "{code}: {codes:?}");
+    }
+    let analysis = analyze(&record, &options).unwrap();
+    assert!(data.findings().iter().all(|finding| analysis.findings.contains(finding)), "{codes:?}");
 }
 
 /// z² is the rise of the squared residual by its own definition: with the parameter held by another way, a law of a given exponent.

@@ -8,6 +8,7 @@ use crate::number::significant;
 use crate::page::{Block, Page, Section};
 use crate::result::{CalibratedBatch, ParameterDocument, parameter_title, percent, si_unit};
 use crate::study::bundle::StudyError;
+use crate::study::findings::{Gathered, gathered_at, plain};
 use crate::study::grid::{by_hold, columns, grid};
 use crate::table::{Cell, Table};
 use crate::wrap::wrapped;
@@ -74,8 +75,15 @@ fn records_table(batch: &CalibratedBatch) -> Table {
 pub fn batch_text(batch: &CalibratedBatch) -> String {
     let mut text: String = batch.answer().iter().map(|line| wrapped(line)).collect();
     text.push_str(&format!("\n{}\n{}\n", batch_table(batch).to_plain_text(), records_table(batch).to_plain_text()));
+    text.push_str(&plain(&findings(batch)));
     batch.remarks().iter().for_each(|remark| text.push_str(&wrapped(remark)));
     text
+}
+
+/// The findings of each record, named by it.
+fn findings(batch: &CalibratedBatch) -> Vec<Gathered> {
+    let records = batch.found.specimens.iter().zip(&batch.data);
+    records.flat_map(|(specimen, data)| gathered_at(&specimen.name, data.findings())).collect()
 }
 
 /// The same with the figure as a page.
@@ -87,6 +95,7 @@ pub fn batch_page(batch: &CalibratedBatch) -> Result<Page, StudyError> {
         .block(Block::List(batch.answer()))
         .block(Block::Table(batch_table(batch)))
         .block(Block::Table(records_table(batch)))
+        .block(Block::Findings(findings(batch).iter().map(Gathered::reported).collect()))
         .block(Block::List(batch.remarks()));
     let records = panels(batch);
     for figure in by_hold("calibration", CAPTION, (80.0, 54.0), (&records, "records"), Panel::clone) {

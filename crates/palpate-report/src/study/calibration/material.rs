@@ -13,6 +13,7 @@ use crate::result::{
 };
 use crate::study::budget;
 use crate::study::bundle::StudyError;
+use crate::study::findings::{Gathered, gathered_at, plain};
 use crate::study::grid::displacement_panel;
 use crate::table::{Cell, Table};
 use crate::wrap::wrapped;
@@ -104,6 +105,7 @@ pub fn calibration_text(record: &CalibratedRecord) -> String {
         }
     }
     text.push_str(&format!("\n{}\n", laws(record).to_plain_text()));
+    text.push_str(&plain(&gathered_at("", record.data.findings())));
     record.remarks().iter().for_each(|remark| text.push_str(&wrapped(remark)));
     text
 }
@@ -118,8 +120,10 @@ pub fn calibration_page(record: &CalibratedRecord) -> Result<Page, StudyError> {
         section = section.block(Block::Table(law_table(&chosen.material, &record.profiles)));
         section = section.blocks(budgets(&chosen.material).into_iter().map(Block::Table));
     }
+    let findings = gathered_at("", record.data.findings());
     section = section
         .block(Block::Table(laws(record)))
+        .block(Block::Findings(findings.iter().map(Gathered::reported).collect()))
         .block(Block::List(record.remarks()))
         .block(Block::figure(&calibration_figure(record, "calibration"))?);
     let page = Page::new("Calibration", "One set of parameters for a whole record, ramps and holds");

@@ -176,7 +176,7 @@ impl Corrected {
     }
 
     /// The same set to zero at first touch, which `touch` says how to find.
-    pub(in crate::analysis) fn prepared(
+    pub(crate) fn prepared(
         &self,
         options: &AnalysisOptions,
         touch: ContactChoice,

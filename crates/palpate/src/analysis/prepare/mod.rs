@@ -19,6 +19,6 @@ mod skew;
 
 pub use corrected::{Corrected, Prepared, corrected, corrected_watched, prepared};
 pub(crate) use motion::measured_motion;
-pub(super) use signals::signal_findings;
-pub use signals::{suspicious_signs, wrong_zero};
+pub(crate) use signals::signal_findings;
+pub use signals::suspicious_signs;
 pub use skew::{ClockSkew, clock_skew};

@@ -1,6 +1,6 @@
 //! What the columns of a record, and what was done to them, give cause to say.
 
-use crate::analysis::{Corrected, Finding, Prepared};
+use crate::analysis::{AnalysisOptions, Corrected, Finding, Prepared};
 use crate::record::{Column, Correction, Record, SignalReport, Values, absurd_rows, stray_rows, stray_runs};
 use crate::segment::{ContactChoice, ContactPoint, HoldMode, Segment, SegmentOptions, Segmentation, find_phases};
 use crate::statistics::{median, noise};
@@ -11,11 +11,11 @@ const FEW_LEVELS: f64 = 200.0;
 const REPEATING: f64 = 0.5;
 
 /// All findings on the columns of a record: as they were measured, as they were corrected, and counted from first touch.
-pub(in crate::analysis) fn signal_findings(
+pub(crate) fn signal_findings(
     measured: (&Record, &SignalReport),
     corrected: &Corrected,
     prepared: &Prepared,
-    touch: ContactChoice,
+    options: &AnalysisOptions,
 ) -> Vec<Finding> {
     let Prepared {
         record,
@@ -52,7 +52,10 @@ pub(in crate::analysis) fn signal_findings(
             travel: contact.air_travel,
         });
     }
-    findings.extend(touch_findings(record, contact, touch));
+    findings.extend(touch_findings(record, contact, options.touch));
+    if options.geometry.is_some() && options.touch == ContactChoice::AsRecorded {
+        findings.extend(wrong_zero(record));
+    }
     findings
 }
 
@@ -211,8 +214,7 @@ fn touch_findings(record: &Record, contact: &ContactPoint, requested: ContactCho
 
 /// [`Finding::DisplacementNotZero`] or [`Finding::ForceNotZero`] by the first row of a record whose columns are stated to count from first touch
 /// ([`ContactChoice::AsRecorded`]).
-#[must_use]
-pub fn wrong_zero(record: &Record) -> Option<Finding> {
+fn wrong_zero(record: &Record) -> Option<Finding> {
     /// Shares of the travel: what is a displacement, and what is none.
     const MOVED: (f64, f64) = (0.2, 0.01);
     /// Shares of the largest force, likewise.
