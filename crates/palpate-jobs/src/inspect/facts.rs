@@ -6,7 +6,7 @@ use palpate::record::{SignalReport, Stamps, Values};
 use palpate_files::open::Format;
 use palpate_files::record::{RecordFile, Role};
 use palpate_files::table::{ColumnInfo, ColumnKind, Part};
-use palpate_report::number::significant;
+use palpate_report::number::{counted, significant};
 use palpate_report::table::{Cell, Table};
 use palpate_report::wrapped;
 
@@ -154,7 +154,7 @@ fn stamp_facts(out: &mut String, stamps: &Stamps, of: &str) {
     }
 }
 
-/// Rounding, saturation and strays of a column.
+/// Rounding, saturation and strays of a column, the same rows that [`Finding::RowsStray`](palpate::analysis::Finding) and repairs count.
 fn value_facts(out: &mut String, name: &str, values: &Values, (scale, unit): (f64, &str)) {
     if let Some(step) = values.step {
         let _ = writeln!(out, "{name} in steps of {} {unit}", significant(scale * step, 3));
@@ -165,6 +165,7 @@ fn value_facts(out: &mut String, name: &str, values: &Values, (scale, unit): (f6
     }
     if values.strays.count > 0 {
         let zeros = values.strays.zeros;
-        let _ = writeln!(out, "{} single rows of the {name} are outliers, {zeros} of them zero", values.strays.count);
+        let rows = counted(values.strays.count, "outlier");
+        let _ = writeln!(out, "{rows} among the rows of the {name}, {zeros} of them zero");
     }
 }

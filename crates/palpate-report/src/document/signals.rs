@@ -34,7 +34,7 @@ documents! {
 
     /// A measured column; values in its SI unit.
     ValuesDocument(values: &Values) {
-        /// Single rows that are outliers.
+        /// Rows that are outliers.
         strays: usize = values.strays.count,
         /// Rows at the extreme value in runs of five or more.
         rows_at_extreme: usize = values.saturation.map_or(0, |saturation| saturation.rows),

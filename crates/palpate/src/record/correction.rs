@@ -283,9 +283,8 @@ impl fmt::Display for Correction {
                 write!(f, "displacement interpolated at the times of the force, {left_out} of the force left out")
             }
             Self::DropoutsReplaced { column, count } => {
-                let (rows, column) = (counted(*count, "single row"), column.name());
-                let whose = if *count == 1 { "its" } else { "their" };
-                write!(f, "{rows} of the {column} replaced by the mean of {whose} neighbours")
+                let (rows, column) = (counted(*count, "row"), column.name());
+                write!(f, "{rows} of the {column} replaced by the line between the rows beside")
             }
             Self::Tared(tare) => {
                 let (displacement, force) = (significant(1e3 * tare.displacement, 4), significant(tare.force, 4));

@@ -31,5 +31,5 @@ pub use label::LabelledSegment;
 pub use measured::Record;
 pub use options::{CorrectionOptions, SkewChoice};
 pub use raw::RawColumns;
+pub(crate) use signals::Astray;
 pub use signals::{Gaps, Reversals, SampleInterval, Saturation, SignalReport, Stamps, Strays, Values, rounding_step};
-pub(crate) use signals::{absurd_rows, stray_rows, stray_runs};

@@ -30,6 +30,8 @@ pub enum FitStartRule {
     AfterExtreme,
     /// The first sample at which the body meets the jaw again.
     ContactClosed,
+    /// The first sample behind rows of the force that stray.
+    BehindStrays,
 }
 
 impl FitStartRule {
@@ -42,6 +44,7 @@ impl FitStartRule {
             Self::Extreme => "last extreme",
             Self::AfterExtreme => "requested delay",
             Self::ContactClosed => "contact closed",
+            Self::BehindStrays => "behind stray rows",
         }
     }
 }

@@ -1,8 +1,10 @@
 //! What the columns of a record, and what was done to them, give cause to say.
 
 use crate::analysis::{AnalysisOptions, Corrected, Finding, Prepared};
-use crate::record::{Column, Correction, Record, SignalReport, Values, absurd_rows, stray_rows, stray_runs};
-use crate::segment::{ContactChoice, ContactPoint, HoldMode, Segment, SegmentOptions, Segmentation, find_phases};
+use crate::record::{Astray, Column, Correction, Record, SignalReport, Values};
+use crate::segment::{
+    ContactChoice, ContactPoint, HoldMode, Phase, Segment, SegmentOptions, Segmentation, find_phases,
+};
 use crate::statistics::{median, noise};
 
 /// Levels between the smallest and the largest value below which rounding is worth a word.
@@ -133,11 +135,13 @@ pub fn suspicious_signs(record: &Record) -> Vec<Finding> {
         let most = values.iter().fold(0.0, |most: f64, value| most.max((value - start).abs()));
         let first = values.iter().find(|value| (**value - start).abs() >= 0.5 * most)?;
         let fall = start - values.iter().copied().fold(f64::MAX, f64::min);
-        // A force relaxes from the first sample of a record that is one hold, in which nothing else moves.
+        // A record that begins in its hold has lost the loading: what is pressed relaxes, and is let go.
         let is_right = || {
-            find_phases(record, &SegmentOptions::default()).is_ok_and(|found| match found.is_one_hold() {
-                true => column != "force" || start > 0.0,
-                false => holds_above_start(values, &found),
+            find_phases(record, &SegmentOptions::default()).is_ok_and(|found| {
+                let is_pressed = start > 0.0 && record.force()[0] > 0.0;
+                let begins = found.segments.first().is_some_and(|first| first.phase == Phase::Hold);
+                begins && (is_pressed || column != "force" && found.is_one_hold())
+                    || !found.is_one_hold() && holds_above_start(values, &found)
             })
         };
         (*first < start && fall > least && !is_right()).then(|| Finding::SignSuspicious {
@@ -157,13 +161,9 @@ fn holds_above_start(values: &[f64], found: &Segmentation) -> bool {
     levels.iter().find(|level| level.abs() >= 0.5 * most).is_some_and(|level| *level > 0.0)
 }
 
-/// [`Finding::RowsStray`] for rows of the force that stray alone and were not repaired, and for a few that stand far off together.
+/// [`Finding::RowsStray`] for rows of the force that stray and were not repaired.
 fn rows_astray(record: &Record) -> Option<Finding> {
-    let mut rows = stray_rows(record.force());
-    rows.extend(absurd_rows(record.force()));
-    rows.extend(stray_runs(record.force()).into_iter().flatten());
-    rows.sort_unstable();
-    rows.dedup();
+    let rows = Astray::of(record.force()).rows();
     let first = *rows.first()?;
     Some(Finding::RowsStray {
         count: rows.len(),

@@ -1,8 +1,7 @@
 //! Force and displacement with time stamps of their own.
 
-use super::dropouts::replace;
+use super::dropouts::repair;
 use crate::record::checks::{self, RecordError};
-use crate::record::signals::stray_rows;
 use crate::record::{Column, Correction, Record};
 use crate::statistics::interpolated;
 
@@ -28,7 +27,7 @@ impl Record {
             checks::rising(time)?;
         }
         let mut repaired = displacement.to_vec();
-        let count = replace(&mut repaired, stray_rows);
+        let count = repair(&mut repaired, |_| true);
         let (from, until) = (displacement_time[0], displacement_time[displacement_time.len() - 1]);
         let inside = |time: &f64| (from..=until).contains(time);
         let (first, last) = (force_time.partition_point(|t| *t < from), force_time.partition_point(|t| *t <= until));

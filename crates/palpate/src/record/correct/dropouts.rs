@@ -1,51 +1,46 @@
-//! Single rows that strayed, replaced by the mean of their neighbours.
+//! Rows that strayed, put on the line between their neighbours.
 
 use std::borrow::Cow;
+use std::ops::Range;
 
-use crate::record::signals::{lost_rows, stray_rows, stray_runs};
+use crate::record::signals::{Astray, bridge, runs_of};
 use crate::record::{Column, Correction, Record};
 
 impl Record {
-    /// The record with single-row dropouts replaced by the mean of their neighbours.
+    /// The record without dropouts, which are put on the line between their neighbours.
     ///
-    /// In the displacement these are rows that stray alone. In the force they must be zero exactly as well, or many times farther off
-    /// than all other rows reach: a force may jump by itself, and a peak of one row is no dropout.
+    /// These are rows that no sensor measured: tens of times larger than the others, such as 9999 or 2³¹ − 1, alone or a few
+    /// together. In the displacement rows that stray alone are dropouts too; in the force only if they are zero exactly: a force may jump by itself, and a
+    /// peak of one row is no dropout.
     #[must_use]
     pub fn repaired(&self) -> Self {
         let mut record = self.clone();
-        let strays = record.displacement.as_mut().map_or(0, |displacement| replace(displacement, stray_rows));
-        let lost = replace(&mut record.force, lost_rows);
+        let strays = record.displacement.as_mut().map_or(0, |displacement| repair(displacement, |_| true));
+        let lost = repair(&mut record.force, |value| value == 0.0);
         let done = [(Column::Displacement, strays), (Column::Force, lost)].into_iter().filter(|(_, count)| *count > 0);
         record
             .corrections
             .extend(done.map(|(column, count)| Correction::DropoutsReplaced { column, count }));
         record
     }
-}
 
-impl Record {
-    /// The record in which phases are searched: a few rows of the force that stray by themselves say nothing of what is held, and they are not in it.
-    /// Nothing else has them replaced.
-    pub(crate) fn without_strays(&self) -> Cow<'_, Self> {
-        let runs = if self.displacement.is_some() { stray_runs(&self.force) } else { Vec::new() };
+    /// The record in which phases are searched, and the runs that are not in it: a few rows of the force that stray by themselves say nothing of what is
+    /// held. Nothing else has them replaced.
+    pub(crate) fn without_strays(&self) -> (Cow<'_, Self>, Vec<Range<usize>>) {
+        let runs = if self.displacement.is_some() { Astray::of(&self.force).runs } else { Vec::new() };
         if runs.is_empty() {
-            return Cow::Borrowed(self);
+            return (Cow::Borrowed(self), runs);
         }
         let mut record = self.clone();
-        for run in runs {
-            let (before, after) = (record.force[run.start - 1], record.force[run.end]);
-            record.force[run].fill(0.5 * (before + after));
-        }
-        Cow::Owned(record)
+        bridge(&mut record.force, &runs);
+        (Cow::Owned(record), runs)
     }
 }
 
-/// Replaces `rows` of values (rising, none at an end) by the mean of their neighbours; how many there were.
-pub(super) fn replace(values: &mut [f64], rows: impl Fn(&[f64]) -> Vec<usize>) -> usize {
-    let rows = rows(values);
-    for &row in &rows {
-        values[row] = 0.5 * (values[row - 1] + values[row + 1]);
-    }
+/// Repairs the rows of values that no sensor measured, and those that stray alone with a value that is a `dropout`; how many there were.
+pub(super) fn repair(values: &mut [f64], dropout: impl Fn(f64) -> bool) -> usize {
+    let rows = Astray::of(values).those(|run| run.len() == 1 && dropout(values[run.start]));
+    bridge(values, &runs_of(&rows));
     rows.len()
 }
 
@@ -57,10 +52,10 @@ mod tests {
     #[test]
     fn a_single_row_of_zero_in_a_hold_is_repaired_and_counted() {
         let mut displacement = [0.0, 2.0, 4.0, 4.0, 0.0, 4.0, 4.0, 4.0];
-        assert_eq!(replace(&mut displacement, stray_rows), 1);
+        assert_eq!(repair(&mut displacement, |_| true), 1);
         assert_eq!(displacement, [0.0, 2.0, 4.0, 4.0, 4.0, 4.0, 4.0, 4.0]);
         let mut ramp: Vec<f64> = (0..20).map(f64::from).collect();
-        assert_eq!(replace(&mut ramp, stray_rows), 0);
+        assert_eq!(repair(&mut ramp, |_| true), 0);
     }
 
     #[test]

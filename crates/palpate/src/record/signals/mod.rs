@@ -3,20 +3,22 @@
 //! | file | what |
 //! |---|---|
 //! | `stamps.rs` | time stamps: interval, gaps, repeated and reversed ones |
-//! | `values.rs` | measured columns: rows that stray alone, saturation, rounding |
+//! | `values.rs` | measured columns: rows that stray, saturation, rounding |
+//! | `astray.rs` | rows that stray |
 //! | `rounding.rs` | the step that values were rounded to |
 
+mod astray;
 mod rounding;
 mod stamps;
 mod values;
 
+pub(crate) use astray::Astray;
+pub(super) use astray::{bridge, runs_of};
 pub use rounding::rounding_step;
 use rounding::rounding_step_heard;
 pub(super) use stamps::gap_rows;
 pub use stamps::{Gaps, Reversals, SampleInterval, Stamps};
-pub(super) use values::lost_rows;
 pub use values::{Saturation, Strays, Values};
-pub(crate) use values::{absurd_rows, stray_rows, stray_runs};
 
 use std::convert::Infallible;
 

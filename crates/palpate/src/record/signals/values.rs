@@ -1,11 +1,9 @@
-//! Measured columns: rows that stray alone, saturation, rounding.
-
-use std::ops::Range;
+//! Measured columns: rows that stray, saturation, rounding.
 
 use serde::{Deserialize, Serialize};
 
-use super::{Column, rounding_step_heard};
-use crate::statistics::{bounds, noise, quantile};
+use super::{Astray, Column, bridge, rounding_step_heard};
+use crate::statistics::{bounds, noise};
 
 /// What a measured column is like; its unit is that of the column.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -13,7 +11,7 @@ use crate::statistics::{bounds, noise, quantile};
 pub struct Values {
     /// Values that are no finite number.
     pub not_finite: usize,
-    /// Single rows that leave and come back.
+    /// Rows that stray from those about them.
     pub strays: Strays,
     /// Rows stuck at the largest or smallest value, where there are any.
     pub saturation: Option<Saturation>,
@@ -25,7 +23,7 @@ pub struct Values {
     pub range: f64,
 }
 
-/// Single rows that leave their neighbours and come back.
+/// Rows that leave their neighbours and come back: alone, a few together, or so far off that no sensor measured them.
 #[derive(Debug, Clone, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[non_exhaustive]
 pub struct Strays {
@@ -78,7 +76,8 @@ impl Values {
             (kept.as_slice(), None)
         };
         let (low, high) = bounds(values);
-        let rows = stray_rows(values);
+        // A jaw may move and come back within a few rows.
+        let rows = Astray::of(values).those(|run| column == Column::Force || run.len() == 1);
         hear()?;
         let repeats = values.windows(2).filter(|pair| pair[0] == pair[1]).count();
         let saturation = saturation(column, values, other);
@@ -98,139 +97,6 @@ impl Values {
     }
 }
 
-/// Rows that stray alone: over 5 % of the range away from both neighbours, which differ from each other by less than a
-/// tenth of that; and beyond what noise does, where there are rows enough to know it.
-pub(crate) fn stray_rows(values: &[f64]) -> Vec<usize> {
-    const ENOUGH: usize = 50;
-    let (low, high) = bounds(values);
-    let noise = if values.len() < ENOUGH { 0.0 } else { noise(values) };
-    let least = (0.05 * (high - low)).max(8.0 * noise);
-    let mut rows: Vec<usize> = Vec::new();
-    let mut before = values.first().copied().unwrap_or_default();
-    for i in 1..values.len().saturating_sub(1) {
-        let (here, after) = (values[i], values[i + 1]);
-        let stray = (here - before).abs().min((here - after).abs());
-        let alone = stray > least && (after - before).abs() < 0.1 * stray && !is_tip(values, i, 0.5 * stray);
-        if alone {
-            rows.push(i);
-        }
-        before = if alone { 0.5 * (before + after) } else { here };
-    }
-    rows
-}
-
-/// Up to five successive rows that stray from all about them, as those of [`stray_rows`] do alone, by a tenth of the range or more.
-pub(crate) fn stray_runs(values: &[f64]) -> Vec<Range<usize>> {
-    const LONGEST: usize = 5;
-    const ENOUGH: usize = 50;
-    if values.len() < ENOUGH {
-        return Vec::new();
-    }
-    // Of most rows: those that stray are not to decide how far that is.
-    let mut sorted = values.to_vec();
-    let reach = quantile(&mut sorted, 0.98) - quantile(&mut sorted, 0.02);
-    let least = (0.1 * reach).max(20.0 * noise(values));
-    let mut runs: Vec<Range<usize>> = Vec::new();
-    let mut row = 1;
-    while row + 1 < values.len() {
-        let before = values[row - 1];
-        let strays = |length: &usize| {
-            let Some(after) = values.get(row + length) else {
-                return false;
-            };
-            let off = |value: &f64| (value - before).abs().min((value - after).abs());
-            let run = &values[row..row + length];
-            let (nearest, farthest) =
-                run.iter().map(off).fold((f64::MAX, 0.0f64), |(least, most), off| (least.min(off), most.max(off)));
-            let one_side = run.iter().all(|value| (*value > before) == (run[0] > before));
-            // What comes and goes within more samples than these is a wave.
-            let is_calm = |outside: Option<usize>, beside: f64| {
-                let farther = outside.and_then(|outside| values.get(outside));
-                farther.is_none_or(|value| (value - beside).abs() < 0.25 * nearest)
-            };
-            let is_abrupt = is_calm(row.checked_sub(2), before) && is_calm(Some(row + length + 1), *after);
-            // What grows row by row is a peak.
-            let at_once = nearest > 0.5 * farthest;
-            nearest > least && at_once && one_side && (after - before).abs() < 0.1 * nearest && is_abrupt
-        };
-        match (1..=LONGEST).find(strays) {
-            Some(length) => {
-                runs.push(row..row + length);
-                row += length + 1;
-            }
-            None => row += 1,
-        }
-    }
-    runs
-}
-
-/// Successive rows, few of all, that stand tens of times farther off than nearly all others reach and begin and end at once: what a load
-/// cell shows beyond its range, or a logger for a value that it did not get.
-pub(crate) fn absurd_rows(values: &[f64]) -> Vec<usize> {
-    /// Most of them, as a share of all, and the share of rows on either side that are no measure of the others.
-    const MOST: f64 = 0.02;
-    const FAR: f64 = 20.0;
-    let mut sorted = values.to_vec();
-    let (low, high) = (quantile(&mut sorted, MOST), quantile(&mut sorted, 1.0 - MOST));
-    let off = |value: f64| (value - high).max(low - value);
-    let is_far = |value: f64| high > low && off(value) > FAR * (high - low);
-    let mut rows = Vec::new();
-    let mut begun = 0;
-    for run in values.chunk_by(|a, b| is_far(*a) == is_far(*b)) {
-        let rest = begun + run.len();
-        let jumps = |inside: usize, outside: Option<usize>| {
-            outside
-                .and_then(|row| values.get(row))
-                .is_none_or(|next| (values[inside] - next).abs() > 0.9 * off(values[inside]))
-        };
-        if is_far(run[0]) && jumps(begun, begun.checked_sub(1)) && jumps(rest - 1, Some(rest)) {
-            rows.extend(begun..rest);
-        }
-        begun = rest;
-    }
-    if rows.len() as f64 > MOST * values.len() as f64 { Vec::new() } else { rows }
-}
-
-/// Whether the lines through the two rows before and the two after both lead to within `least` of row `i`: the corner of a triangle of
-/// few samples.
-fn is_tip(values: &[f64], i: usize, least: f64) -> bool {
-    let leads = |next: usize, far: Option<usize>| {
-        let far = far.and_then(|far| values.get(far));
-        far.is_some_and(|far| (2.0 * values[next] - far - values[i]).abs() < least)
-    };
-    leads(i - 1, i.checked_sub(2)) && leads(i + 1, Some(i + 2))
-}
-
-/// Those of the rows that stray alone which no test can have measured: zero exactly, or many times farther off than all other rows
-/// reach: loggers' words for a value that they did not get.
-pub(in crate::record) fn lost_rows(values: &[f64]) -> Vec<usize> {
-    let mut rows = stray_rows(values);
-    let (mut low, mut high) = (f64::MAX, f64::MIN);
-    for (row, value) in values.iter().enumerate() {
-        if rows.binary_search(&row).is_err() {
-            (low, high) = (low.min(*value), high.max(*value));
-        }
-    }
-    let is_absurd = |value: f64| (value - high).max(low - value) > FAR * (high - low);
-    let absurd: Vec<usize> = rows.iter().copied().filter(|row| is_absurd(values[*row])).collect();
-    if !absurd.is_empty() {
-        // Beside a row that is out of this world no other strays: they are looked for without it.
-        let mut rest = values.to_vec();
-        for row in &absurd {
-            rest[*row] = 0.5 * (rest[row - 1] + rest[row + 1]);
-        }
-        rows = stray_rows(&rest);
-    }
-    rows.retain(|row| values[*row] == 0.0);
-    rows.extend(absurd);
-    rows.sort_unstable();
-    rows.dedup();
-    rows
-}
-
-/// How many times the range of all other rows away a row that strays is no measurement.
-const FAR: f64 = 10.0;
-
 /// Runs at the end of the range that is farther from where the column begins.
 fn saturation(column: Column, values: &[f64], other: Option<&[f64]>) -> Option<Saturation> {
     let (low, high) = bounds(values);
@@ -242,8 +108,13 @@ fn saturation(column: Column, values: &[f64], other: Option<&[f64]>) -> Option<S
         runs(values).filter(|(start, length)| values[*start] == level && *length >= RUN).collect();
     let (first_row, longest) = *runs.iter().max_by_key(|(start, length)| (*length, usize::MAX - start))?;
     // A jaw that is held may stand without noise, a force that is measured does not.
+    let other = other.map(|other| {
+        let mut clean = other.to_vec();
+        bridge(&mut clean, &Astray::of(other).runs);
+        clean
+    });
     let without_noise = column == Column::Force && noise_vanishes(values, level, longest);
-    let clipped = without_noise || runs.iter().any(|run| goes_on(column, values, other, *run));
+    let clipped = without_noise || runs.iter().any(|run| goes_on(column, values, other.as_deref(), *run));
     Some(Saturation {
         level,
         rows: runs.iter().map(|(_, length)| length).sum(),
@@ -264,11 +135,15 @@ fn runs(values: &[f64]) -> impl Iterator<Item = (usize, usize)> + '_ {
     })
 }
 
+/// Share of the way to its extreme that tells how long a column must go on without the displacement.
+const LAST_PART: f64 = 1.0 / 3.0;
+
 /// Whether the other column goes on as before where this one begins to stand still: it then stopped measuring.
 ///
 /// A jaw that stops, or a force that is held, stops the other column too, or turns it; a force that only goes on to relax has
 /// not been loaded further by a jaw whose encoder ended. Where values are rounded, one that
-/// rises slowly repeats itself as well: the run must be five times as long as the three before it.
+/// rises slowly repeats itself as well: the run must be five times as long as the three before it. Where a displacement leaves its
+/// extreme again, the force has turned before if an encoder ended there, and turns with it if a jaw stood.
 fn goes_on(column: Column, values: &[f64], other: Option<&[f64]>, (start, length): (usize, usize)) -> bool {
     let Some(other) = other else { return false };
     let mut longest = 1;
@@ -281,7 +156,12 @@ fn goes_on(column: Column, values: &[f64], other: Option<&[f64]>, (start, length
         longest = longest.max(run);
         at -= run;
     }
-    let window = RUN * longest;
+    let mut window = RUN * longest;
+    if column == Column::Displacement {
+        // A force that swings, or is filtered, goes on for a while when the jaw stops.
+        let far = |row: &usize| (values[*row] - values[start]).abs() > LAST_PART * (values[0] - values[start]).abs();
+        window = window.max(start - (0..start).rfind(far).unwrap_or(0));
+    }
     if length < window || start < window || start + window >= other.len() {
         return false;
     }
@@ -292,7 +172,13 @@ fn goes_on(column: Column, values: &[f64], other: Option<&[f64]>, (start, length
     if column == Column::Displacement && before * arrives <= 0.0 {
         return false;
     }
-    before.abs() > (0.01 * (high - low)).max(5.0 * noise(other)) && after / before > 0.5
+    let observed = (0.01 * (high - low)).max(5.0 * noise(other));
+    let end = start + length;
+    let turned = column == Column::Force || end + window > other.len() || {
+        let [inside, outside] = [other[end - 1] - other[end - window], other[end + window - 1] - other[end - 1]];
+        inside * before < 0.0 && inside.abs() > 0.5 * outside.abs()
+    };
+    before.abs() > observed && after / before > 0.5 && turned
 }
 
 /// Whether so long a run cannot come from a column that repeats itself as seldom as this one does elsewhere.
@@ -328,23 +214,6 @@ mod tests {
         ((0..400).map(displacement).collect(), (0..400).map(force).collect())
     }
 
-    /// Five rows of 99,999 N at the beginning of a hold went into its fit without a word.
-    #[test]
-    fn a_few_rows_beyond_the_range_of_the_load_cell_are_absurd() {
-        let (_, force) = squeeze();
-        let with = |rows: std::ops::Range<usize>, value: f64| {
-            let mut force = force.clone();
-            force[rows].fill(value);
-            absurd_rows(&force)
-        };
-        assert_eq!(with(100..105, 99_999.0), [100, 101, 102, 103, 104]);
-        assert_eq!(with(397..400, -32_768.0), [397, 398, 399]);
-        assert!(with(100..105, 30.0).is_empty() && with(100..150, 99_999.0).is_empty());
-        // A force that falls to a hundredth at once, but not in one row.
-        let falling: Vec<f64> = (0..400).map(|i| (-0.5 * f64::from(i)).exp() + 1e-5 * f64::from(i % 7)).collect();
-        assert!(absurd_rows(&falling).is_empty());
-    }
-
     #[test]
     fn a_clipped_force_is_reported_from_a_held_displacement() {
         let (displacement, force) = squeeze();
@@ -354,6 +223,29 @@ mod tests {
         let held = of(Column::Displacement, &displacement, Some(&force)).saturation.unwrap();
         assert!(!held.clipped && held.longest == 300, "{held:?}");
         assert_eq!(of(Column::Force, &force, Some(&displacement)).saturation, None);
+    }
+
+    /// A force that swings as the jaw stops, or a few rows that stray, made of the jaw an encoder at the end of its range.
+    #[test]
+    fn a_jaw_that_stops_under_a_force_that_swings_is_not_clipped() {
+        let (displacement, force) = squeeze();
+        let clipped = |force: &[f64], displacement: &[f64]| {
+            of(Column::Displacement, displacement, Some(force)).saturation.is_some_and(|found| found.clipped)
+        };
+        let swings = |i: usize| 3.0 * (-0.03 * i as f64).exp() * (0.05 * i as f64).sin();
+        let ringing: Vec<f64> =
+            force.iter().enumerate().map(|(i, force)| force + swings(i.saturating_sub(100))).collect();
+        let mut spike = force.clone();
+        spike[101..106].iter_mut().for_each(|force| *force *= 1.3);
+        assert!(!clipped(&ringing, &displacement) && !clipped(&spike, &displacement));
+        let short: Vec<f64> = displacement.iter().map(|d| d.min(6e-3)).collect();
+        assert!(clipped(&force, &short));
+        // There and back: the force turns before an encoder leaves the end of its range, and as a jaw leaves its hold.
+        let there: Vec<f64> =
+            (0..800).map(|i: u32| 1e-4 * f64::from(i.min(100).min(700u32.saturating_sub(i)))).collect();
+        let late = |by: usize| (0..800).map(|i: usize| 1e3 * there[i.saturating_sub(by)]).collect::<Vec<f64>>();
+        let short: Vec<f64> = there.iter().map(|d| d.min(6e-3)).collect();
+        assert!(clipped(&late(0), &short) && !clipped(&late(40), &there));
     }
 
     #[test]
@@ -398,15 +290,6 @@ mod tests {
         let mut random = Rng::new(7);
         let noise: Vec<f64> = (0..3000).map(|_| random.normal()).collect();
         assert_eq!(of(Column::Force, &noise, None).strays.count, 0);
-    }
-
-    #[test]
-    fn corners_of_triangles_of_few_samples_are_no_strays() {
-        let corner = |i: usize| [0.0, 1.0, 2.0, 3.0, 2.0, 1.0][i % 6];
-        let mut triangle: Vec<f64> = (0..60).map(corner).chain((0..400).map(|i| 0.005 * f64::from(i))).collect();
-        assert_eq!(stray_rows(&triangle), [] as [usize; 0]);
-        triangle[300] = 0.0;
-        assert_eq!(stray_rows(&triangle), [300]);
     }
 
     #[test]

@@ -1,10 +1,11 @@
 //! The phases of a record: those that are given, those that its file labels, or those that a search finds.
 
+use super::fit_start::start_behind;
 use super::given::{GivenHold, searched_alone, with_given};
 use super::labelled::labelled;
 use super::whole::stated;
 use crate::record::Record;
-use crate::segment::{SegmentError, SegmentOptions, Segmentation};
+use crate::segment::{HoldStart, SegmentError, SegmentOptions, Segmentation};
 use crate::watch::{Unwatched, Watch};
 
 /// Fewest samples in which phases can be observed.
@@ -74,10 +75,14 @@ pub fn phases_watched(
     given: &[GivenHold],
     watch: &mut dyn Watch,
 ) -> Result<Segmentation, SegmentError> {
-    let record = record.without_strays();
-    if given.is_empty() {
-        found(&record, options, watch)
+    let (record, strays) = record.without_strays();
+    let mut found = if given.is_empty() {
+        found(&record, options, watch)?
     } else {
-        with_given(&record, options, given, watch)
+        with_given(&record, options, given, watch)?
+    };
+    if options.hold_start != HoldStart::Settled {
+        start_behind(&strays, &mut found.segments);
     }
+    Ok(found)
 }

@@ -1,5 +1,7 @@
 //! From where in a hold the laws are fitted.
 
+use std::ops::Range;
+
 use super::turning::extremes;
 use crate::record::Record;
 use crate::segment::{
@@ -30,6 +32,21 @@ pub(super) fn place_fits(record: &Record, options: &SegmentOptions, segments: &m
         let wander = if answers.is_some() { CONTROLLER } else { SERVO };
         let (sample, rule) = options.hold_start.sample(answers.unwrap_or(record), wander, segments, index);
         (segments[index].fit_start, segments[index].fit_start_rule) = (sample, Some(rule));
+    }
+}
+
+/// Samples from its start up to which a run that strays decides a fit.
+const DECIDES: usize = 5;
+
+/// Starts the fit of each held displacement behind the runs of the force that stray where it would start: no body relaxes in them.
+pub(super) fn start_behind(strays: &[Range<usize>], segments: &mut [Segment]) {
+    let answers = |segment: &&mut Segment| segment.phase == Phase::Hold && segment.mode != Some(HoldMode::ForceHeld);
+    for hold in segments.iter_mut().filter(answers) {
+        for run in strays {
+            if run.end > hold.fit_start && run.start < hold.fit_start + DECIDES && run.end + FEWEST < hold.end {
+                (hold.fit_start, hold.fit_start_rule) = (run.end, Some(FitStartRule::BehindStrays));
+            }
+        }
     }
 }
 
