@@ -573,3 +573,57 @@ fn a_few_rows_of_force_that_stray_hide_no_hold() {
         assert!((hold.0 - 2.0).abs() < 0.2 && (hold.1 - 62.0).abs() < 0.2, "{rows:?} of {value} N: {hold:?}");
     }
 }
+
+/// Where a record began without a force, a recovery at a hundredth of the creep's began 40 s late, and was unloading until then.
+#[test]
+fn a_recovery_at_a_hundredth_of_the_force_begins_as_the_force_is_reached() {
+    for low in [0.0, 0.1, 0.2] {
+        let record = driven(190.0, |t| {
+            Drive::Force(match t {
+                _ if t < 2.0 => 0.0,
+                _ if t < 3.0 => 20.0 * (t - 2.0),
+                _ if t < 63.0 => 20.0,
+                _ if t < 64.0 => 20.0 - (20.0 - low) * (t - 63.0),
+                _ => low,
+            })
+        });
+        near(&holds(&record), &[(3.0, 63.0, HoldMode::ForceHeld), (64.0, 189.95, HoldMode::ForceHeld)], 0.16);
+    }
+}
+
+/// A force that relaxed by less than a tenth of what it was let go by was rest, and its signs were suspicious.
+#[test]
+fn a_record_that_begins_in_its_hold_does_not_begin_at_rest() {
+    let time: Vec<f64> = (0..1200).map(|i| 0.05 * f64::from(i)).collect();
+    let jaw = |t: f64| 5e-3 - 3e-3 * (t - 30.0).clamp(0.0, 1.0);
+    let mut random = Rng::new(4);
+    let force = time.iter().map(|t| {
+        let held = 12.0 + (-t / 8.0).exp() - 11.0 * (t - 30.0).clamp(0.0, 1.0);
+        held + 0.3 * (1.0 - (-(t - 31.0).max(0.0) / 8.0).exp()) + 0.01 * random.normal()
+    });
+    let record = Record::new(time.clone(), Some(time.iter().map(|t| jaw(*t)).collect()), force.collect()).unwrap();
+    near(
+        &holds(&record),
+        &[(0.0, 30.0, HoldMode::DisplacementHeld), (31.0, 59.95, HoldMode::DisplacementHeld)],
+        0.11,
+    );
+    let found = analyze(&record, &AnalysisOptions::default()).unwrap().findings;
+    assert!(found.iter().all(|finding| finding.code() != "sign_suspicious"), "{found:?}");
+}
+
+/// One to five samples of 130 % at the start of a hold were the first term of its law.
+#[test]
+fn a_fit_begins_behind_rows_that_stray_where_it_would_begin() {
+    let time: Vec<f64> = (0..1200).map(|i| 0.05 * f64::from(i)).collect();
+    let jaw: Vec<f64> = time.iter().map(|t| 5e-3 * (t - 2.0).clamp(0.0, 1.0)).collect();
+    let mut random = Rng::new(4);
+    let relaxes = |t: f64| 12.0 + 8.0 * (-(t - 3.0).max(0.0) / 8.0).exp();
+    let force: Vec<f64> = time.iter().zip(&jaw).map(|(t, d)| d / 5e-3 * relaxes(*t) + 0.01 * random.normal()).collect();
+    for (start, length) in [(60, 1), (60, 3), (60, 5), (61, 2), (63, 5)] {
+        let mut stray = force.clone();
+        stray[start..start + length].iter_mut().for_each(|force| *force *= 1.3);
+        let found = phases(&Record::new(time.clone(), Some(jaw.clone()), stray).unwrap()).unwrap();
+        let hold = found.holds().next().unwrap();
+        assert_eq!((hold.fit_start, hold.fit_start_rule), (start + length, Some(FitStartRule::BehindStrays)));
+    }
+}

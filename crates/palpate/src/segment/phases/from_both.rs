@@ -114,9 +114,9 @@ fn creeps(
         level.value.abs().min(level.value - low).min(from_air) <= OPEN * range + 3.0 * found.settings.noise
     };
     let (mut pressed, mut likely, mut unseen) = (Vec::new(), Vec::new(), Vec::new());
-    // A body that recovers does so ever more slowly, and nowhere stands; a jaw that is clear of it goes at its speed, then stands.
+    // A body that recovers does so ever more slowly, and stands at the end alone; a jaw that is clear of it goes at its speed, then stands.
     let recovers = |level: &Level| {
-        slows_down(record, level, FIRST_HALF_TO_REST) && !still.iter().any(|still| overlap(still, level))
+        slows_down(record, level, FIRST_HALF_TO_REST) && still.iter().all(|still| rests_late(record, still, level))
     };
     let settled: Vec<Level> = found
         .levels

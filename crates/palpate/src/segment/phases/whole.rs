@@ -96,7 +96,7 @@ pub(super) fn whole(record: &Record, error: &SegmentError) -> Option<HoldMode> {
 const ANSWERS: f64 = 2.0;
 /// Share of a relaxation by which its force may turn back.
 const TURNS: f64 = 0.05;
-/// Share of the force's range by which a record that begins with its hold relaxes in it, at least.
+/// Share of the force's range that a record which begins with its hold still holds at the end of it, at least.
 const BEGINS: f64 = 0.1;
 
 /// Whether the force of a record is one relaxation from its first sample to its last, and does not answer to what the jaw seems to do:
@@ -137,7 +137,7 @@ fn shows_few_steps(record: &Record) -> bool {
 /// Whether the force of a record that stands still up to sample `end` relaxes there as in a hold whose ramp was not recorded.
 pub(super) fn begins_in_hold(record: &Record, end: usize, force_range: f64) -> bool {
     let (time, force) = (&record.time()[..end], &record.force()[..end]);
-    end >= FEWEST && range(force) > BEGINS * force_range && falls_to_a_rest(time, force)
+    end >= FEWEST && force[end - 1] > BEGINS * force_range && falls_to_a_rest(time, force)
 }
 
 /// Fewest samples of a hold that begins a record.
