@@ -87,6 +87,8 @@ pub enum Finding {
         time: f64,
         /// By how much, N.
         step: f64,
+        /// How long samples are missing before it, s; 0 where none are.
+        gap: f64,
     },
     /// The recommended law has a time constant longer than the hold.
     TimeBeyondHold {
@@ -96,6 +98,15 @@ pub enum Finding {
         time_constant: f64,
         /// The hold, s.
         duration: f64,
+    },
+    /// The recommended law has a time constant of no more than two sample intervals where it begins.
+    FirstSamplesAlone {
+        /// That law.
+        law: Law,
+        /// Its shortest time constant, s.
+        time_constant: f64,
+        /// The first sample interval, s.
+        interval: f64,
     },
     /// Terms of a series are redundant.
     TermsIndistinguishable {
@@ -301,6 +312,15 @@ pub enum Finding {
         /// Its standard error, s.
         standard_error: f64,
     },
+    /// One clock stamps both columns, and the force answers the displacement late or early.
+    ColumnsLag {
+        /// Time by which the force follows the displacement, s; negative where it precedes it.
+        lag: f64,
+        /// Correlation of their rates over the ramps with the lag taken out.
+        correlation: f64,
+        /// The same as they were recorded.
+        as_recorded: f64,
+    },
     /// The skew of the clocks was requested and is not determined.
     ClocksOpen {
         /// Skew from the edges of ramps with its standard error, s; `None` where too few appear in both columns.
@@ -469,7 +489,11 @@ mod tests {
             Finding::OneHold,
             Finding::DriftInsteadOfRelaxation { rise: 0.5, fall: 0.0 },
             Finding::NoContactArea,
-            Finding::ForceStep { time: 30.0, step: -2.0 },
+            Finding::ForceStep {
+                time: 30.0,
+                step: -2.0,
+                gap: 0.0,
+            },
         ];
         findings.sort_by_key(Finding::rank);
         let codes = findings.map(|finding| finding.code());

@@ -33,10 +33,10 @@ pub use finding::{Finding, Severity, unexplained_noise};
 pub use holds::{CreepError, CreepHold, HoldAnalysis, HoldoutError, RateBias, Signal, creep_holds};
 pub use options::{AnalysisOptions, Geometry, LayersChoice};
 pub use pipeline::{Analysis, analyze, analyze_watched, examine};
-pub(crate) use prepare::{measured_motion, signal_findings};
 pub use prepare::{
-    ClockSkew, Corrected, Prepared, clock_skew, corrected, corrected_watched, prepared, suspicious_signs,
+    ClockSkew, ColumnLag, Corrected, Prepared, clock_skew, corrected, corrected_watched, prepared, suspicious_signs,
 };
+pub(crate) use prepare::{measured_motion, signal_findings};
 pub use stated::{HoldReport, StatedRelaxation};
 pub use together::{
     Across, EstimatedModulus, JointAnalysis, JointHolds, LevelAgreement, LoadingModulus, ModulusSource, Overlay, Trend,

@@ -37,9 +37,17 @@ impl Finding {
                 "the estimated equilibrium depends on the exponent; a different exponent gives a different equilibrium",
                 "hold longer, or compare holds at one fixed exponent",
             ),
-            Self::ForceStep { time, step } => caution(
+            Self::ForceStep { time, step, gap } => caution(
                 "force_step",
-                format!("the force {} by {} N at once at {} s", if *step < 0.0 { "falls" } else { "rises" }, significant(step.abs(), 3), significant(*time, 5)),
+                format!(
+                    "the force {} by {} N {}",
+                    if *step < 0.0 { "falls" } else { "rises" },
+                    significant(step.abs(), 3),
+                    match *gap {
+                        0.0 => format!("at once at {} s", significant(*time, 5)),
+                        gap => format!("in the {} s without samples before {} s", significant(gap, 3), significant(*time, 5)),
+                    }
+                ),
                 "the body slipped or cracked, the grip gave way or something struck the machine: no law of relaxation describes the hold across it",
                 "repeat the test, or fit the part before with ⟨fit_until⟩",
             ),
@@ -52,6 +60,16 @@ impl Finding {
                 ),
                 "a hold does not show how a process ends that outlasts it: this time constant, its amplitude and the equilibrium are extrapolated, and a drift looks like one",
                 "hold longer, or report the parameters of shorter times alone",
+            ),
+            Self::FirstSamplesAlone { law, time_constant, interval } => caution(
+                "first_samples_alone",
+                format!(
+                    "the shortest time constant of {law}, {} s, is that of the first samples, which are {} s apart",
+                    significant(*time_constant, 2),
+                    significant(*interval, 3)
+                ),
+                "this term rests on the first samples alone: a spike of the load cell or a jaw that swings looks like it, and its amplitude and time are not those of the body",
+                "begin the fit later (hold_start), or sample faster at the start of holds",
             ),
             Self::EquilibriumBeyondZero { share, interval } => caution(
                 "equilibrium_beyond_zero",
@@ -250,9 +268,9 @@ impl Finding {
                 "dropouts_repaired",
                 match count {
                     1 => format!("one row of the {} is an outlier", column.name()),
-                    _ => format!("{count} single rows of the {} are outliers", column.name()),
+                    _ => format!("{count} rows of the {} are outliers", column.name()),
                 },
-                "the encoder or the logger lost a value; the mean of the neighbours replaces it",
+                "the encoder or the logger lost a value; the line between the rows beside replaces it",
                 "check the logger",
             ),
             Self::RowsStray { count, time, force } => {
@@ -324,7 +342,7 @@ impl Finding {
                 warning(
                     "saturated",
                     format!("the {name} stands at its extreme, {level}, in {rows} rows{among}"),
-                    "the sensor was at the end of its range; peaks, fits and moduli that depend on these rows are wrong",
+                    "the sensor was at the end of its range while the other column went on; peaks, fits and moduli that depend on these rows are wrong",
                     "repeat the test with a larger range; do not use holds at that value",
                 )
             }
@@ -404,6 +422,19 @@ impl Finding {
                 ),
                 "two clocks stamp the columns; fits of holds are unaffected, but forces in ramps have the wrong displacement",
                 "set skew = \"auto\" in [clock] of the test description to correct it",
+            ),
+            Self::ColumnsLag { lag, correlation, as_recorded } => caution(
+                "columns_lag",
+                format!(
+                    "in the ramps the {} lags behind the {} by {} s: with that taken out their rates correlate by {}, as recorded by {}",
+                    if *lag > 0.0 { "force" } else { "displacement" },
+                    if *lag > 0.0 { "displacement" } else { "force" },
+                    significant(lag.abs(), 3),
+                    significant(*correlation, 2),
+                    significant(*as_recorded, 2)
+                ),
+                "two loggers, a filter or a buffer delay a column: phases come from the displacement, so that holds, their fits and first touch are off by that time",
+                "give the delay of the force as skew in [clock] of the test description (negative where the displacement lags), and analyse again",
             ),
             Self::ClocksOpen { one_clock: true, .. } => info(
                 "clocks_open",

@@ -24,8 +24,8 @@ pub(super) fn add_forecasts(
     Ok(())
 }
 
-/// What a comparison gives cause to say.
-pub(super) fn comparison_findings(comparison: &Comparison) -> Vec<Finding> {
+/// What a comparison gives cause to say on a hold whose first two samples are an `interval` (s) apart.
+pub(super) fn comparison_findings(comparison: &Comparison, interval: f64) -> Vec<Finding> {
     let laws = |which: &dyn Fn(&Fit) -> bool| -> Vec<Law> {
         let fits = comparison.rows.iter().filter_map(|row| row.fit.as_ref().ok());
         fits.filter(|fit| which(fit)).map(|fit| fit.law).collect()
@@ -40,7 +40,7 @@ pub(super) fn comparison_findings(comparison: &Comparison) -> Vec<Finding> {
         [verdict.law].iter().chain(alternatives).copied().collect()
     });
     let mut findings = Vec::new();
-    findings.extend(time_beyond_hold(comparison));
+    findings.extend(times_out_of_sight(comparison, interval));
     if !at_bound.is_empty() {
         findings.push(Finding::ParametersAtBound { laws: at_bound });
     }
@@ -53,18 +53,33 @@ pub(super) fn comparison_findings(comparison: &Comparison) -> Vec<Finding> {
     findings
 }
 
-/// A time constant of the recommended law that outlasts the hold.
-fn time_beyond_hold(comparison: &Comparison) -> Option<Finding> {
-    let law = comparison.verdict.as_ref()?.law;
-    let fit = comparison.rows.iter().find(|row| row.law == law)?.fit.as_ref().ok()?;
+/// Sample intervals up to which a time constant is that of the first samples.
+const FIRST_SAMPLES: f64 = 2.0;
+
+/// Time constants of the recommended law that the hold does not show: one that outlasts it, and one of a series that ends with its first samples.
+fn times_out_of_sight(comparison: &Comparison, interval: f64) -> Vec<Finding> {
+    let recommended = comparison.verdict.as_ref().map(|verdict| verdict.law);
+    let row = comparison.rows.iter().find(|row| Some(row.law) == recommended);
+    let Some((law, fit)) = row.and_then(|row| Some((row.law, row.fit.as_ref().ok()?))) else {
+        return Vec::new();
+    };
     let times = fit.parameters.iter().filter(|parameter| parameter.name.kind == ParameterKind::Time);
-    let time_constant = times.map(|parameter| parameter.estimate.value).fold(0.0, f64::max);
+    let (shortest, longest) = times
+        .map(|parameter| parameter.estimate.value)
+        .fold((f64::INFINITY, 0.0f64), |(least, most), time| (least.min(time), most.max(time)));
     let duration = comparison.duration;
-    (time_constant > duration).then_some(Finding::TimeBeyondHold {
+    let outlasts = (longest > duration).then_some(Finding::TimeBeyondHold {
         law,
-        time_constant,
+        time_constant: longest,
         duration,
-    })
+    });
+    let is_series = matches!(law, Law::StandardLinearSolid | Law::Prony { .. });
+    let is_over = (is_series && shortest < FIRST_SAMPLES * interval).then_some(Finding::FirstSamplesAlone {
+        law,
+        time_constant: shortest,
+        interval,
+    });
+    outlasts.into_iter().chain(is_over).collect()
 }
 
 /// What shows that a hold is not one of constant displacement with a force that relaxes.
@@ -130,8 +145,23 @@ mod tests {
                 ..CompareOptions::default()
             };
             let found = compare_laws(&Samples::new(&times, &values), &options).unwrap();
-            comparison_findings(&found).iter().map(Finding::code).collect()
+            comparison_findings(&found, times[1]).iter().map(Finding::code).collect()
         };
         assert!(codes(5.0).contains(&"time_beyond_hold") && !codes(20.0).contains(&"time_beyond_hold"));
+    }
+
+    /// A first sample 6 % too high was a term of 7 ms in a "clear" law, of samples 50 ms apart.
+    #[test]
+    fn a_term_of_the_first_sample_alone_is_reported() {
+        let codes = |first: f64| -> Vec<&'static str> {
+            let mut random = Rng::new(4);
+            let times: Vec<f64> = (0..400).map(|i| 0.05 * f64::from(i)).collect();
+            let mut values: Vec<f64> =
+                times.iter().map(|t| 12.0 + 8.0 * (-t / 5.0).exp() + 1e-2 * random.normal()).collect();
+            values[0] += first;
+            let found = compare_laws(&Samples::new(&times, &values), &CompareOptions::default()).unwrap();
+            comparison_findings(&found, times[1]).iter().map(Finding::code).collect()
+        };
+        assert!(codes(1.2).contains(&"first_samples_alone") && !codes(0.0).contains(&"first_samples_alone"));
     }
 }

@@ -204,7 +204,7 @@ pub fn creep_holds(
             fit_start: time[from],
             force: median(&mut record.force()[hold.start..hold.end].to_vec()),
             after: hold.after,
-            findings: comparison.as_ref().map_or_else(Vec::new, comparison_findings),
+            findings: comparison.as_ref().map_or_else(Vec::new, |found| comparison_findings(found, times[1])),
             times,
             displacement,
             comparison,

@@ -189,7 +189,8 @@ pub(in crate::analysis) fn complete_hold(
         hold.comparison = compare(hold, loading(record, ramp, &hold.segment), options, watch)?;
         hold.rate_bias = hold.preferred().and_then(|fit| rate_bias(hold.samples(), fit, options));
         judge(hold);
-        hold.findings.extend(hold.comparison.iter().flat_map(comparison_findings));
+        let interval = hold.times[1];
+        hold.findings.extend(hold.comparison.iter().flat_map(|found| comparison_findings(found, interval)));
     }
     hold.findings.extend(not_a_hold(record, &hold.segment));
     hold.findings.extend(force_step(record, &hold.segment));

@@ -9,17 +9,23 @@ use crate::statistics::{median, noise, range};
 const LEVEL: usize = 5;
 /// How many times the noise of a sample, and the change from level to level beside it, a step exceeds.
 const CLEAR: f64 = 8.0;
+/// How many times as much as at the speed beside it the force changes in a step while samples are missing.
+const GOES_ON: f64 = 2.0;
 /// Share of the range of the force in the hold that it exceeds.
 const LEAST: f64 = 0.1;
 /// More steps are the digits of a force that is rounded coarsely.
 const MOST: usize = 3;
 
-/// The largest step of the force between two samples of a hold; none where the force goes on as it went before.
+/// The largest step of the force between two samples of a hold; none where the force goes on as it went before, be it while samples are missing.
 ///
 /// Levels are medians of five samples. A force that relaxes, however fast, changes about as much from level to level before and behind;
 /// a step changes it once.
 pub(super) fn force_step(record: &Record, segment: &Segment) -> Option<Finding> {
     let force = &record.force()[segment.fit_start..segment.end];
+    let time = &record.time()[segment.fit_start..segment.end];
+    // Longer than a level lasts before it.
+    let missing =
+        |i: usize| Some(time[i] - time[i - 1]).filter(|gap| *gap > time[i - 1] - time[i - 1 - LEVEL]).unwrap_or(0.0);
     let level = |from: usize| median(&mut force[from..from + LEVEL].to_vec());
     let least = (LEAST * range(force)).max(CLEAR * noise(force));
     let mut steps: Vec<(usize, f64)> = Vec::new();
@@ -31,7 +37,10 @@ pub(super) fn force_step(record: &Record, segment: &Segment) -> Option<Finding> 
         let levels = [i - 2 * LEVEL, i - LEVEL, i, i + LEVEL].map(level);
         let step = levels[2] - levels[1];
         let beside = (levels[1] - levels[0]).abs().max((levels[3] - levels[2]).abs());
-        if step.abs() > least && step.abs() > CLEAR * beside {
+        let missing = missing(i);
+        // While samples are missing the force goes on.
+        let goes_on = GOES_ON * beside * missing / (time[i - 1] - time[i - 1 - LEVEL]);
+        if step.abs() > least && step.abs() > goes_on.max(CLEAR * beside) {
             steps.push((i, step));
         }
     }
@@ -40,8 +49,9 @@ pub(super) fn force_step(record: &Record, segment: &Segment) -> Option<Finding> 
     }
     let (at, step) = steps.into_iter().max_by(|a, b| a.1.abs().total_cmp(&b.1.abs()))?;
     Some(Finding::ForceStep {
-        time: record.time()[segment.fit_start + at],
+        time: time[at],
         step,
+        gap: missing(at),
     })
 }
 
@@ -66,7 +76,7 @@ mod tests {
             let findings = found.holds.iter().flat_map(|hold| &hold.findings);
             findings
                 .filter_map(|finding| match finding {
-                    Finding::ForceStep { time, step } => Some((*time, *step)),
+                    Finding::ForceStep { time, step, .. } => Some((*time, *step)),
                     _ => None,
                 })
                 .collect()
@@ -84,5 +94,28 @@ mod tests {
                 assert_eq!(steps(smooth, noise), []);
             }
         }
+    }
+
+    /// Relaxation that went on while a clock paused was a step "at once", as was a step in the pause.
+    #[test]
+    fn a_step_while_samples_are_missing_is_none_or_says_so() {
+        let steps = |slips: f64, pause: std::ops::Range<f64>| -> Option<(f64, f64)> {
+            let mut random = Rng::new(6);
+            let time: Vec<f64> = (0..1200).map(|i| 0.05 * f64::from(i)).filter(|t| !pause.contains(t)).collect();
+            let travel = time.iter().map(|t| t.min(1.0) * 5e-3).collect();
+            let relaxing = |t: f64| t.min(1.0) * (12.0 + 8.0 * (-(t - 1.0).max(0.0) / 8.0).exp());
+            let force =
+                time.iter().map(|t| relaxing(*t) - if *t > 30.0 { slips } else { 0.0 } + 2e-3 * random.normal());
+            let record = Record::new(time.clone(), Some(travel), force.collect()).unwrap();
+            let found = analyze(&record, &AnalysisOptions::default()).unwrap();
+            found.holds[0].findings.iter().find_map(|finding| match finding {
+                Finding::ForceStep { step, gap, .. } => Some((*step, *gap)),
+                _ => None,
+            })
+        };
+        assert_eq!(steps(0.0, 5.0..15.0), None);
+        let (step, gap) = steps(2.0, 25.0..32.0).unwrap();
+        assert!((step + 2.2).abs() < 0.1 && (gap - 7.05).abs() < 0.01, "{step} {gap}");
+        assert_eq!(steps(2.0, 5.0..5.0).map(|(_, gap)| gap), Some(0.0));
     }
 }

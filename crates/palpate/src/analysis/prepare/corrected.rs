@@ -1,5 +1,6 @@
 //! The requested corrections, in order.
 
+use super::lag::{ColumnLag, column_lag};
 use super::ramps_alone::{is_without_hold, ramps_alone};
 use super::skew::skew_watched;
 use crate::analysis::{AnalysisError, AnalysisOptions, ClockSkew, Finding};
@@ -21,21 +22,27 @@ pub struct Corrected {
     pub segmentation: Result<Segmentation, SegmentError>,
     /// Estimated skew of the clocks of the uncorrected record.
     pub skew: Option<ClockSkew>,
+    /// Lag of the columns where one clock stamps both.
+    pub lag: Option<ColumnLag>,
     /// Whether a correction of the skew was requested.
     pub skew_requested: bool,
 }
 
 impl Corrected {
-    /// The record with corrected clocks and the properties of its columns, if the clocks differ.
+    /// The record with corrected clocks and the properties of its columns, if the clocks differ or a column lags.
     #[must_use]
     pub fn aligned(&self, record: &Record) -> Option<(Record, SignalReport)> {
-        let skew = self.skew.filter(ClockSkew::is_observed)?;
-        let aligned = record.without_skew(skew.skew, Some(skew.standard_error)).ok()?;
+        let aligned = match (self.skew.filter(ClockSkew::is_observed), self.lag) {
+            (Some(skew), _) => record.without_skew(skew.skew, Some(skew.standard_error)),
+            (None, Some(lag)) => record.without_skew(lag.lag, None),
+            (None, None) => return None,
+        };
+        let aligned = aligned.ok()?;
         let signals = aligned.signals();
         Some((aligned, signals))
     }
 
-    /// [`Finding::ClocksSkewed`] if two clocks differ and no correction was requested, [`Finding::ClocksOpen`] if it was requested and is
+    /// [`Finding::ColumnsLag`] if one clock stamps columns of which one lags; [`Finding::ClocksSkewed`] if two clocks differ and no correction was requested, [`Finding::ClocksOpen`] if it was requested and is
     /// not determined, or there is one clock.
     ///
     /// They differ if the skew exceeds its error and a sample interval, since the signal between two samples is unknown. The skew
@@ -43,10 +50,11 @@ impl Corrected {
     #[must_use]
     pub fn skew_finding(&self) -> Option<Finding> {
         if self.record.clocks() == 1 {
-            return self.skew_requested.then_some(Finding::ClocksOpen {
+            let open = self.skew_requested.then_some(Finding::ClocksOpen {
                 skew: None,
                 one_clock: true,
             });
+            return self.lag.map(Finding::from).or(open);
         }
         let skew = self.skew.map(|skew| (skew, skew.interval.max(self.record.sample_interval())));
         let removed = |done: &Correction| matches!(done, Correction::SkewRemoved { .. });
@@ -125,7 +133,12 @@ pub fn corrected_watched(
     }
     touch_within(&next, options.touch)?;
     let segmentation = if next.corrections().len() == before { segmentation } else { phases(&next, watch)? };
+    let lag = match &segmentation {
+        Ok(segmentation) if next.clocks() == 1 => column_lag(&next, segmentation),
+        _ => None,
+    };
     Ok(Corrected {
+        lag,
         record: next,
         segmentation,
         skew,
@@ -176,11 +189,7 @@ impl Corrected {
     }
 
     /// The same set to zero at first touch, which `touch` says how to find.
-    pub(crate) fn prepared(
-        &self,
-        options: &AnalysisOptions,
-        touch: ContactChoice,
-    ) -> Result<Prepared, AnalysisError> {
+    pub(crate) fn prepared(&self, options: &AnalysisOptions, touch: ContactChoice) -> Result<Prepared, AnalysisError> {
         let segmentation = self.segmentation.clone()?;
         // First touch is one of geometry, and so is the limit below; any modulus will do.
         let body = options.geometry.as_ref().map(|geometry| geometry.specimen(1.0)).transpose()?;

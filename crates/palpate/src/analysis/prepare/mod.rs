@@ -6,18 +6,21 @@
 //! |---|---|
 //! | `corrected.rs` | the requested corrections, in order, then zero at first touch |
 //! | `skew.rs`, `kink.rs` | how much later the force is stamped than the displacement |
+//! | `lag.rs` | how much later the force answers where one clock stamps both columns |
 //! | `motion.rs` | the motion of the jaw, its noise taken out |
 //! | `ramps_alone.rs` | the ramps of a record without a hold |
 //! | `signals.rs` | what the columns, and what was done to them, give cause to say |
 
 mod corrected;
 mod kink;
+mod lag;
 mod motion;
 mod ramps_alone;
 mod signals;
 mod skew;
 
 pub use corrected::{Corrected, Prepared, corrected, corrected_watched, prepared};
+pub use lag::ColumnLag;
 pub(crate) use motion::measured_motion;
 pub(crate) use signals::signal_findings;
 pub use signals::suspicious_signs;
