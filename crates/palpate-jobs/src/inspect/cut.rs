@@ -27,8 +27,8 @@ pub(super) struct Cut {
     /// How many corrections were made before.
     before: usize,
     found: Result<Segmentation, SegmentError>,
-    /// That the clocks differ, if they do.
-    skewed: Option<Finding>,
+    /// That the clocks differ, or a column lags, if they do.
+    skewed: Vec<Finding>,
     /// What the columns are like where clocks that differ are put right.
     pub(super) signals: Option<SignalReport>,
 }
@@ -44,7 +44,7 @@ impl Cut {
         let before = record.corrections().len();
         let corrected = corrected_watched(record, &options, watch)?;
         Ok(Self {
-            skewed: corrected.skew_finding(),
+            skewed: corrected.skew_finding().into_iter().chain(corrected.lag.map(Finding::from)).collect(),
             signals: corrected.aligned(record).map(|(_, signals)| signals),
             record: corrected.record,
             before,

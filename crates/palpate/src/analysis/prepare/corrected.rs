@@ -42,7 +42,7 @@ impl Corrected {
         Some((aligned, signals))
     }
 
-    /// [`Finding::ColumnsLag`] if one clock stamps columns of which one lags; [`Finding::ClocksSkewed`] if two clocks differ and no correction was requested, [`Finding::ClocksOpen`] if it was requested and is
+    /// [`Finding::ClocksSkewed`] if two clocks differ and no correction was requested, [`Finding::ClocksOpen`] if it was requested and is
     /// not determined, or there is one clock.
     ///
     /// They differ if the skew exceeds its error and a sample interval, since the signal between two samples is unknown. The skew
@@ -50,11 +50,10 @@ impl Corrected {
     #[must_use]
     pub fn skew_finding(&self) -> Option<Finding> {
         if self.record.clocks() == 1 {
-            let open = self.skew_requested.then_some(Finding::ClocksOpen {
+            return self.skew_requested.then_some(Finding::ClocksOpen {
                 skew: None,
                 one_clock: true,
             });
-            return self.lag.map(Finding::from).or(open);
         }
         let skew = self.skew.map(|skew| (skew, skew.interval.max(self.record.sample_interval())));
         let removed = |done: &Correction| matches!(done, Correction::SkewRemoved { .. });

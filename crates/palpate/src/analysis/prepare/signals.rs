@@ -30,7 +30,7 @@ pub(crate) fn signal_findings(
     let aligned = aligned.as_ref().map_or(measured, |(record, signals)| (record, signals));
     findings.extend(column_findings(aligned, segmentation, record));
     findings.extend(rows_astray(&corrected.record));
-    findings.extend(corrected.skew_finding());
+    findings.extend(corrected.skew_finding().into_iter().chain(corrected.lag.map(Finding::from)));
     if !segmentation.settings.from_displacement {
         findings.push(Finding::PhasesFromForce);
     }
