@@ -2,15 +2,18 @@
 //!
 //! `2024-08-24T21:09:40.123Z`, `2024-08-24 21:09:40,123`, `2024-08-24 21:09:40+02:00`: year first, seconds and all;
 //! `24.08.2024 21:09:40`, where points stand between day, month and year; `21:09:40.123` or `09:09:40.123 PM`, a time of day or of a
-//! stopwatch.
+//! stopwatch; `10:15` or `10:15.5`, two fields of which the last counts the unit of the column: minutes and seconds, or hours and minutes.
 //! Without a zone, times are taken as they stand: differences are right unless clocks were changed in between. Dates with
 //! slashes that end in the year are none: nothing says whether the day or the month comes first.
 
 /// Seconds since 1970 of a date with its time of day, or since midnight of a time of day; a leap second counts as the one
-/// behind it.
+/// behind it. Of two fields sixty times the first and the last.
 pub(crate) fn parse(cell: &[u8]) -> Option<f64> {
     if let Some((seconds, fraction, [])) = time_of_day(cell) {
         return Some(seconds as f64 + fraction);
+    }
+    if let Some(time) = two_fields(cell) {
+        return Some(time);
     }
     let (date, rest) = year_first(cell).or_else(|| year_last(cell))?;
     let (of_day, fraction, rest) = time_of_day(behind(rest, b"T t")?)?;
@@ -28,6 +31,21 @@ pub(crate) fn day(cell: &[u8]) -> Option<f64> {
 /// Whether a cell is a time of day without a date.
 pub(crate) fn is_time_of_day(cell: &[u8]) -> bool {
     matches!(time_of_day(cell), Some((.., [])))
+}
+
+/// Whether a cell is a clock of two fields, `10:15`.
+pub(crate) fn has_two_fields(cell: &[u8]) -> bool {
+    two_fields(cell).is_some()
+}
+
+fn two_fields(cell: &[u8]) -> Option<f64> {
+    let (first, rest) = digits(cell, 3).or_else(|| one_or_two_digits(cell))?;
+    let (last, rest) = digits(behind(rest, b":")?, 2)?;
+    let (fraction, rest) = match behind(rest, b".,") {
+        Some(rest) => fraction(rest)?,
+        None => (0.0, rest),
+    };
+    (last < 60 && rest.is_empty()).then(|| (60 * first + last) as f64 + fraction)
 }
 
 /// Year, month and day.
@@ -57,7 +75,12 @@ fn year_last(cell: &[u8]) -> Option<(Date, &[u8])> {
 fn time_of_day(text: &[u8]) -> Option<(i64, f64, &[u8])> {
     let (hour, rest) = one_or_two_digits(text)?;
     let (minute, rest) = digits(behind(rest, b":")?, 2)?;
-    let (second, rest) = digits(behind(rest, b":")?, 2)?;
+    let (second, rest) = match behind(rest, b":") {
+        Some(rest) => digits(rest, 2)?,
+        // "10:15 AM"
+        None if rest.trim_ascii_end().to_ascii_lowercase().ends_with(b"m") => (0, rest),
+        None => return None,
+    };
     let (fraction, rest) = match behind(rest, b".,") {
         Some(rest) => fraction(rest)?,
         None => (0.0, rest),
@@ -152,6 +175,10 @@ mod tests {
             ("11:59:45.5 AM", 43_185.5),
             ("12:00:01 am", 1.0),
             ("1:00:00 PM", 46_800.0),
+            ("1:15 PM", 47_700.0),
+            ("01:05", 65.0),
+            ("00:05.25", 5.25),
+            ("125:30,5", 7530.5),
         ] {
             assert_eq!(parse(text.as_bytes()), Some(seconds), "{text}");
         }
@@ -162,7 +189,9 @@ mod tests {
         for text in [
             "",
             "2024-08-24",
-            "09:40",
+            "9:4",
+            "09:60",
+            "1:09:60:00",
             "24:00:00",
             "24/08/2024 21:09:40",
             "24.13.2024 21:09:40",

@@ -4,7 +4,7 @@
 
 use palpate::units::{self, Dimension};
 
-use crate::naming::is_unit_in_words;
+use crate::naming::{is_unit_in_words, names_quantity};
 
 /// Words that units are made of, in lower case.
 const WORDS: &[&str] = &[
@@ -79,7 +79,8 @@ pub(crate) fn alone(cell: &str) -> Option<String> {
 
 /// Whether a cell is a unit in a cell of its own: anything in brackets, or a known unit.
 pub(crate) fn stands_alone(cell: &str) -> bool {
-    inside_brackets(cell.trim()).is_some() || cell.trim() == "-" || is_known(cell)
+    let in_words = || is_unit_in_words(cell) && !names_quantity(cell);
+    inside_brackets(cell.trim()).is_some() || cell.trim() == "-" || is_known(cell) || in_words()
 }
 
 /// Whether all of a cell is in one pair of brackets.
@@ -101,6 +102,11 @@ pub(crate) fn is_known(text: &str) -> bool {
     only_one || (words.peek().is_some() && words.all(|word| is_one_of(WORDS, word)))
 }
 
+/// Whether a text behind a name is its unit.
+fn is_unit(text: &str) -> bool {
+    is_known(text) || is_unit_in_words(text)
+}
+
 fn is_one_of(known: &[&str], word: &str) -> bool {
     let word = word.to_lowercase();
     known.contains(&word.as_str())
@@ -117,10 +123,10 @@ fn bracketed(cell: &str) -> Option<(&str, &str)> {
         });
         let (place, _) = opening?;
         let unit = body[place + open.len_utf8()..].trim();
-        // Round brackets also hold remarks: "Strain (Extension)".
-        let known = is_known(unit) || is_unit_in_words(unit);
+        // Round brackets also hold remarks: "Strain (Extension)". A share is a unit whatever it is one of: "(% FS)".
+        let known = is_unit(unit) || unit.starts_with('%');
         let remark = matches!(open, '(' | '（') && !known && unit != "-";
-        (!remark).then_some((&cell[..place], unit))
+        (!remark).then_some((cell[..place].trim_end().trim_end_matches('/'), unit))
     })
 }
 
@@ -130,7 +136,7 @@ fn behind_slash(cell: &str) -> Option<(&str, &str)> {
         // "mm/s" is a unit, no name with a unit.
         None => cell.split_once('/').filter(|(name, unit)| !is_known(name) || is_symbol_of(name, unit))?,
     };
-    (!name.trim().is_empty() && is_known(unit)).then_some((name, unit))
+    (!name.trim().is_empty() && is_unit(unit)).then_some((name, unit))
 }
 
 /// Whether a letter that is a unit as well is the symbol of a quantity in this unit: "F/mN", "s/mm".
@@ -144,8 +150,8 @@ fn is_symbol_of(name: &str, unit: &str) -> bool {
 }
 
 fn behind_word(cell: &str) -> Option<(&str, &str)> {
-    let parts = cell.rsplit_once(", ").or_else(|| cell.rsplit_once(" in "));
-    parts.filter(|(name, unit)| !name.trim().is_empty() && is_known(unit))
+    let parts = [", ", " in ", " в "].iter().find_map(|mark| cell.rsplit_once(mark));
+    parts.filter(|(name, unit)| !name.trim().is_empty() && is_unit(unit))
 }
 
 fn behind_underscore(cell: &str) -> Option<(&str, &str)> {
@@ -188,6 +194,14 @@ mod tests {
             ("Load (pounds)", "Load", "pounds"),
             ("Kraft (Kilonewton)", "Kraft", "Kilonewton"),
             ("Weg in mm", "Weg", "mm"),
+            ("Force (x10^-3 N)", "Force", "x10^-3 N"),
+            ("Force (N x 1e-3)", "Force", "N x 1e-3"),
+            ("Force / 10^3 N", "Force", "10^3 N"),
+            ("Force/(10^3 N)", "Force", "10^3 N"),
+            ("Load (% FS)", "Load", "% FS"),
+            ("Время, с", "Время", "с"),
+            ("Усилие (кгс)", "Усилие", "кгс"),
+            ("하중(뉴턴)", "하중", "뉴턴"),
         ] {
             assert_eq!(split(cell), (Some(name.to_owned()), Some(unit.to_owned())));
         }

@@ -21,6 +21,12 @@ pub enum Encoding {
     /// Shift JIS (Japanese), as Windows writes it.
     #[serde(rename = "shift_jis")]
     ShiftJis,
+    /// EUC-KR (Korean), as Windows writes it (code page 949).
+    #[serde(rename = "euc-kr")]
+    EucKr,
+    /// Windows-1251 (Cyrillic).
+    #[serde(rename = "windows-1251")]
+    Windows1251,
     /// Windows-1252, which contains Latin-1.
     #[serde(rename = "windows-1252")]
     Windows1252,
@@ -28,10 +34,19 @@ pub enum Encoding {
 
 impl Encoding {
     /// Every encoding that can be read.
-    const ALL: [Self; 6] = [Self::Utf8, Self::Utf16Le, Self::Utf16Be, Self::Gbk, Self::ShiftJis, Self::Windows1252];
+    const ALL: [Self; 8] = [
+        Self::Utf8,
+        Self::Utf16Le,
+        Self::Utf16Be,
+        Self::Gbk,
+        Self::ShiftJis,
+        Self::EucKr,
+        Self::Windows1251,
+        Self::Windows1252,
+    ];
 
     /// Whether line ends, delimiters, quotes and digits are the same bytes as in ASCII and occur in no other
-    /// role, so that rows can be split without decoding. Second bytes of GBK and Shift JIS start at 0x40 ('@'); the digits
+    /// role, so that rows can be split without decoding. Second bytes of GBK, Shift JIS and EUC-KR start at 0x40 ('@'); the digits
     /// inside four-byte GB 18030 sequences are harmless, because no digit splits anything.
     pub(crate) fn splits_like_ascii(self) -> bool {
         !matches!(self, Self::Utf16Le | Self::Utf16Be)
@@ -44,6 +59,8 @@ impl Encoding {
             Self::Utf16Be => encoding_rs::UTF_16BE,
             Self::Gbk => encoding_rs::GBK,
             Self::ShiftJis => encoding_rs::SHIFT_JIS,
+            Self::EucKr => encoding_rs::EUC_KR,
+            Self::Windows1251 => encoding_rs::WINDOWS_1251,
             Self::Windows1252 => encoding_rs::WINDOWS_1252,
         }
     }
@@ -77,6 +94,8 @@ pub(crate) fn recognise(sample: &[u8]) -> Option<Encoding> {
         // No error length: the sample merely ends inside a character.
         Err(error) if error.error_len().is_none() => Some(Encoding::Utf8),
         Err(_) if looks_japanese(sample) => Some(Encoding::ShiftJis),
+        Err(_) if looks_cyrillic(sample) => Some(Encoding::Windows1251),
+        Err(_) if looks_korean(sample) => Some(Encoding::EucKr),
         Err(_) if looks_chinese(sample) => Some(Encoding::Gbk),
         Err(_) => Some(Encoding::Windows1252),
     }
@@ -92,6 +111,49 @@ fn unmarked_utf16(sample: &[u8]) -> Option<Encoding> {
         true => Some(Encoding::Utf16Le),
         false => only(even, odd).then_some(Encoding::Utf16Be),
     }
+}
+
+/// Whether the bytes above ASCII are words of Cyrillic letters: three or more in a row, all small but perhaps the first, or all large;
+/// two words or a long one.
+///
+/// Letters with accents stand alone in Western words, and pairs of Chinese and Korean mix what would be small and large letters.
+fn looks_cyrillic(sample: &[u8]) -> bool {
+    const LARGE: std::ops::RangeInclusive<u8> = 0xC0..=0xDF;
+    let is_small = |byte: &u8| *byte >= 0xE0 || *byte == 0xB8;
+    let is_word = |run: &[u8]| match run {
+        [first, rest @ ..] => {
+            let is_capital = LARGE.contains(first) || *first == 0xA8;
+            let all_large = rest.iter().all(|byte| LARGE.contains(byte));
+            run.len() > 2 && (is_capital || is_small(first)) && (rest.iter().all(is_small) || is_capital && all_large)
+        }
+        [] => false,
+    };
+    // The blank that breaks no line stands between thousands.
+    let runs = sample.split(|byte| *byte < 0x80 || *byte == 0xA0);
+    let (in_words, others) = runs.fold((0, 0), |(in_words, others), run| match is_word(run) {
+        true => (in_words + run.len(), others),
+        false => (in_words, others + run.len()),
+    });
+    in_words > 5 && in_words > 2 * others
+}
+
+/// Whether the bytes above ASCII pair up as Korean syllables, of which there are four or more.
+///
+/// All of them begin in the first half of the rows that Chinese has its common characters in, as these never do for long.
+fn looks_korean(sample: &[u8]) -> bool {
+    let (mut syllables, mut bytes) = (0_usize, sample.iter().copied());
+    while let Some(lead) = bytes.next() {
+        if lead < 0x80 {
+            continue;
+        }
+        match (lead, bytes.next()) {
+            (_, None) => break,
+            (0xB0..=0xC8, Some(0xA1..=0xFE)) => syllables += 1,
+            (0xA1..=0xA3, Some(0xA1..=0xFE)) => {}
+            _ => return false,
+        }
+    }
+    syllables >= 4
 }
 
 /// Whether the bytes above ASCII pair up as everyday Chinese.
@@ -176,6 +238,30 @@ mod tests {
             [&b"Temp (\xB0C), d (\xB5m)"[..], b"Gr\xF6\xDFe;Weg (\xB5m)", b"d\xE9placement,temps", b"fin \xE9\n"]
         {
             assert_eq!(recognise(western), Some(Encoding::Windows1252));
+        }
+    }
+
+    #[test]
+    fn cyrillic_and_korean_against_the_others() {
+        let encoded = |text: &str, encoding: Encoding| encoding.codec().encode(text).0.into_owned();
+        for text in [
+            "Время, с; Сила, Н; Перемещение, мм\n",
+            "ПРОТОКОЛ\nУсилие (кН)\n1\u{a0}250,5\n",
+            "Ход, мм; Время, с; Ёмкость",
+        ] {
+            assert_eq!(recognise(&encoded(text, Encoding::Windows1251)), Some(Encoding::Windows1251), "{text}");
+        }
+        for text in ["시간(s), 하중(N), 변위(mm)\n", "시간(초),하중(뉴턴),변위(밀리미터)\n", "시험력 (kN)\n시간"]
+        {
+            assert_eq!(recognise(&encoded(text, Encoding::EucKr)), Some(Encoding::EucKr), "{text}");
+        }
+        for text in ["时间,位移,力\n", "试验力(N)\n", "试验时间,变形,载荷\n", "时间(秒),力,负荷\n"]
+        {
+            assert_eq!(recognise(&encoded(text, Encoding::Gbk)), Some(Encoding::Gbk), "{text}");
+        }
+        for text in ["Déplacement (µm);Température (°C)\n", "Größe;Prüfkraft\n", "Übersicht: »Länge«\n", "ÄÖÜ\n"]
+        {
+            assert_eq!(recognise(&encoded(text, Encoding::Windows1252)), Some(Encoding::Windows1252), "{text}");
         }
     }
 

@@ -4,8 +4,10 @@ use palpate::units::Dimension;
 
 use super::{
     quantity::Quantity,
-    unit_words::unit_factor,
-    vocabulary::{BENDING, COMMANDED, COUNTS, OF_A_PART, OTHER, OTHER_CHARACTERS, VOCABULARY, Vocabulary, is_listed},
+    unit_words::{is_share, unit_factor},
+    vocabulary::{
+        BENDING, COMMANDED, COUNTS, OF_A_PART, OTHER_CHARACTERS, VOCABULARY, Vocabulary, is_listed, is_other,
+    },
 };
 
 /// The topic and the field in the name of a column of a robot's log, such as `/gripper/ft.wrench.force.z`.
@@ -32,13 +34,23 @@ pub(crate) fn measures_another(unit: &str, quantity: Quantity) -> bool {
     ];
     let is_temperature =
         matches!(unit.trim().to_lowercase().as_str(), "°c" | "℃" | "degc" | "°f" | "degf" | "°k" | "k");
-    let ratio = matches!(unit, "-" | "%" | "1" | "mm/mm" | "m/m");
+    let ratio = matches!(unit, "-" | "%" | "1" | "mm/mm" | "m/m") || is_share(unit);
     let other = |dimension: &Dimension| *dimension != quantity.dimension() && unit_factor(unit, *dimension).is_some();
     ratio || is_temperature || others.iter().any(other)
 }
 
-/// How well a name stands for the quantity of a vocabulary; 0 is best.
+/// How well a name stands for the quantity of a vocabulary; 0 is best. One that says multiples does not.
 pub(crate) fn rank_of_name(name: &str, vocabulary: &Vocabulary) -> Option<u8> {
+    rank_of_words(name, vocabulary).filter(|_| !is_scaled(measured(name)))
+}
+
+/// Whether a name says multiples of a quantity: `Force x1000`, `Kraft (x 10^-3)`.
+pub(crate) fn names_multiples_of(name: &str, quantity: Quantity) -> bool {
+    let vocabulary = VOCABULARY.iter().find(|vocabulary| vocabulary.quantity == quantity);
+    is_scaled(measured(name)) && vocabulary.is_some_and(|words| rank_of_words(name, words).is_some_and(|rank| rank < 4))
+}
+
+fn rank_of_words(name: &str, vocabulary: &Vocabulary) -> Option<u8> {
     let name = measured(name);
     let words = words(name);
     let has = |known: &str| words.iter().any(|word| is_listed(word, known));
@@ -46,14 +58,14 @@ pub(crate) fn rank_of_name(name: &str, vocabulary: &Vocabulary) -> Option<u8> {
     let contains = |parts: &str| parts.split_whitespace().any(|part| name.contains(part));
     let commanded =
         |word: &String| COMMANDED.split_whitespace().any(|start| word.len() > start.len() && word.starts_with(start));
-    if has(OTHER) || contains(OTHER_CHARACTERS) || words.iter().any(commanded) || is_scaled(name) {
+    if words.iter().any(|word| is_other(word)) || contains(OTHER_CHARACTERS) || words.iter().any(commanded) {
         return None;
     }
     if vocabulary.quantity == Quantity::Displacement && BENDING.contains(&name.trim()) {
         return None;
     }
     // The sign for force is a part of the word for stress.
-    let stress = contains("应力 応力");
+    let stress = contains("应力 応力 응력");
     if stress && vocabulary.quantity != Quantity::Stress {
         return None;
     }
@@ -83,14 +95,16 @@ pub(crate) fn names_another(name: &str, quantity: Quantity) -> bool {
     let has = |known: &str| words.iter().any(|word| is_listed(word, known));
     let others = VOCABULARY.iter().filter(|other| other.quantity != quantity);
     let plainly = |other: &Vocabulary| rank_of_name(name, other).is_some_and(|rank| rank < 4);
-    has(OTHER) || has(COUNTS) || others.into_iter().any(plainly)
+    words.iter().any(|word| is_other(word)) || has(COUNTS) || others.into_iter().any(plainly)
 }
 
-/// Whether a name says that its values are multiples: `Force x1000`, `Weg*10`, `Load ×10^3`.
+/// Whether a name says that its values are multiples: `Force x1000`, `Weg*10`, `Load ×10^3`, `Kraft (x 10^-3)`.
 fn is_scaled(name: &str) -> bool {
     name.match_indices(['×', '*', 'x', 'X']).any(|(at, sign)| {
         let ends_word = sign.eq_ignore_ascii_case("x") && name[..at].ends_with(char::is_alphanumeric);
-        !ends_word && name[at + sign.len()..].starts_with('1')
+        let behind = &name[at + sign.len()..];
+        // "Force x 1" is the first force along x.
+        !ends_word && (behind.starts_with('1') || behind.trim_start().starts_with("10"))
     })
 }
 

@@ -5,7 +5,7 @@ use super::{
     names::{measured, words},
     quantity::Quantity,
     unit_words::unit_factor,
-    vocabulary::{OTHER, STRAINS, is_listed},
+    vocabulary::{STRAINS, is_listed, is_other},
 };
 
 /// Words that name the quantity, and names that are signs for it.
@@ -16,10 +16,11 @@ struct Signs {
     bare: bool,
 }
 
-const TORQUES: &str = "torque couple drehmoment par";
+const TORQUES: &str = "torque couple drehmoment par момент 토크";
 const ANGLES: &str =
     "displacement position angle angular winkel auslenkwinkel drehwinkel déplacement deflection rotation twist ángulo";
-const DEFORMATIONS: &str = "strain dehnung deformation déformation verformung scherdeformation scherung deformación";
+const DEFORMATIONS: &str =
+    "strain dehnung deformation déformation verformung scherdeformation scherung deformación деформация 변형률";
 const MODULI: &str = "modulus modul module relaxationsmodul módulo";
 const COMPLIANCES: &str = "compliance nachgiebigkeit kriechnachgiebigkeit complaisance";
 
@@ -52,11 +53,7 @@ pub(crate) fn rank_in_rheometry(name: &str, unit: Option<&str>, quantity: Quanti
     // A single letter says nothing without its unit.
     let is_sign = is_listed(&sign, signs) && (fits || bare && sign.len() > 1);
     let named = has(known) && !has(NOT_OVER_TIME) && (fits || bare && unit.is_none());
-    let others = || {
-        words
-            .iter()
-            .any(|word| is_listed(word, OTHER) && !is_listed(word, STRAINS) && !is_listed(word, known))
-    };
+    let others = || words.iter().any(|word| is_other(word) && !is_listed(word, STRAINS) && !is_listed(word, known));
     match named && !others() {
         true if words.len() == 1 => Some(0),
         true => Some(1),

@@ -1,4 +1,4 @@
-//! Words that headers of records use, in English, German, French, Spanish, Italian, Chinese and Japanese.
+//! Words that headers of records use, in English, German, French, Spanish, Italian, Russian, Chinese, Japanese and Korean.
 
 use super::quantity::Quantity;
 
@@ -15,7 +15,7 @@ pub(crate) struct Vocabulary {
     pub(crate) loose: &'static str,
     /// Ends of German compounds, such as "Standardkraft".
     pub(crate) endings: &'static str,
-    /// Parts of Chinese and Japanese names, which have no gaps between words.
+    /// Parts of Chinese, Japanese and Korean names, which have no gaps between words.
     pub(crate) characters: &'static str,
     /// One letter that stands for the quantity, in this case alone.
     pub(crate) letter: Option<&'static str>,
@@ -24,49 +24,73 @@ pub(crate) struct Vocabulary {
 pub(crate) const VOCABULARY: [Vocabulary; 4] = [
     Vocabulary {
         quantity: Quantity::Time,
-        plain: "time zeit temps tiempo tempo",
-        loose: "elapsed seconds secondes sekunden segundos minutes minuten minutos hours stunden heures timestamp stamp zeitstempel horodatage epoch durée duree secondi",
+        plain: "time zeit temps tiempo tempo время времени",
+        loose: "elapsed seconds secondes sekunden segundos minutes minuten minutos hours stunden heures timestamp stamp zeitstempel horodatage epoch durée duree secondi секунды минуты часы",
         endings: "zeit",
-        characters: "时间 時間",
+        characters: "时间 時間 시간",
         letter: Some("t"),
     },
     Vocabulary {
         quantity: Quantity::Displacement,
-        plain: "displacement verschiebung weg déplacement deplacement desplazamiento spostamento",
+        plain: "displacement verschiebung weg déplacement deplacement desplazamiento spostamento перемещение смещение",
         loose: "extension travel stroke crosshead traverse position pos indentation allongement deflection course \
             recorrido carrera disp distance distanz distancia depth tiefe profondeur profundidad elongation pd \
             extensión alargamiento deformation verformung déformation deformación deformacion compression \
             stauchung eindrückung eindrueckung eindruckung compresión compresion penetration eindringtiefe eindringung eindrucktiefe pénétration \
             penetración penetracion enfoncement corsa posizione allungamento deformazione compressione penetrazione profondità profondita indentación indentacion posición posicion hub 变形 變形 压缩量 压入深度 伸長 \
-            伸び 変形量 圧縮量 押込み量 押込量 押込み深さ",
+            伸び 変形量 圧縮量 押込み量 押込量 押込み深さ ход удлинение деформация сжатие положение координата глубина вдавливание \
+            внедрение траверса прогиб осадка 신장 연신 변형량 압축량 압입량 압입깊이 위치 이동량",
         endings: "weg",
-        characters: "位移 変位 變位 ストローク",
+        characters: "位移 変位 變位 ストローク 변위 스트로크 이동거리",
         letter: None,
     },
     Vocabulary {
         quantity: Quantity::Force,
-        plain: "force load kraft fuerza forza",
+        plain: "force load kraft fuerza forza сила усилие нагрузка силы",
         loose: "loadcell effort charge carga carico fx fy fz fn",
         endings: "kraft",
-        characters: "力 载荷 荷重 负荷 負荷",
+        characters: "力 载荷 荷重 负荷 負荷 하중 힘 시험력",
         letter: Some("F"),
     },
     Vocabulary {
         quantity: Quantity::Stress,
-        plain: "stress spannung contrainte esfuerzo tensione sforzo",
+        plain: "stress spannung contrainte esfuerzo tensione sforzo напряжение",
         loose: "",
         endings: "spannung",
-        characters: "应力 応力",
+        characters: "应力 応力 응력",
         letter: None,
     },
 ];
 
-/// Words of columns that are no measurement of the quantity they name: commands, limits, statistics, and
-/// quantities derived from it.
-pub(crate) const OTHER: &str = "goal target set setpoint command commanded cmd demand desired reference ref nominal soll consigne objetivo \
-    limit threshold schwelle seuil umbral per max min maximum minimum peak std sd stdev error count offset rate \
+/// Whether a column with this word in its name is no measurement of the quantity that it names.
+pub(crate) fn is_other(word: &str) -> bool {
+    is_listed(word, OTHER) || is_listed(word, EXTREMES)
+}
+
+/// Words of the largest, the smallest and the spread of values.
+const EXTREMES: &str =
+    "max min maximum minimum peak std sd stdev макс мин максимум минимум максимальная максимальное минимальная";
+
+/// Words of the mean of values.
+pub(crate) const MEANS: &str =
+    "mean average avg moyenne moyen mittel mittelwert mittelwertkurve media promedio médiane median среднее 平均 평균";
+
+/// Words of their spread beside those.
+const SPREADS: &str = "standardabweichung standardabw stabw abweichung écart ecart desviación desviacion deviazione отклонение range spannweite \
+    cov variance varianz";
+
+/// Whether a text is what a line of statistics begins with: `Max`, `Mean value`, `Std. dev.`.
+pub(crate) fn names_statistic(words: &[String]) -> bool {
+    let is_one = |list| words.iter().any(|word| is_listed(word, list));
+    is_one(EXTREMES) || is_one(MEANS) || is_one(SPREADS)
+}
+
+/// Words of commands and limits, of errors and counts, and of quantities derived from one.
+const OTHER: &str = "goal target set setpoint command commanded cmd demand desired reference ref nominal soll consigne objetivo \
+    limit threshold schwelle seuil umbral per error count offset rate \
     speed velocity acceleration strain size dehnung velocità velocita stiffness modulus constant compliance viscosity oscillation oscillatory complex \
-    storage loss amplitude temperature temperatur température temperatura temp humidity";
+    storage loss amplitude temperature temperatur température temperatura temp humidity скорость задание заданная заданное уставка \
+    предел ошибка температура относительная модуль";
 
 /// Beginnings of German words for what was commanded, not measured: `Sollweg`, `Sollkraft`, `Sollwert`.
 pub(crate) const COMMANDED: &str = "soll vorgabe";
@@ -92,14 +116,19 @@ pub(crate) const STORAGE: &str = "storage speichermodul stockage conservation al
 pub(crate) const COUNTS: &str =
     "sample samples index point points row rows nr no number nummer numéro id cycle cycles status state segment";
 
-/// The same in Chinese and Japanese: target, set, command, strain, rate, greatest, least.
-pub(crate) const OTHER_CHARACTERS: &str = "目标 目標 设定 設定 指令 应变 ひずみ 速度 最大 最小";
+/// The same in Chinese, Japanese and Korean: target, set, command, strain, rate, greatest, least.
+pub(crate) const OTHER_CHARACTERS: &str =
+    "目标 目標 设定 設定 指令 应变 ひずみ 速度 最大 最小 목표 설정 지령 변형률 변형율 속도 최대 최소";
 
 /// Names of the cantilever's bending in force curves, which is no travel of a jaw though it is a length.
 pub(crate) const BENDING: &[&str] = &["vDeflection", "hDeflection", "cantilever deflection"];
 
 /// Names, bare of any unit, that may well mean a displacement.
 pub(crate) const SIGNS_OF_LENGTH: &str = "x y z d s u w h δ delta dx dz dl Δl";
+
+/// Words of an extensometer, which measures on the body and not at the crosshead.
+pub(crate) const EXTENSOMETERS: &str = "extensometer extensomètre extensometre extensómetro estensometro dehnungsaufnehmer \
+    dehnungsmesser wegaufnehmer feindehnung экстензометр 신율계 引伸计 伸び計";
 
 /// Words of quantities that some machines give as a length, though they mean a ratio.
 pub(crate) const STRAINS: &str = "strain dehnung";

@@ -160,7 +160,10 @@ impl Contents {
             mut skipped,
             reader,
         } = found;
-        parts.iter_mut().for_each(Part::make_plain);
+        for part in &mut parts {
+            part.make_plain();
+            part.take_stated_units();
+        }
         skipped.iter_mut().for_each(SkippedPart::make_plain);
         if parts.is_empty() {
             let parts = skipped.into_iter().map(|part| (part.name, part.reason)).collect();

@@ -9,7 +9,7 @@ use super::{
     named::NamedColumn,
 };
 use crate::{
-    cell::unit,
+    cell::{date, unit},
     description::contradicts,
     naming::{Quantity, topic_and_field, unit_factor},
     table::{ColumnInfo, ColumnKind, EXACT_DIGITS, epoch, recognise},
@@ -33,6 +33,9 @@ impl Chooser<'_> {
         if let Some(rate) = found.rate {
             return Ok(Some(found.used(format!("{SAMPLES}{} Hz", shortest(rate, EXACT_DIGITS)), 1.0 / rate)));
         }
+        if found.column.kind == ColumnKind::DateTime && date::has_two_fields(found.column.sample.as_bytes()) {
+            return self.of_two_fields(found).map(Some);
+        }
         if found.column.kind == ColumnKind::DateTime {
             // A time of day is not counted from 1970; from one o'clock on it is no time since the start of a test either.
             let is_dated = epoch::is_date(&found.column.sample);
@@ -48,6 +51,19 @@ impl Chooser<'_> {
             Some((unit, factor)) if is_stated || is_named => Ok(Some(found.used(format!("{unit} since 1970"), factor))),
             None if is_stated => Err(ColumnError::NoEpoch(found.column.into(), found.column.sample.clone())),
             _ => Ok(None),
+        }
+    }
+
+    /// A clock of two fields: minutes and seconds where the last one has decimals or the header has seconds, else by what is stated of it.
+    fn of_two_fields(&self, found: &Found<'_>) -> Result<ColumnUse, ColumnError> {
+        let in_header = found.column.unit.as_deref().filter(|unit| unit.contains(':') || *unit == "s");
+        let factor = found.unit.or(in_header).and_then(|unit| unit_factor(unit, Dimension::Time));
+        let (has_decimals, sample) = (found.column.sample.contains(['.', ',']), &found.column.sample);
+        match factor {
+            Some(1.0) => Ok(found.used("s".to_owned(), 1.0)),
+            Some(60.0) => Ok(found.used("min".to_owned(), 60.0)),
+            None if has_decimals => Ok(found.used("s".to_owned(), 1.0)),
+            _ => Err(found.wrong_unit(UnitProblem::Clock(sample.clone()))),
         }
     }
 
@@ -88,9 +104,31 @@ impl Chooser<'_> {
             && let (Some(one), Some(other)) = (unit_factor(&in_name, dimension), unit_factor(beside, dimension))
             && (one / other - 1.0).abs() > 1e-9
         {
-            return Err(found.wrong_unit(UnitProblem::Two(in_name, beside.clone())));
+            let place = |unit: &str, place: &str| (unit.to_owned(), place.to_owned());
+            return Err(
+                found.wrong_unit(UnitProblem::Two([place(&in_name, "in its name"), place(beside, "beside it")]))
+            );
         }
         Ok(())
+    }
+
+    /// A unit in the header and another one in a line above it, or two lines with two units.
+    fn refuse_other_above(&self, found: &Found<'_>) -> Result<(), ColumnError> {
+        let (quantity, column) = (found.quantity(), found.column);
+        if found.unit.is_some() || !recognise::names(column, quantity) {
+            return Ok(());
+        }
+        let factor = |(unit, _): &(String, String)| unit_factor(unit, quantity.dimension());
+        let in_header = column.unit.iter().map(|unit| (unit.clone(), "in the header".to_owned()));
+        let all: Vec<_> = self.part.stated_units(quantity.dimension()).into_iter().chain(in_header).collect();
+        let differs = |pair: &&[(String, String)]| match (factor(&pair[0]), factor(&pair[1])) {
+            (Some(one), Some(other)) => (one / other - 1.0).abs() > 1e-9,
+            _ => false,
+        };
+        match all.windows(2).find(differs) {
+            Some([one, other]) => Err(found.wrong_unit(UnitProblem::Two([one.clone(), other.clone()]))),
+            _ => Ok(()),
+        }
     }
 
     /// Units from the description, else from the header.
@@ -105,14 +143,16 @@ impl Chooser<'_> {
             }
             self.refuse_contradiction(found)?;
             self.refuse_two_units(found)?;
+            self.refuse_other_above(found)?;
             // A clock may be called by what it counts: "Seconds", "Minuten".
             let counted = found
                 .column
                 .name
                 .as_deref()
-                .filter(|name| quantity == Quantity::Time && unit_factor(name, Dimension::Time).is_some());
+                .filter(|name| quantity == Quantity::Time && unit_factor(name, Dimension::Time).is_some())
+                .filter(|name| !recognise::named_plainly(name, Quantity::Time));
             let Some(unit) = found.unit.or(found.column.unit.as_deref()).or(counted) else {
-                without.push((found.key(), quantity.usual_unit(), found.column.into()));
+                without.push((found.key(), epoch::usual_unit(found.column, quantity), found.column.into()));
                 continue;
             };
             let (factor, problem) = match found.choice.and_then(|choice| choice.scale) {

@@ -240,10 +240,19 @@ impl<'a> Chooser<'a> {
             };
             return ColumnError::unit(column, format!("columns.{quantity}.unit"), problem);
         }
+        if let Some(error) = self.multiples(quantity) {
+            return error;
+        }
         if let Some(column) = recognise::text_named(&self.part.columns, quantity) {
             return Self::as_text(column, quantity);
         }
         ColumnError::Missing(quantity, self.part.columns.clone())
+    }
+
+    /// A column whose name says multiples of a quantity.
+    fn multiples(&self, quantity: Quantity) -> Option<ColumnError> {
+        let column = recognise::multiples(&self.part.columns, quantity)?;
+        Some(ColumnError::unit(column, format!("columns.{quantity}.unit"), UnitProblem::Multiples(quantity)))
     }
 
     /// The number of a column of heights of a cantilever's base, a measured one before others.
@@ -267,6 +276,15 @@ impl<'a> Chooser<'a> {
     /// the force, but none of the displacement, has no displacement.
     pub(super) fn refuse_unclear(&self, used: &[ColumnUse]) -> Result<(), ColumnError> {
         let free = |column: &&ColumnInfo| used.iter().all(|used| used.number != column.number);
+        if let Some(error) = self.multiples(Quantity::Displacement) {
+            return Err(error);
+        }
+        if let Some((column, unit)) =
+            recognise::share_of_displacement(&self.part.columns).filter(|(column, _)| free(column))
+        {
+            let problem = UnitProblem::Unknown(Quantity::Displacement, unit.to_owned());
+            return Err(ColumnError::unit(column, "columns.displacement.unit".to_owned(), problem));
+        }
         // The gap of a rheometer is no travel.
         let is_force = used.iter().any(|used| used.role == Role::Values(Quantity::Force));
         let gap = |column: &&ColumnInfo| !is_force && recognise::is_gap(column);

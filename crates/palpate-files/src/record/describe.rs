@@ -217,7 +217,7 @@ fn write_unit(out: &mut String, column: &ColumnUse, info: &ColumnInfo) {
     *out += &match (unit_factor(&column.unit, dimension), unit_factor(&column.unit, Dimension::Voltage)) {
         _ if column.epoch && epoch::counts(info, factor) => unit(EPOCH),
         _ if column.epoch && info.kind == ColumnKind::Number => unit(&column.unit),
-        _ if info.kind == ColumnKind::DateTime => String::new(),
+        (None, _) if info.kind == ColumnKind::DateTime => String::new(),
         (Some(plain), _) if factor == plain => unit(&column.unit),
         (Some(_), _) => unit(&column.unit) + "doubled = true\n",
         _ if column.role.measured() == Quantity::Time && column.unit.starts_with(SAMPLES) => {

@@ -9,7 +9,7 @@ use crate::{
     cell::DecimalMark,
     description::machines_of,
     error::{FileError, few, shown},
-    naming::{Quantity, UNCALIBRATED, unit_factor},
+    naming::{Quantity, UNCALIBRATED, is_share, unit_behind_number, unit_factor},
     table::{ColumnInfo, ColumnRef, Part},
 };
 
@@ -135,9 +135,18 @@ pub enum UnitProblem {
     /// A scale is given for a column in this unit, which is not volts.
     #[error("expected volts for `scale`, found {0}")]
     NoVolts(String),
-    /// The file says two units: one in the name, the other beside it.
-    #[error("expected one unit, found {0} in its name and {1} beside it")]
-    Two(String, String),
+    /// The file says two units, each with the place where it stands; the nearer one to the values comes last.
+    #[error("expected one unit, found {} {} and {} {}", .0[0].0, .0[0].1, .0[1].0, .0[1].1)]
+    Two([(String, String); 2]),
+    /// A time in this unit begins with this number, and is like the dates of a spreadsheet.
+    #[error("expected a time in {0}, found numbers like the dates of a spreadsheet, which count days: {1}")]
+    Serials(String, String),
+    /// A time has two fields, and nobody knows which: this is the first.
+    #[error("expected hours, minutes and seconds, found two of them: `{0}`")]
+    Clock(String),
+    /// The name says multiples of a quantity, and nobody knows whether the values are these or have been multiplied.
+    #[error("expected a scale beside the unit, such as (x10^-3 {}), found one in the name", .0.usual_unit())]
+    Multiples(Quantity),
 }
 
 impl ColumnError {
@@ -207,17 +216,26 @@ impl UnitProblem {
                     return hint;
                 }
                 let meant = quantity.unit_meant(unit);
-                let lines = snippet::of_unit_and_column(key, meant, column);
-                let stated = snippet::quantity_of(key).map_or_else(String::new, |quantity| {
-                    let entry = snippet::entry(quantity, column, Some(meant), true);
-                    format!(": {}, or", snippet::option([entry]))
-                });
+                if is_share(unit) {
+                    return snippet::of_share(key, *quantity, column);
+                }
+                let multiple = unit_behind_number(unit).map(|_| format!("x{unit}"));
+                if let Some(multiple) = multiple {
+                    let stated = snippet::of_unit_stated(key, &multiple, column);
+                    return format!(
+                        "if the values are in {meant}, state {meant}; if they count {unit} each, state it{stated}"
+                    );
+                }
+                let stated = snippet::of_unit_stated(key, meant, column);
                 let doubt = match meant == quantity.usual_unit() {
                     true => format!("the values are in {meant}"),
                     false => format!("\"{unit}\" stands for {meant}"),
                 };
-                let preset = if meant == "gf" { " (of a TA.XT: machine.preset = \"ta-xtplus-grams\")" } else { "" };
-                format!("if {doubt}, state it{stated} in a test description{preset}:\n{lines}")
+                let preset = match meant {
+                    "gf" => " (of a TA.XT instead: machine.preset = \"ta-xtplus-grams\")",
+                    _ => "",
+                };
+                format!("if {doubt}, state it{preset}{stated}")
             }
             Self::Unknown(_, unit) if key == "columns.force.unit" && column.name.as_deref() == Some(UNCALIBRATED) => {
                 snippet::of_bending(column, unit)
@@ -239,9 +257,23 @@ impl UnitProblem {
                 "remove `scale`; if the header is wrong and the column holds volts, write:\n{}",
                 snippet::of_unit_and_column(key, "V", column)
             ),
-            Self::Two(_, beside) => {
-                let lines = snippet::of_unit_and_column(key, beside, column);
-                format!("choose one in a test description:\n{lines}")
+            Self::Two([_, (unit, _)]) => format!("state the right one{}", snippet::of_unit_stated(key, unit, column)),
+            Self::Serials(unit, _) => {
+                format!(
+                    "if they are {unit}, state {unit}; if they are days, state it{}",
+                    snippet::of_unit_stated(key, "d", column)
+                )
+            }
+            Self::Clock(_) => format!(
+                "state the unit of the last field: s of minutes and seconds, min of hours and minutes{}",
+                snippet::of_unit_stated(key, "s", column)
+            ),
+            Self::Multiples(quantity) => {
+                let unit = quantity.usual_unit();
+                let stated = snippet::of_unit_stated(key, &format!("x10^-3 {unit}"), column);
+                format!(
+                    "if the values are in {unit}, state {unit}; if they count so much of it, state such a unit{stated}"
+                )
             }
         }
     }

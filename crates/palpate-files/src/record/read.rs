@@ -11,7 +11,7 @@ use palpate::{
 use super::{
     choose,
     column_use::{ColumnUse, Role},
-    error::{ColumnError, Counted, ReadError},
+    error::{ColumnError, Counted, ReadError, UnitProblem},
     flow,
     named::NamedColumn,
     parts, snippet,
@@ -61,7 +61,7 @@ pub struct RecordFile {
 /// Reads the record in the file at `path`, of any format.
 ///
 /// The columns and units are those of `description`; omitted ones follow from the header, which
-/// is understood in English, German, French, Spanish, Chinese and Japanese. Anything still missing is an error that
+/// is understood in English, German, French, Spanish, Italian, Russian, Chinese, Japanese and Korean. Anything still missing is an error that
 /// names it; a unit is never guessed. Commands and limits (`GoalForce`, `Force max`) are not measurements, and
 /// stress is used only where there is no force or the description requests it.
 ///
@@ -138,9 +138,17 @@ pub fn read_part(
     let mut read = contents.read(part, &numbers, progress)?;
     let mut values = std::mem::take(&mut read.values);
     for (column, values) in plan.columns.iter_mut().zip(&values) {
+        if column.role.measured() != Quantity::Time {
+            continue;
+        }
         // The dates of a workbook are observed only now.
-        let first = values.first().map_or(0.0, |first| first * column.factor);
-        column.epoch |= column.role.measured() == Quantity::Time && epoch::is_of_our_days(first);
+        column.epoch |= values.first().is_some_and(|first| epoch::since_1970(*first, column.factor).is_some());
+        let is_stated = test.columns.time.as_ref().is_some_and(|time| time.unit.is_some());
+        if !column.epoch && !is_stated && epoch::are_serials(values) {
+            let problem = UnitProblem::Serials(column.unit.clone(), values[0].to_string());
+            let info = &about.columns[column.number - 1];
+            return Err(unclear(ColumnError::unit(info, "columns.time.unit".to_owned(), problem)));
+        }
     }
     let dated = |column: &ColumnUse| !epoch::counts(&about.columns[column.number - 1], column.factor);
     let start = count_from_start(&plan.columns, &mut values, &dated);
@@ -177,7 +185,8 @@ pub fn read_part(
     });
     let counted = plan.rate.map(|rate| Correction::RowsCounted { rate });
     let bent = bent.map(|largest| Correction::DeflectionRemoved { largest });
-    let done = left_out.into_iter().chain(counted).chain(conversion.done).chain(averaged).chain(bent);
+    let unused = extensometer_unused(about, &plan.columns, test);
+    let done = left_out.into_iter().chain(counted).chain(conversion.done).chain(unused).chain(averaged).chain(bent);
     progress(read.bytes, read.bytes).map_err(FileError::from)?;
     let labels = if lacking.rows > 0 { Vec::new() } else { labelled(about, &raw.time, read.averaged) };
     let record = raw.into_record().map(|record| record.corrected_before(done).labelled(labels));
@@ -197,6 +206,16 @@ pub fn read_part(
         per_unit_area: conversion.per_unit_area,
         rate: plan.rate,
         bytes: read.bytes,
+    })
+}
+
+/// That the displacement, which nobody chose, is not that of the extensometer beside it.
+fn extensometer_unused(part: &Part, columns: &[ColumnUse], test: &TestDescription) -> Option<Correction> {
+    let used = columns.iter().find(|column| column.role == Role::Values(Quantity::Displacement))?;
+    let extensometer = recognise::extensometer(&part.columns).filter(|column| column.number != used.number)?;
+    test.columns.stated(Quantity::is_travel).is_none().then(|| Correction::ExtensometerUnused {
+        column: used.name.clone().unwrap_or_default(),
+        extensometer: extensometer.name.clone().unwrap_or_default(),
     })
 }
 
@@ -290,7 +309,7 @@ fn count_from_start(columns: &[ColumnUse], values: &mut [Vec<f64>], dated: &dyn 
             *value = if dated { epoch::since(*value, origin) } else { *value - origin };
         });
     }
-    Some(first * factor)
+    Some(epoch::since_1970(first, factor).unwrap_or(first * factor))
 }
 
 fn to_si(values: &mut [f64], column: &ColumnUse, factor: f64) {

@@ -6,7 +6,7 @@ use super::named::NamedColumn;
 use crate::{
     error::{few, shown},
     naming::{Quantity, topic_and_field, unit_factor},
-    table::{ColumnInfo, ColumnKind, recognise},
+    table::{ColumnInfo, ColumnKind, epoch, recognise},
 };
 
 /// Most columns that a message shows.
@@ -129,7 +129,7 @@ fn proposed<'c>(
         let unit = match column.unit.as_deref() {
             Some(unit) if fitting(unit) || is_volts(unit) => unit,
             Some(unit) => quantity.unit_meant(unit),
-            None => quantity.usual_unit(),
+            None => epoch::usual_unit(column, quantity),
         };
         proposed.push(Proposed { quantity, column, unit });
     }
@@ -230,6 +230,28 @@ pub(super) fn of_unclear(candidates: &[NamedColumn], columns: &[ColumnInfo]) -> 
 pub(super) fn of_unit_and_column(key: &str, unit: &str, column: &NamedColumn) -> String {
     let (table, key) = key.rsplit_once('.').unwrap_or(("columns", key));
     format!("[{table}]\n{key} = \"{unit}\"\ncolumn = {}", column.number)
+}
+
+/// The option and the lines that say both the column and its unit, as the end of a sentence.
+pub(super) fn of_unit_stated(key: &str, unit: &str, column: &NamedColumn) -> String {
+    let lines = of_unit_and_column(key, unit, column);
+    let stated = quantity_of(key)
+        .map_or_else(String::new, |quantity| format!(": {}, or", option([entry(quantity, column, Some(unit), true)])));
+    format!("{stated} in a test description:\n{lines}")
+}
+
+/// What would say the unit of a column of shares.
+pub(super) fn of_share(key: &str, quantity: Quantity, column: &NamedColumn) -> String {
+    let unit = quantity.usual_unit();
+    let strain = match quantity {
+        Quantity::Displacement => {
+            let strain = option([entry(Quantity::Strain, column, Some("%"), true)]);
+            format!("; of a strain: {strain}; if there is no displacement, name the force alone")
+        }
+        _ => String::new(),
+    };
+    let stated = of_unit_stated(key, &format!("x5 {unit}"), column);
+    format!("state what one per cent is{strain}; of a full scale of 500 {unit} it is 5 {unit}{stated}")
 }
 
 /// The lines that say the unit under `key`, such as `columns.force.unit`.

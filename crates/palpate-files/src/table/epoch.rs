@@ -5,6 +5,7 @@
 //! exact.
 
 use super::part::ColumnInfo;
+use crate::naming::Quantity;
 
 /// The unit in a description that says: seconds, or parts of them, since 1970.
 pub(crate) const EPOCH: &str = "epoch";
@@ -25,14 +26,42 @@ pub(crate) fn unit(column: &ColumnInfo) -> Option<(&'static str, f64)> {
     UNITS.into_iter().find(|(_, factor)| YEARS.contains(&(first * factor)))
 }
 
-/// Whether the first cell of a column with this factor is a time between 2000 and 2100.
+/// Whether the first cell of a column with this factor, of a second or less, is a time between 2000 and 2100.
 pub(crate) fn counts(column: &ColumnInfo, factor: f64) -> bool {
-    first(column).is_some_and(|first| is_of_our_days(first * factor))
+    factor <= 1.0 && first(column).is_some_and(|first| YEARS.contains(&(first * factor)))
 }
 
-/// Whether a time in s lies between 2000 and 2100, counted from 1970.
-pub(crate) fn is_of_our_days(seconds: f64) -> bool {
-    YEARS.contains(&seconds)
+/// Seconds in a day.
+const DAY: f64 = 86_400.0;
+
+/// 1 January 2000 and 2100 as spreadsheets count days, from 30 December 1899.
+const SERIALS: std::ops::Range<f64> = 36_526.0..73_051.0;
+
+/// The day of a spreadsheet from which clocks count.
+const SERIAL_OF_1970: f64 = 25_569.0;
+
+/// Seconds since 1970 of a time with this factor to s, if it lies between 2000 and 2100: counted from 1970, or in the days of a spreadsheet.
+pub(crate) fn since_1970(time: f64, factor: f64) -> Option<f64> {
+    let serial = Some((time - SERIAL_OF_1970) * DAY).filter(|_| factor == DAY && SERIALS.contains(&time));
+    serial.or_else(|| Some(time * factor).filter(|seconds| YEARS.contains(seconds)))
+}
+
+/// Whether numbers look like the dates of a spreadsheet, of this century and all of one day. As seconds they would be a record of less than a
+/// second, half a day or more after its clock began.
+pub(crate) fn are_serials(times: &[f64]) -> bool {
+    let (Some(first), Some(last)) = (times.first(), times.last()) else {
+        return false;
+    };
+    times.len() > 1 && SERIALS.contains(first) && (last - first).abs() < 1.0
+}
+
+/// The unit that a column without one most often has: days where a time begins like a date of a spreadsheet, 45123.4567.
+pub(crate) fn usual_unit(column: &ColumnInfo, quantity: Quantity) -> &'static str {
+    /// Decimals of a day that tell ten seconds.
+    const FEWEST: usize = 4;
+    let decimals = column.sample.split_once(['.', ',']).map_or(0, |(_, decimals)| decimals.len());
+    let is_serial = || decimals >= FEWEST && first(column).is_some_and(|first| SERIALS.contains(&first));
+    if quantity == Quantity::Time && is_serial() { "d" } else { quantity.usual_unit() }
 }
 
 /// A date in s less another, both counted from 1970: to the µs, which is the most that dates are written to. What is beyond
@@ -84,6 +113,22 @@ mod tests {
     fn a_time_since_the_start_of_a_test_is_not_late() {
         let late = ["09:00:00", "9:00:00,5", "12:30:00 PM", "00:59:59.9", "0:00:01", "12", ""].map(is_late);
         assert_eq!(late, [true, true, true, false, false, false, false]);
+    }
+
+    #[test]
+    fn days_of_a_spreadsheet() {
+        // 2023-07-16T12:00:00Z.
+        assert_eq!(since_1970(45_123.5, DAY), Some(1_689_508_800.0));
+        assert_eq!(since_1970(45_123.5, 1.0), None);
+        assert_eq!(since_1970(1_689_508_800.0, 1.0), Some(1_689_508_800.0));
+        assert!(
+            are_serials(&[45_123.4567, 45_123.4568])
+                && !are_serials(&[45_123.4, 45_133.4])
+                && !are_serials(&[0.0, 0.1])
+        );
+        let units = ["45123.4567", "45123,45671", "45123.4", "0.4567"]
+            .map(|sample| usual_unit(&column("Time", sample), Quantity::Time));
+        assert_eq!(units, ["d", "d", "s", "s"]);
     }
 
     #[test]

@@ -1,7 +1,10 @@
 //! Named values in the lines above the data.
 
 use super::part::Metadata;
-use crate::cell::{Cell, Delimiter, cells, number, unit};
+use crate::{
+    cell::{Cell, Delimiter, cells, number, unit},
+    naming::stated_units,
+};
 
 /// The named values in one line: `name,"value",unit`, `name: value`, `name = value` or `a=1;b=2;`. A line that
 /// holds none is a title or a remark and gives nothing.
@@ -18,6 +21,9 @@ pub(crate) fn in_line(text: &str, delimiter: Delimiter) -> Vec<Metadata> {
 
 /// The named values in the cells of a line or row, those that are empty left out.
 pub(crate) fn in_cells(row: &[&str]) -> Vec<Metadata> {
+    if let Some(statement) = of_units(row) {
+        return vec![statement];
+    }
     if let Some(pairs) = equations(row) {
         let entry = |(name, value)| entry(name, value, None);
         return pairs.into_iter().filter_map(entry).collect();
@@ -29,6 +35,20 @@ pub(crate) fn in_cells(row: &[&str]) -> Vec<Metadata> {
         _ => None,
     };
     found.into_iter().collect()
+}
+
+/// A line that states units of columns: `Force unit: kN`, `Units: s, mm, N`, `all forces in mN`.
+fn of_units(row: &[&str]) -> Option<Metadata> {
+    let line = row.join(", ");
+    if stated_units(&line).is_empty() {
+        return None;
+    }
+    let (name, value) = line.split_once([':', '=', ',', ';']).or_else(|| line.rsplit_once(' '))?;
+    Some(Metadata {
+        name: name.trim().to_owned(),
+        value: value.trim().to_owned(),
+        unit: None,
+    })
 }
 
 /// `text` less a mark that makes it a comment in other programs.

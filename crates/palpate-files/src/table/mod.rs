@@ -13,7 +13,7 @@
 //! | `reader.rs` | what every format can do, and what a caller may fix in advance |
 //! | `block.rs`, `decimal.rs` | the rows of numbers among other lines, and their decimal mark |
 //! | `stacked.rs` | tables one below the other |
-//! | `header.rs`, `metadata.rs` | names and units above them, and named values |
+//! | `header.rs`, `metadata.rs`, `stated.rs` | names and units above them, named values, and units that lines state |
 //! | `recognise.rs`, `epoch.rs` | which column holds a quantity; times counted from 1970 |
 
 pub(crate) mod block;
@@ -30,6 +30,7 @@ mod part;
 mod reader;
 pub(crate) mod recognise;
 mod stacked;
+mod stated;
 
 pub(crate) use block::Block;
 pub use column_ref::ColumnRef;

@@ -4,17 +4,17 @@ use palpate::units::Dimension;
 
 use super::part::{ColumnInfo, ColumnKind};
 use crate::naming::{
-    AXIAL, BENDING, OTHER, OTHER_CHARACTERS, Quantity, RATES_OF_SHEAR, SHEAR, SHEAR_RATES, SIGNS_OF_LENGTH, STORAGE,
-    STRAINS, VOCABULARY, is_listed, measured, measures_another, names_another, own_topics, rank_in_rheometry,
-    rank_of_name, unit_factor, words,
+    AXIAL, BENDING, EXTENSOMETERS, OTHER_CHARACTERS, Quantity, RATES_OF_SHEAR, SHEAR, SHEAR_RATES, SIGNS_OF_LENGTH,
+    STORAGE, STRAINS, VOCABULARY, is_listed, is_other, is_share, measured, measures_another, names_another,
+    names_multiples_of, own_topics, rank_in_rheometry, rank_of_name, unit_factor, words,
 };
 
 /// The columns that name `quantity` best: one if it is clear, several if it is not, none if none does.
 pub(crate) fn candidates(columns: &[ColumnInfo], quantity: Quantity) -> Vec<&ColumnInfo> {
-    let names = |column: &ColumnInfo, quantity| rank(column, quantity).is_some_and(|rank| rank < 10);
+    let names_well = |column: &ColumnInfo, quantity| rank(column, quantity).is_some_and(|rank| rank < 10);
     // A machine that pulls and turns has a travel; a rheometer has none, but a force along its axis and an angle.
-    let travels = || columns.iter().any(|column| names(column, Quantity::Displacement));
-    let sheared = |column: &ColumnInfo| is_of_shear(column) || names(column, Quantity::Stress);
+    let travels = || columns.iter().any(|column| names_well(column, Quantity::Displacement));
+    let sheared = |column: &ColumnInfo| is_of_shear(column) || names_well(column, Quantity::Stress);
     let in_shear =
         matches!(quantity, Quantity::Force | Quantity::Displacement) && columns.iter().any(sheared) && !travels();
     let is_angle =
@@ -117,8 +117,13 @@ fn rank(column: &ColumnInfo, quantity: Quantity) -> Option<u8> {
     }
 }
 
+/// Whether a column is named after a quantity, and its unit does not contradict it.
+pub(crate) fn names(column: &ColumnInfo, quantity: Quantity) -> bool {
+    rank(column, quantity).is_some()
+}
+
 /// Whether a name has a word that means a quantity and nothing else.
-fn named_plainly(name: &str, quantity: Quantity) -> bool {
+pub(crate) fn named_plainly(name: &str, quantity: Quantity) -> bool {
     let vocabulary = VOCABULARY.iter().find(|words| words.quantity == quantity);
     vocabulary.is_some_and(|vocabulary| rank_of_name(name, vocabulary).is_some_and(|rank| rank < 2))
 }
@@ -145,6 +150,28 @@ pub(crate) fn misfits(columns: &[ColumnInfo], quantity: Quantity) -> impl Iterat
     })
 }
 
+/// A column of an extensometer, in a length or as a strain.
+pub(crate) fn extensometer(columns: &[ColumnInfo]) -> Option<&ColumnInfo> {
+    let measures = |unit: &str| is_share(unit) || unit_factor(unit, Dimension::Length).is_some();
+    let is_one = |column: &&ColumnInfo| has_word(column, EXTENSOMETERS) && column.unit.as_deref().is_some_and(measures);
+    columns.iter().filter(|column| column.kind == ColumnKind::Number).find(is_one)
+}
+
+/// A column of numbers whose name says multiples of a quantity.
+pub(crate) fn multiples(columns: &[ColumnInfo], quantity: Quantity) -> Option<&ColumnInfo> {
+    let says = |column: &&ColumnInfo| column.name.as_deref().is_some_and(|name| names_multiples_of(name, quantity));
+    columns.iter().filter(|column| column.kind == ColumnKind::Number).find(says)
+}
+
+/// A column that is named after the displacement and holds shares, of a full scale or of a length, with their unit.
+pub(crate) fn share_of_displacement(columns: &[ColumnInfo]) -> Option<(&ColumnInfo, &str)> {
+    let vocabulary = VOCABULARY.iter().find(|words| words.quantity == Quantity::Displacement)?;
+    columns.iter().filter(|column| column.kind == ColumnKind::Number).find_map(|column| {
+        let (name, unit) = (column.name.as_deref()?, column.unit.as_deref()?);
+        (is_share(unit) && rank_of_name(name, vocabulary)? < 4).then_some((column, unit))
+    })
+}
+
 /// Columns that may well hold a displacement, though no word of theirs says so: those with a unit of length, and those
 /// without a unit whose name is a letter that usually stands for one.
 pub(crate) fn possible_displacements(columns: &[ColumnInfo]) -> impl Iterator<Item = &ColumnInfo> {
@@ -154,7 +181,7 @@ pub(crate) fn possible_displacements(columns: &[ColumnInfo]) -> impl Iterator<It
         };
         let words = words(measured(name));
         // What is stated per finger is a displacement all the same.
-        let other = words.iter().any(|word| is_listed(word, OTHER) && !is_listed(word, STRAINS) && word != "per")
+        let other = words.iter().any(|word| is_other(word) && !is_listed(word, STRAINS) && word != "per")
             || OTHER_CHARACTERS.split_whitespace().any(|part| name.contains(part))
             || BENDING.contains(&name.trim());
         let sign = || SIGNS_OF_LENGTH.split_whitespace().any(|sign| sign.to_lowercase() == name.trim().to_lowercase());

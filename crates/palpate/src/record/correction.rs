@@ -142,6 +142,13 @@ pub enum Correction {
         /// Rows a second, Hz.
         rate: f64,
     },
+    /// The displacement is that of one column, and the file has an extensometer as well.
+    ExtensometerUnused {
+        /// What the column is called.
+        column: String,
+        /// What that of the extensometer is called.
+        extensometer: String,
+    },
     /// Displacement and force with clocks of their own were brought onto the times of the force.
     ClocksJoined {
         /// Samples of the force outside the times of the displacement, left out.
@@ -276,6 +283,9 @@ impl fmt::Display for Correction {
                         write!(f, "angle times {factor} m read as the displacement of the same shear strain at the rim")
                     }
                 }
+            }
+            Self::ExtensometerUnused { column, extensometer } => {
+                write!(f, "displacement read from \"{column}\", not from the extensometer \"{extensometer}\"")
             }
             Self::RowsCounted { rate } => write!(f, "time counted from the rows at {} Hz", shortest(*rate, 6)),
             Self::ClocksJoined { left_out } => {

@@ -18,6 +18,7 @@ use super::{
 use crate::{
     error::FileError,
     input::Input,
+    naming::{MEANS, is_listed, words},
     table::{ColumnKind, Columns, Found, Heard, Part, ReadOptions, ReadPart, SkippedPart, share},
 };
 
@@ -100,12 +101,9 @@ pub(crate) fn look_into(input: &Input, options: &ReadOptions) -> Result<Found, F
     Ok(chosen(input, book, looked, skipped))
 }
 
-/// Words in the name of a sheet that holds the mean of the tests beside it.
-const MEANS: [&str; 8] = ["moyenne", "moyen", "mean", "average", "mittelwert", "mittelwertkurve", "media", "promedio"];
-
+/// Whether a sheet holds the mean of the tests beside it, by its name.
 fn names_mean(sheet: &str) -> bool {
-    let lower = sheet.to_lowercase();
-    lower.split(|letter: char| !letter.is_alphabetic()).any(|word| MEANS.contains(&word))
+    words(sheet).iter().any(|word| is_listed(word, MEANS))
 }
 
 /// Why a table is no test, given that others name a time.

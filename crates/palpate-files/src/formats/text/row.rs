@@ -5,6 +5,7 @@ use std::path::Path;
 use crate::{
     cell::{Cell, Fields, date, number},
     error::{CellPosition, FileError, FileProblem, shorten},
+    naming::{names_statistic, words},
     table::{ColumnKind, LackingRows, Layout, block},
 };
 
@@ -176,8 +177,12 @@ impl<'a> RowPlan<'a> {
     }
 
     /// Whether a faulty line is a row of data all the same: by its cell in the leading column of numbers, or where most of its cells are
-    /// numbers and none is missing.
+    /// numbers and none is missing. Statistics of the columns (`Max,12.3,4.5`) are none.
     pub(crate) fn is_data(&self, line: &[u8]) -> bool {
+        let label = Fields::of(line, self.layout.delimiter).find(|cell| !cell.is_empty());
+        if label.is_some_and(|cell| names_statistic(&words(&self.text(cell)))) {
+            return false;
+        }
         let (mut cells, mut numbers, mut leads) = (0, 0, false);
         for cell in Fields::of(line, self.layout.delimiter) {
             let is_number = number::classify(cell).is_numeric();

@@ -5,6 +5,7 @@ mod errors;
 mod machines;
 mod quantities;
 mod records;
+mod units;
 
 use std::path::Path;
 
