@@ -34,12 +34,14 @@
 mod beside;
 mod channels;
 mod columns;
+mod continued;
 mod detect;
 mod part;
 mod row;
 mod rows_ahead;
 mod runs;
 mod sample;
+mod section;
 mod sections;
 
 pub use columns::read_columns;

@@ -6,15 +6,15 @@
 //! | RheoCompass (Anton Paar) | `Result: …`, `Interval and data points: 1 60`, names and units behind a label, in the language of the program |
 //! | rSpace (Malvern, Netzsch) | another text in the first column, `Action Name` |
 //! | any other, below one line of names | another specimen in its column, or a clock that begins again (`runs.rs`) |
-//! | any other | names of columns that repeat, with a time among them |
+//! | any other | names of columns that repeat, with a time among them; where the clock goes on it is one test (`continued.rs`) |
 //!
 //! Such a text is held in memory as a whole. One table of any length is not: it is streamed.
 
 use std::{collections::HashMap, ops::Range};
 
-use palpate::record::LabelledSegment;
+use palpate::{number::counted, record::LabelledSegment};
 
-use super::{columns::read_columns, detect};
+use super::{columns::read_columns, continued, detect, section::Section};
 use crate::{
     cell::{Cell, Delimiter, Fields, cells, number},
     error::{FileError, FileProblem},
@@ -35,22 +35,6 @@ const MOST_NAMED: usize = 1 << 16;
 const LAYOUT_LINES: usize = 4000;
 /// The first column of rSpace.
 const ACTION: &str = "Action Name";
-
-/// Where one test stands.
-pub(super) struct Section {
-    /// What the file calls it.
-    title: Option<String>,
-    /// Rows of a step that its title says to be a hold.
-    held: Option<usize>,
-    /// Bytes of the lines of names, where they do not stand among the lines of the test.
-    head: Range<usize>,
-    /// Bytes of its lines.
-    body: Range<usize>,
-    /// Number of the first of them, less the lines of the head, from 0.
-    before: usize,
-    /// How its head and its lines are written.
-    layout: Layout,
-}
 
 /// A text of several tests.
 struct Sections {
@@ -99,8 +83,10 @@ pub(super) fn look_into(
     let places = if by_actions { by_action(&all, delimiter) } else { stacked(&all, skip, delimiter) };
     check_number(input, &places)?;
     let (sections, skipped) = laid_out(&all, places, (encoding, &fixed));
+    let sections = continued::joined(&text, &input.name, sections);
+    let is_joined = sections.iter().any(|section| !section.repeated.is_empty());
     let titled = sections.len() > 1 && sections.iter().any(|section| section.title.is_some());
-    if timed(&sections) < if titled { 1 } else { 2 } {
+    if timed(&sections) < if titled || is_joined { 1 } else { 2 } {
         return Ok(None);
     }
     Ok(Some(of_sections(input, text, sections, skipped, encoding)))
@@ -298,6 +284,7 @@ pub(super) fn laid_out(
                 title: place.title,
                 head: bytes(head),
                 body: bytes(own),
+                repeated: Vec::new(),
                 before: place.lines.start - head.len(),
                 layout,
             }),
@@ -343,9 +330,14 @@ fn parts(sections: &[Section], encoding: Encoding) -> Vec<Part> {
             end: rows,
         });
         let name = match section.title.as_deref() {
-            Some(title) if times[title] == 1 => title.to_owned(),
-            Some(title) => format!("{title}, table {number}"),
-            None => format!("table {number}"),
+            Some(title) if times[title] == 1 => Some(title.to_owned()),
+            Some(title) => Some(format!("{title}, table {number}")),
+            None if sections.len() == 1 => None,
+            None => Some(format!("table {number}")),
+        };
+        let again = match section.repeated.len() {
+            0 => String::new(),
+            count => format!(", names repeated {}", counted(count, "time")),
         };
         let layout = Layout {
             encoding,
@@ -353,8 +345,8 @@ fn parts(sections: &[Section], encoding: Encoding) -> Vec<Part> {
             ..section.layout.clone()
         };
         Part {
-            name: Some(name),
-            written: layout.to_string(),
+            name,
+            written: format!("{layout}{again}"),
             columns: layout.columns,
             metadata,
             labels: labels.collect(),
@@ -369,8 +361,8 @@ impl ReadPart for Sections {
         let Some(section) = self.sections.get(part) else {
             return Ok(Columns::of(columns.len()));
         };
-        let (head, body) = (&self.text[section.head.clone()], &self.text[section.body.clone()]);
-        let text = if head.is_empty() { body.to_owned() } else { format!("{head}\n{body}") };
+        let (head, body) = (&self.text[section.head.clone()], section.rows(&self.text));
+        let text = if head.is_empty() { body } else { format!("{head}\n{body}") };
         let input = Input::from_bytes(&self.input.name, text.into_bytes())?;
         let layout = Layout {
             encoding: Encoding::Utf8,

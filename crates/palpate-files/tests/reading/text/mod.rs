@@ -1,5 +1,6 @@
 //! Reading delimited text: habits of machines, errors, and real records where they are at hand.
 
+mod continued;
 mod errors;
 mod habits;
 mod records;
