@@ -83,9 +83,15 @@ fn doubtful(doubt: DecimalDoubt) -> &'static str {
         DecimalDoubt::CommaSplitsNumbers => {
             "export with semicolons or tabs between cells; if the commas only separate whole numbers, fix the decimal mark to point"
         }
-        DecimalDoubt::Thousands => "fix the decimal mark to comma, or export without thousands separators",
-        DecimalDoubt::PointThousands => "fix the decimal mark to point, or export without thousands separators",
-        DecimalDoubt::Mixed => "export with one decimal mark, or fix the decimal mark",
+        DecimalDoubt::Thousands => {
+            "state the decimal mark in a test description: of 1,234 comma makes 1.234, and point 1234\n[file]\ndecimal = \"comma\""
+        }
+        DecimalDoubt::PointThousands => {
+            "state the decimal mark in a test description: of 1.234 point makes 1.234, and comma 1234\n[file]\ndecimal = \"point\""
+        }
+        DecimalDoubt::Mixed => {
+            "state the decimal mark in a test description: the other one then sets off thousands\n[file]\ndecimal = \"comma\""
+        }
     }
 }
 

@@ -78,8 +78,8 @@ fn weigh(lines: &[&str], block: &Block) -> Result<DecimalMark, Doubt> {
     let (points, commas) = (texts(Cell::Point, &[]), texts(Cell::Comma, &[]));
     // Where one mark sets off thousands, the other one marks decimals.
     if !points.is_empty() && !commas.is_empty() {
-        let other_points = texts(Cell::Point, &thousands(lines, block, DecimalMark::Comma));
-        let other_commas = texts(Cell::Comma, &thousands(lines, block, DecimalMark::Point));
+        let other_points = texts(Cell::Point, &thousands(lines, block, DecimalMark::Comma, false));
+        let other_commas = texts(Cell::Comma, &thousands(lines, block, DecimalMark::Point, false));
         match (other_points.is_empty(), other_commas.is_empty()) {
             (true, false) => return weigh_texts(&[], &other_commas),
             (false, true) => return weigh_texts(&other_points, &[]),
@@ -95,8 +95,9 @@ fn weigh(lines: &[&str], block: &Block) -> Result<DecimalMark, Doubt> {
 }
 
 /// Columns in which the other mark than that of decimals sets off thousands: beside `1.185`, which alone says nothing, stands `1.185,5` or
-/// `1.234.567`; or all others are whole numbers up to 999, and another column has decimals.
-pub(crate) fn thousands(lines: &[&str], block: &Block, mark: DecimalMark) -> Vec<bool> {
+/// `1.234.567`; or all others are whole numbers up to 999, and another column has decimals. Where the mark `is_stated`, the other one sets off
+/// thousands wherever it can.
+pub(crate) fn thousands(lines: &[&str], block: &Block, mark: DecimalMark, is_stated: bool) -> Vec<bool> {
     /// What the cells of a column are.
     #[derive(Clone, Copy, Default)]
     struct Found {
@@ -124,7 +125,7 @@ pub(crate) fn thousands(lines: &[&str], block: &Block, mark: DecimalMark) -> Vec
     }
     let has_decimals = !places(block, decimals).is_empty();
     let sets_off = |found: Found| {
-        let by_whole = found.unclear && found.hundreds && !found.other && has_decimals;
+        let by_whole = found.unclear && (is_stated || found.hundreds && !found.other && has_decimals);
         !found.contrary && (found.clear || by_whole)
     };
     found.into_iter().map(sets_off).collect()

@@ -83,7 +83,7 @@ fn layout_of(
         units_line: header.units_line.map(|index| index + 1),
         first_data_line: block.first + 1,
         metadata: named_values(lines, skip, &block, &header),
-        thousands: decimal::thousands(lines, &block, decimal),
+        thousands: decimal::thousands(lines, &block, decimal, options.decimal.is_some()),
         columns,
         day,
         undecided,

@@ -355,3 +355,64 @@ fn thousands_are_read_where_the_column_shows_them() {
     // Three decimals of one column beside decimal commas of another.
     assert!(read("t;F\n0,1;1.185\n0,2;1.190\n", &[1, 2]).is_err());
 }
+
+/// A line of statistics with a number a column was refused as a faulty row.
+#[test]
+fn statistics_below_the_rows_are_a_footer() {
+    for (text, lines) in [
+        ("t,d,F\n0,1,1.5\n1,2,2.5\nMax,2,2.5\n", 1),
+        ("t,d,F\n0,1,1.5\n1,2,2.5\n\nMaximum,2,2.5\nMinimum,1,1.5\nMean value,1.5,2\nStd. dev.,0.5,0.5\n", 4),
+        ("t;d;F\n0;1;1,5\n1;2;2,5\nMittelwert;1,5;2\nStandardabweichung;0,5;0,5\n", 2),
+    ] {
+        let columns = read(text, &[1, 2, 3]).unwrap_or_else(|error| panic!("{text}: {error}"));
+        assert_eq!(columns.values, [[0.0, 1.0], [1.0, 2.0], [1.5, 2.5]], "{text}");
+        assert_eq!(columns.ignored.footer.map(|footer| footer.lines), Some(lines), "{text}");
+    }
+    // Any other word is a row that is damaged, and statistics between rows are no footer.
+    assert!(read("t,d,F\n0,1,1.5\nx,2,2.5\n", &[1, 2, 3]).is_err());
+    assert!(read("t,d,F\n0,1,1.5\nMax,1,1.5\n1,2,2.5\n", &[1, 2, 3]).is_err());
+}
+
+#[test]
+fn russian_and_korean_machines() {
+    let russian = "Время, с; Сила, Н; Перемещение, мм\n0,0;0,5;1,5\n0,1;0,6;1,6\n";
+    let korean = "시간(s), 하중(N), 변위(mm)\n0.0,0.5,1.5\n0.1,0.6,1.6\n";
+    for (text, encoding) in [
+        (russian, Encoding::Utf8),
+        (russian, Encoding::Windows1251),
+        (korean, Encoding::Utf8),
+        (korean, Encoding::EucKr),
+    ] {
+        let codec = if encoding == Encoding::EucKr { encoding_rs::EUC_KR } else { encoding_rs::WINDOWS_1251 };
+        let bytes = if encoding == Encoding::Utf8 {
+            text.as_bytes().to_vec()
+        } else {
+            codec.encode(text).0.into_owned()
+        };
+        let layout = layout(&bytes);
+        assert_eq!(layout.encoding, encoding);
+        assert_eq!(read(&bytes, &[2]).expect("columns").values, [[0.5, 0.6]]);
+        assert!(matches!(units(&layout)[..], ["с", "Н", "мм"] | ["s", "N", "mm"]), "{:?}", units(&layout));
+    }
+}
+
+/// A stated decimal mark left `1,234` a text.
+#[test]
+fn a_stated_decimal_mark_makes_thousands_of_the_other() {
+    for (text, mark, values) in [
+        ("t;F\n0;1,900\n1;1,910\n", DecimalMark::Point, [1900.0, 1910.0]),
+        ("t;F\n0;1,900\n1;1,910\n", DecimalMark::Comma, [1.9, 1.91]),
+        ("t;F\n0,1;2.000\n0,2;2.010\n", DecimalMark::Comma, [2000.0, 2010.0]),
+    ] {
+        assert!(layout_with(text, &ReadOptions::default()).is_err(), "{text}");
+        let options = ReadOptions {
+            decimal: Some(mark),
+            ..ReadOptions::default()
+        };
+        let file = written(text);
+        let input = Input::open(&file.path).expect("a file");
+        let layout = layout_with(text, &options).expect("a layout");
+        let columns = read_columns(&input, &layout, &[2], &mut |_, _| Ok(())).expect("columns");
+        assert_eq!(columns.values, [values], "{text}");
+    }
+}
