@@ -122,7 +122,7 @@ mod tests {
         assert_eq!(since_1970(45_123.5, 1.0), None);
         assert_eq!(since_1970(1_689_508_800.0, 1.0), Some(1_689_508_800.0));
         assert!(
-            are_serials(&[45_123.4567, 45_123.4568])
+            are_serials(&[45_123.456_7, 45_123.456_8])
                 && !are_serials(&[45_123.4, 45_133.4])
                 && !are_serials(&[0.0, 0.1])
         );
