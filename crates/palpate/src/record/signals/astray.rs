@@ -41,7 +41,7 @@ impl Astray {
             let run = (1..=longest).map(|length| row..row + length).find(|run| leaves && strays(&clean, run, least));
             row += run.as_ref().map_or(1, Range::len);
             if let Some(run) = run {
-                bridge(&mut clean, &[run.clone()]);
+                bridge(&mut clean, std::slice::from_ref(&run));
                 runs.push(run);
             }
         }

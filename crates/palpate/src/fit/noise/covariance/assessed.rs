@@ -112,7 +112,7 @@ impl Assessed {
             correlated: correlated.as_ref(),
             is_uneven: spread.is_some(),
         };
-        assessed.white = Some(fit.scaled(inverse, solution.variance)).filter(is_finite);
+        assessed.white = Some(fit.scaled(inverse, solution.variance)).filter(|rows| is_finite(rows));
         if assessed.white.is_some() {
             let mut uncertainty = Uncertainty::of_noise(&fit, &noise, (trust.confidence, unit), effort)?;
             if noise_p_value.is_some_and(|p_value| p_value < UNEXPLAINED)
@@ -250,7 +250,7 @@ fn noise_of(
     noise_of(&views, &Residuals::of(&values, columns.len()), None, times)
 }
 
-fn is_finite(rows: &Vec<Vec<f64>>) -> bool {
+fn is_finite(rows: &[Vec<f64>]) -> bool {
     rows.iter().flatten().all(|entry| entry.is_finite())
 }
 
