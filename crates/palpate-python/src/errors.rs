@@ -3,7 +3,7 @@
 use std::fmt::Display;
 use std::io;
 
-use palpate::analysis::Finding;
+use palpate::analysis::{Finding, Severity};
 use palpate::units::UnitError;
 use palpate_files::description::{DescriptionError, KeyProblem};
 use palpate_jobs::{ErrorKind, JobError};
@@ -221,9 +221,9 @@ pub(crate) fn one_of<T: Clone>(option: &str, choices: &[(&str, T)], found: &str)
     })
 }
 
-/// Warns of findings, each with what it means.
+/// Warns of the findings because of which numbers must not be used, each with what it means.
 pub(crate) fn warn_of<'a>(py: Python<'_>, findings: impl IntoIterator<Item = &'a Finding>) -> PyResult<()> {
-    for finding in findings {
+    for finding in findings.into_iter().filter(|finding| finding.severity() == Severity::Warning) {
         warn(py, &format!("{}: {}; {}", finding.code(), finding.observation(), finding.meaning()))?;
     }
     Ok(())

@@ -445,3 +445,12 @@ def test_what_cannot_be_predicted_is_stated(
     with pytest.raises(kind) as caught:
         material.predict(protocol, **keywords)
     assert reported in str(caught.value)
+
+
+def test_findings_on_the_record_are_those_of_its_analysis(calibration: palpate.Calibration, record: palpate.Record) -> None:
+    """A calibration was silent on repaired rows and gaps that the analysis of the same record states."""
+    assert [found.code for found in calibration.findings] == [found["code"] for found in calibration.to_dict()["findings"]]
+    force = record.force_n.copy()
+    force[300:303] = 9999.0
+    astray = palpate.Record.from_arrays(time_s=record.time_s, displacement_m=record.displacement_m, force_n=force)
+    assert "dropouts_repaired" in [found.code for found in astray.calibrate(test=TEST, alternatives=[]).findings]

@@ -791,6 +791,8 @@ class Calibration(_Series, _Reported):
     """Which law predicts best, or has the lowest BIC, in a sentence; None without alternatives."""
     remarks: Final[list[str]]
     """What the parameters alone do not tell, in sentences."""
+    findings: Final[list[Finding]]
+    """What to know of the record besides the parameters."""
     termination: Final[str]
     """Why the search ended: "converged", or what kept it from that."""
     is_good: Final[bool]

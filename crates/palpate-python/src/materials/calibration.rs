@@ -8,9 +8,10 @@ use palpate_report::study::calibration_page;
 use pyo3::prelude::*;
 use serde::{Deserialize, Serialize};
 
-use crate::errors::{PalpateError, in_keywords, refused_plainly};
+use crate::errors::{PalpateError, in_keywords, refused_plainly, warn_of};
 use crate::html::framed;
 use crate::materials::material::{Material, as_toml};
+use crate::records::finding::Finding;
 use crate::shown::shown;
 use crate::table::{Column, Table, budget_columns, columns, parameter_columns};
 use crate::work::{job, plain, printed};
@@ -49,6 +50,7 @@ impl Calibration {
             return Err(refused_plainly::<PalpateError>("no law was calibrated"));
         };
         let (times, data) = (record.data.times(), &record.data);
+        warn_of(py, data.findings())?;
         let sample = |(index, time): (usize, &f64)| Sample {
             time: *time,
             displacement: data.motion().displacement_at(*time),
@@ -97,6 +99,8 @@ shown! {
         sentence: Option<&str> = self.sentence.as_deref(),
         /// What the parameters alone do not tell, in sentences.
         remarks: Vec<String> = self.document.remarks.iter().map(|text| in_keywords(text)).collect(),
+        /// What to know of the record besides the parameters.
+        findings: Vec<Finding> = self.document.findings.iter().map(|found| Finding::of(found, None)).collect(),
         /// Why the search ended: "converged", or what kept it from that.
         termination: &str = self.requested().termination.as_deref().unwrap_or_default(),
         /// Whether it ended at an optimum inside the range that was searched.

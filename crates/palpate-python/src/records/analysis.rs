@@ -6,74 +6,32 @@ use std::sync::{Arc, OnceLock};
 
 use arrow_array::ArrayRef;
 use numpy::PyArray1;
-use palpate::analysis::{AnalysisOptions, Severity};
+use palpate::analysis::AnalysisOptions;
 use palpate::watch::{Progress, Watch};
 use palpate_jobs::input::Measurement;
 use palpate_jobs::output::write_bundle;
 use palpate_jobs::{Analyze, Analyzed, Outcome, Results, write_reports};
 use palpate_report::document::{AnalysisDocument, FitDocument, HoldDocument, StatedRelaxationDocument};
+use palpate_report::result::Input;
 use palpate_report::result::ParameterDocument;
-use palpate_report::result::{Input, word};
 use palpate_report::study::FileOptions;
 use pyo3::prelude::*;
 use pyo3::types::PyType;
 use serde::{Deserialize, Serialize};
 
 use crate::arrays::array;
-use crate::errors::{OptionError, PalpateError, in_keywords, refused_plainly, unwritten, warn_of};
+use crate::errors::{OptionError, PalpateError, refused_plainly, unwritten, warn_of};
 use crate::fits::fit::PyFit;
 use crate::html::framed;
 use crate::listed::Listed;
 use crate::pickles::{Made, Piece, Pieces, made_again, unpickled};
+use crate::records::finding::Finding;
 use crate::records::hold_fit::{Curve, HoldNumber, curves, fit_of};
 use crate::records::kept::Kept;
 use crate::report_files::file_options;
 use crate::shown::shown;
 use crate::table::{Column, Table, budget_columns, columns, parameter_columns};
 use crate::work::{at_length, job, plain, printed, writing, writing_job};
-
-/// Something about a record, or a hold, that its numbers alone do not tell.
-#[pyclass(name = "Finding", module = "palpate", frozen, eq)]
-#[derive(Clone, PartialEq, Serialize, Deserialize)]
-pub(crate) struct Finding {
-    found: palpate_report::page::Finding,
-    hold: Option<usize>,
-}
-
-impl Finding {
-    fn of(found: &palpate_report::page::Finding, hold: Option<usize>) -> Self {
-        let found = found.clone();
-        Self { found, hold }
-    }
-
-    /// What helps; a document names options as the command does.
-    fn remedy_in_python(&self) -> String {
-        in_keywords(&self.found.remedy)
-    }
-}
-
-shown! {
-    Finding: self
-    values {
-        /// Stable code, such as "saturated".
-        code: &str = &self.found.code,
-        /// "info", "caution" or "warning".
-        severity: String = word(self.found.severity),
-        /// What was observed.
-        observation: &str = &self.found.observation,
-        /// What it may mean.
-        meaning: &str = &self.found.meaning,
-        /// What helps.
-        remedy: String = self.remedy_in_python(),
-        /// Number of the hold, from 1; None for the record as a whole.
-        hold: Option<usize> = self.hold,
-    }
-
-    fn __repr__(&self) -> String {
-        let place = self.hold.map_or(String::new(), |hold| format!(", hold {hold}"));
-        format!("<palpate.Finding {} ({}{place}): {}>", self.code(), self.severity(), self.observation())
-    }
-}
 
 /// Phases, laws of every hold and findings of one record; a page with figures in a notebook.
 ///
@@ -121,7 +79,7 @@ impl Analysis {
         let analysis = &done.result.analysis;
         let of_holds = analysis.holds.iter().flat_map(|hold| &hold.findings);
         let all = analysis.findings.iter().chain(of_holds);
-        warn_of(py, all.filter(|finding| finding.severity() == Severity::Warning))?;
+        warn_of(py, all)?;
         Ok(Self {
             requested,
             document: done.result.document(),

@@ -136,11 +136,13 @@ fn lost_rows(values: &[f64]) -> Vec<usize> {
     let mut sizes: Vec<f64> = values.iter().map(|value| value.abs()).collect();
     let usual = quantile(&mut sizes, 1.0 - most as f64 / values.len().saturating_sub(1).max(1) as f64);
     let far: Vec<usize> = (0..values.len()).filter(|row| values[*row].abs() > LARGER * usual).collect();
-    // A peak goes its way row by row.
+    // A peak goes its way row by row, and a body that is squeezed at once for more than some rows relaxes in them.
     let stands = |run: &Range<usize>| {
         let most = ALIKE * values[run.start].abs();
         let mut beside = run.start.checked_sub(1).into_iter().chain([run.end]).filter_map(|row| values.get(row));
-        range(&values[run.clone()]) < most && beside.all(|value| value.abs() < most)
+        let differ = range(&values[run.clone()]);
+        let is_one = if run.len() > LONGEST { differ == 0.0 } else { differ < most };
+        is_one && beside.all(|value| value.abs() < most)
     };
     let runs = if far.len() > most || usual == 0.0 { Vec::new() } else { runs_of(&far) };
     runs.into_iter().filter(stands).flatten().collect()
@@ -171,6 +173,11 @@ mod tests {
         // The mass of a rotor as it starts: one row beyond 20 times what follows, between others nearly as large.
         let rotor = |i: usize| [3.0, 15.0, 25.0, 14.0, 2.0].get(i).copied().unwrap_or(1.0);
         assert!(Astray::of(&(0..300).map(rotor).collect::<Vec<f64>>()).lost.is_empty());
+        assert_eq!(with(300..308, 9999.0), (300..308).collect::<Vec<usize>>());
+        // A squeeze of ten rows in a long log of a gripper that holds nothing.
+        let squeezed =
+            |i: usize| if (500..510).contains(&i) { 5.0 - 0.02 * i as f64 % 0.2 } else { 1e-3 * (i % 7) as f64 };
+        assert!(Astray::of(&(0..1000).map(squeezed).collect::<Vec<f64>>()).lost.is_empty());
         // A force that falls to a hundredth at once, but not in one row.
         let falling: Vec<f64> = (0..400).map(|i| (-0.5 * f64::from(i)).exp() + 1e-5 * f64::from(i % 7)).collect();
         assert!(Astray::of(&falling).lost.is_empty());
