@@ -1,7 +1,7 @@
 //! The order of the steps.
 
 use super::effects::Causes;
-use super::holds::{HoldAnalysis, complete_hold, fit_exponents, forecast_holds, prepare_hold};
+use super::holds::{HoldAnalysis, complete_hold, fit_exponents, forecast_holds, imposed, prepare_hold};
 use super::prepare::{ClockSkew, Prepared, corrected_watched, signal_findings};
 use super::together::{
     Across, EstimatedModulus, ImpliedModulus, LoadingModulus, ModulusSource, Overlay, across, changing_rate,
@@ -11,9 +11,11 @@ use super::{AnalysisError, AnalysisOptions, Finding};
 use crate::budget::{Budget, Contribution, InputQuantity};
 use crate::contact::{Specimen, SpecimenError};
 use crate::fit::{ErrorParts, Fit, Parameter};
+use crate::forecast::RampChoice;
+use crate::laws::Loading;
 use crate::number::significant;
 use crate::record::{Record, SignalReport};
-use crate::segment::{ContactChoice, ContactPoint, Phase, SegmentError, Segmentation, TouchMethod, ramps_before};
+use crate::segment::{ContactChoice, ContactPoint, Phase, SegmentError, Segmentation, TouchMethod};
 use crate::watch::{Cancelled, Progress, Unwatched, Watch};
 
 /// The study of one record.
@@ -162,12 +164,13 @@ fn examined(
     let loading_modulus = loading_modulus(&record, &segmentation, &contact, options.geometry.as_ref());
     let segments = &segmentation.segments;
     let held = (0..segments.len()).filter(|index| segments[*index].phase == Phase::Hold);
-    let (mut holds, ramps): (Vec<HoldAnalysis>, Vec<Option<usize>>) = held
+    let measured = options.compare.as_ref().is_some_and(|compare| compare.ramps == RampChoice::Measured);
+    let (mut holds, loadings): (Vec<HoldAnalysis>, Vec<Option<Loading>>) = held
         .zip(1..)
         .map(|(index, number)| {
             hear("preparing the holds")?;
-            let ramp = ramps_before(segments, index).last().map(|ramp| ramp.start);
-            Ok((prepare_hold(&record, &segments[index], number, specimen.as_ref(), options), ramp))
+            let loading = measured.then(|| imposed(&record, segments, index, options.separation)).flatten();
+            Ok((prepare_hold(&record, &segments[index], number, specimen.as_ref(), options), loading))
         })
         .collect::<Result<Vec<_>, Cancelled>>()?
         .into_iter()
@@ -175,10 +178,10 @@ fn examined(
     findings.extend(until_beyond(&holds, options));
     let (exponents, extension) = fit_exponents(&mut holds, options, watch)?;
     findings.extend(extension);
-    for (hold, ramp) in holds.iter_mut().zip(&ramps) {
-        complete_hold(hold, &record, *ramp, options, watch)?;
+    for (hold, loading) in holds.iter_mut().zip(&loadings) {
+        complete_hold(hold, &record, loading.as_ref(), options, watch)?;
     }
-    forecast_holds(&mut holds, &record, &ramps, options, watch)?;
+    forecast_holds(&mut holds, &loadings, options, watch)?;
     findings.extend(specimen.as_ref().and_then(|specimen| uncertain_touch(&contact, specimen, &holds)));
     let across = across(&holds, &exponents, options, 4.0 * segmentation.settings.tolerance, watch)?;
     findings.extend(changing_rate(&across.joint));

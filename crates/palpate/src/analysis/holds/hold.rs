@@ -8,7 +8,7 @@ use super::rate_bias::{RateBias, rate_bias};
 use crate::analysis::{AnalysisOptions, Finding};
 use crate::contact::{Shape, Specimen};
 use crate::fit::{ExponentChoice, LatencyFit, LawOptions, OrderSelection, Samples, Termination, fitted, select_order};
-use crate::forecast::{CompareOptions, Comparison, KnownFit, RampChoice, compare_laws_watched};
+use crate::forecast::{CompareOptions, Comparison, KnownFit, compare_laws_watched};
 use crate::laws::Loading;
 use crate::record::Record;
 use crate::segment::{After, FitStartRule, HoldMode, Relaxation, RelaxationType, Segment, classify_relaxation};
@@ -175,18 +175,18 @@ pub(in crate::analysis) fn prepare_hold(
     hold
 }
 
-/// Completes a hold whose exponents have been fitted: the choice among them, the comparison of laws, the findings. `ramp` is the
-/// first sample of the loading or unloading before the hold.
+/// Completes a hold whose exponents have been fitted: the choice among them, the comparison of laws, the findings. `loading` is what was imposed
+/// before it.
 pub(in crate::analysis) fn complete_hold(
     hold: &mut HoldAnalysis,
     record: &Record,
-    ramp: Option<usize>,
+    loading: Option<&Loading>,
     options: &AnalysisOptions,
     watch: &mut dyn Watch,
 ) -> Result<(), Cancelled> {
     if hold.relaxes() {
         hold.order = (!hold.fits.is_empty()).then(|| select_order(&hold.fits));
-        hold.comparison = compare(hold, loading(record, ramp, &hold.segment), options, watch)?;
+        hold.comparison = compare(hold, loading, options, watch)?;
         hold.rate_bias = hold.preferred().and_then(|fit| rate_bias(hold.samples(), fit, options));
         judge(hold);
         let interval = hold.times[1];
@@ -259,7 +259,7 @@ fn take_signal(hold: &mut HoldAnalysis, record: &Record, specimen: Option<&Speci
 /// Compares laws over the whole hold, or over what was requested to be fitted.
 fn compare(
     hold: &HoldAnalysis,
-    loading: Option<Loading>,
+    loading: Option<&Loading>,
     options: &AnalysisOptions,
     watch: &mut dyn Watch,
 ) -> Result<Option<Comparison>, Cancelled> {
@@ -280,38 +280,30 @@ fn compare(
     fitted(compare_laws_watched(&hold.samples(), &compare, &known, watch))
 }
 
-/// Adds to all compared holds what each will show next. `ramps` are the first samples of the loadings before them.
+/// Adds to all compared holds what each will show next. `loadings` are what was imposed before them.
 pub(in crate::analysis) fn forecast_holds(
     holds: &mut [HoldAnalysis],
-    record: &Record,
-    ramps: &[Option<usize>],
+    loadings: &[Option<Loading>],
     options: &AnalysisOptions,
     watch: &mut dyn Watch,
 ) -> Result<(), Cancelled> {
     let Some(compare) = options.compare.as_ref().filter(|compare| compare.forecast) else {
         return Ok(());
     };
-    let compared = holds.iter_mut().zip(ramps).filter_map(|(hold, ramp)| {
+    let compared = holds.iter_mut().zip(loadings).filter_map(|(hold, loading)| {
         let samples = Samples::new(&hold.times[..hold.fitted], &hold.values[..hold.fitted]);
-        let fit = fit_options(compare, loading(record, *ramp, &hold.segment));
+        let fit = fit_options(compare, loading.as_ref());
         Some((samples, fit, hold.comparison.as_mut()?))
     });
     add_forecasts(compared.collect(), &compare.laws(), watch)
 }
 
 /// Options of the fits on a hold after a loading.
-fn fit_options(compare: &CompareOptions, loading: Option<Loading>) -> LawOptions {
-    let measured = (compare.ramps == RampChoice::Measured).then_some(loading).flatten();
+fn fit_options(compare: &CompareOptions, loading: Option<&Loading>) -> LawOptions {
     LawOptions {
-        loading: measured.or_else(|| compare.fit.loading.clone()),
+        loading: loading.or(compare.fit.loading.as_ref()).cloned(),
         ..compare.fit.clone()
     }
-}
-
-/// The displacement from sample `ramp` to where the fit of a hold starts.
-fn loading(record: &Record, ramp: Option<usize>, segment: &Segment) -> Option<Loading> {
-    let range = ramp?..segment.fit_start + 1;
-    Loading::new(&record.time()[range.clone()], &record.displacement()?[range]).ok()
 }
 
 /// Adds what the fits give cause to say.

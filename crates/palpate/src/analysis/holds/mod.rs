@@ -3,6 +3,7 @@
 //! | file | what |
 //! |---|---|
 //! | `hold.rs` | signal, choice of the exponent, comparison of laws, findings |
+//! | `imposed.rs` | what was imposed before it |
 //! | `exponents.rs` | fits in both domains with the listed exponents, the extension of the list, the free one |
 //! | `creep.rs` | holds of constant force |
 //! | `jump.rs` | steps of the force within a hold |
@@ -13,6 +14,7 @@ mod compared;
 mod creep;
 mod exponents;
 mod hold;
+mod imposed;
 mod jump;
 mod rate_bias;
 
@@ -20,4 +22,5 @@ pub use creep::{CreepError, CreepHold, creep_holds};
 pub(super) use exponents::fit_exponents;
 pub use hold::{HoldAnalysis, HoldoutError, Signal};
 pub(super) use hold::{complete_hold, forecast_holds, prepare_hold};
+pub(super) use imposed::imposed;
 pub use rate_bias::RateBias;
