@@ -17,8 +17,9 @@ const UNITS: &str =
 const FILLERS: &str = "all the of are is in and values data alle der die sind und werte daten toutes tous les de sont en et valeurs \
     todas todos las los valores y tutte tutti le i valori в и все si";
 
-/// Most words of such a line.
+/// Most words and bytes of such a line.
 const MOST_WORDS: usize = 24;
+const LONGEST: usize = 200;
 
 /// The quantities of which lines state units.
 const STATED: [Quantity; 4] = [Quantity::Time, Quantity::Displacement, Quantity::Force, Quantity::Stress];
@@ -36,6 +37,10 @@ enum Word<'t> {
 /// The units that a line states, each with its dimension; none unless every word of it serves that, so that a limit, a range or a title
 /// states nothing. Quantities that it names must be those of its units; without any it must have a word for a unit.
 pub(crate) fn stated_units(line: &str) -> Vec<(Dimension, &str)> {
+    // Most lines have a number, which states no unit, and words cost more to look up than to pass over.
+    if line.len() > LONGEST || line.bytes().any(|byte| byte.is_ascii_digit()) {
+        return Vec::new();
+    }
     let separators = |letter: char| letter.is_whitespace() || ",;:=：，；".contains(letter);
     let words: Vec<&str> = line.split(separators).filter(|word| !word.is_empty()).take(MOST_WORDS + 1).collect();
     if words.len() < 2 || words.len() > MOST_WORDS {
