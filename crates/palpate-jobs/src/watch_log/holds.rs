@@ -88,7 +88,7 @@ impl Holds {
                 since,
                 until: observed.time,
                 held,
-                forces: (observed.force, observed.force),
+                forces: (observed.held_force.unwrap_or(observed.force), observed.force),
                 equilibrium: None,
                 creep: None,
                 warned: None,

@@ -56,26 +56,63 @@ impl Member {
         let there = displacement + self.offset;
         if self.rate != RateDependence::Constant {
             let place = self.model.specimen.contact_displacement(there);
-            self.model.law = self.rate.law(self.law, self.excess(displacement), place / self.model.specimen.depth());
+            self.model.law =
+                self.rate.law(self.law, self.excess(&self.state, displacement), place / self.model.specimen.depth());
         }
         self.state.step(&self.model, dt, there)
     }
 
     /// Strain in excess of equilibrium; none while the jaw is off.
-    fn excess(&self, displacement: f64) -> f64 {
+    fn excess(&self, state: &ContactState, displacement: f64) -> f64 {
         let specimen = &self.model.specimen;
         let place = specimen.contact_displacement(displacement + self.offset);
         let stiffness = specimen.force(1.0, place);
-        if stiffness > 0.0 && self.state.is_touching(&self.model) {
-            self.state.force(&self.model) / stiffness - specimen.equilibrium_strain(place)
+        if stiffness > 0.0 && state.is_touching(&self.model) {
+            state.force(&self.model) / stiffness - specimen.equilibrium_strain(place)
         } else {
             0.0
         }
     }
 
-    fn equilibrium(&self, displacement: f64) -> f64 {
-        let specimen = &self.model.specimen;
-        specimen.equilibrium_force(specimen.contact_displacement(displacement + self.offset).max(0.0))
+    /// With the jaw `by` (m) beyond a displacement at which it is, before anything relaxes.
+    fn placed(&self, displacement: f64, by: f64) -> Placed<'_> {
+        let mut state = self.state;
+        if by != 0.0 {
+            // Where the body cannot be brought there it stays.
+            let _ = state.step(&self.model, 0.0, displacement + by + self.offset);
+        }
+        Placed {
+            member: self,
+            state,
+            displacement: displacement + by,
+        }
+    }
+}
+
+/// A model with its jaw at a displacement, m.
+struct Placed<'a> {
+    member: &'a Member,
+    state: ContactState,
+    displacement: f64,
+}
+
+impl Placed<'_> {
+    fn force(&self) -> f64 {
+        self.state.force(&self.member.model)
+    }
+
+    fn excess(&self) -> f64 {
+        self.member.excess(&self.state, self.displacement)
+    }
+
+    fn equilibrium(&self) -> f64 {
+        let specimen = &self.member.model.specimen;
+        specimen.equilibrium_force(specimen.contact_displacement(self.displacement + self.member.offset).max(0.0))
+    }
+
+    fn force_after(&self, dt: f64) -> f64 {
+        let mut state = self.state;
+        state.step(&self.member.model, dt, self.displacement + self.member.offset).unwrap_or(0.0)
     }
 }
 
@@ -91,13 +128,14 @@ pub(super) struct ModelFilter {
     /// Room for a derivative and its product with the covariance.
     slope: Vec<f64>,
     gain: Vec<f64>,
+    /// Least standard deviation of a force from the model, N: that of the calibration.
     noise: f64,
     /// Mean of squared surprises in shares of their variance.
     surprise: f64,
     correlation: Correlation,
-    /// The last reading of the displacement: when (s), and what (m).
+    /// The last displacement: when (s), and what (m).
     last: Option<f64>,
-    displacement: f64,
+    displacement: Normal,
     exponent_standard_error: f64,
     /// Degrees of freedom of the calibration.
     pub(super) freedom: f64,
@@ -131,7 +169,6 @@ impl ModelFilter {
         let mut covariance = vec![0.0; count * count];
         covariance.iter_mut().step_by(count + 1).for_each(|variance| *variance = 1.0);
         let exponent = material.parameters().iter().find(|parameter| parameter.name == "exponent");
-        let noise = options.noise.map_or(material.noise(), |noise| noise.1.max(material.noise()));
         Ok(Self {
             best,
             pairs,
@@ -139,11 +176,11 @@ impl ModelFilter {
             covariance,
             slope: vec![0.0; count],
             gain: vec![0.0; count],
-            noise: noise.max(f64::MIN_POSITIVE.sqrt()),
+            noise: material.noise().max(f64::MIN_POSITIVE.sqrt()),
             surprise: 1.0,
             correlation: Correlation::default(),
             last: None,
-            displacement: 0.0,
+            displacement: Normal::new(0.0, 0.0),
             exponent_standard_error: exponent.and_then(|parameter| parameter.estimate.standard_error).unwrap_or(0.0),
             freedom: material.uncertainty().map_or(f64::INFINITY, |uncertainty| uncertainty.freedom),
         })
@@ -191,20 +228,22 @@ impl ModelFilter {
         Ok(())
     }
 
-    /// Brings the models to the displacement at `time` (s) and corrects them by the force that was read.
-    pub(super) fn feed(&mut self, time: f64, displacement: f64, force: f64) {
+    /// Brings the models to the displacement at `time` (s) and corrects them by the force that was read; `noise` has the standard deviations
+    /// of one reading of the displacement (m) and of the force (N). A force whose noise is not known yet corrects nothing.
+    pub(super) fn feed(&mut self, time: f64, displacement: Normal, force: f64, noise: Option<(f64, f64)>) {
         let dt = self.last.map_or(0.0, |last| time - last);
         self.last = Some(time);
         self.displacement = displacement;
         let step = |member: &mut Member| {
             // Checked before: it is taken.
-            let _ = member.step(dt, displacement);
+            let _ = member.step(dt, displacement.mean);
         };
         step(&mut self.best);
         for (high, low, _) in &mut self.pairs {
             step(high);
             step(low);
         }
+        let Some(noise) = noise else { return };
         let of = |member: &Member| member.state.force(&member.model);
         let expected = of(&self.best);
         let mut surprise = force - expected;
@@ -215,7 +254,10 @@ impl ModelFilter {
         if self.slope.iter().all(|slope| *slope == 0.0) {
             return;
         }
-        let mut variance = self.noise * self.noise;
+        // A mean of displacements errs for as many readings as it has: together they tell as if each had the noise of one reading.
+        let by_place = self.by_place(noise.0, |placed| placed.force());
+        let of_reading = self.noise.max(noise.1).powi(2) + by_place * by_place;
+        let mut variance = of_reading;
         for (gain, row) in self.gain.iter_mut().zip(self.covariance.chunks_exact(self.slope.len())) {
             *gain = row.iter().zip(&self.slope).map(|(entry, slope)| entry * slope).sum();
         }
@@ -225,7 +267,7 @@ impl ModelFilter {
         self.correlation.feed(surprise / variance.sqrt());
         let together = self.correlation.together();
         let share = if dt > 0.0 { (APART / dt).max(together) } else { together };
-        variance += (share - 1.0) * self.noise * self.noise;
+        variance += (share - 1.0) * of_reading;
         for (standing, gain) in self.standing.iter_mut().zip(&self.gain) {
             *standing += gain * surprise / variance;
         }
@@ -247,34 +289,42 @@ impl ModelFilter {
         self.surprise < INNOVATION_LIMIT && self.standing.iter().all(|standing| standing.abs() < FAR)
     }
 
-    fn combined(&self, of: impl Fn(&Member) -> f64) -> Normal {
-        let mut value = of(&self.best);
+    /// What a displacement that is off by `deviation` (m) does to a number.
+    fn by_place(&self, deviation: f64, of: impl Fn(&Placed<'_>) -> f64) -> f64 {
+        let at = |by: f64| of(&self.best.placed(self.displacement.mean, by));
+        if deviation > 0.0 { 0.5 * (at(deviation) - at(-deviation)) } else { 0.0 }
+    }
+
+    /// A number with what the calibration, the body, first touch and the last displacement leave open of it.
+    fn combined(&self, of: impl Fn(&Placed<'_>) -> f64) -> Normal {
+        let here = |member: &Member| of(&member.placed(self.displacement.mean, 0.0));
+        let mut value = here(&self.best);
         let count = self.pairs.len();
         let mut slopes = [0.0; MOST];
         for ((slope, pair), standing) in slopes.iter_mut().zip(&self.pairs).zip(&self.standing) {
-            *slope = half(pair, &of);
+            *slope = half(pair, here);
             value += *slope * standing;
         }
         let slopes = &slopes[..count];
         let along = |row: &[f64]| row.iter().zip(slopes).map(|(entry, slope)| entry * slope).sum::<f64>();
         let rows = self.covariance.chunks_exact(count.max(1));
         let variance: f64 = rows.zip(slopes).map(|(row, slope)| slope * along(row)).sum();
-        Normal::new(value, variance.max(0.0).sqrt())
+        Normal::new(value, variance.max(0.0).sqrt().hypot(self.by_place(self.displacement.deviation, &of)))
     }
 
     /// Force that a hold here tends to, N.
     pub(super) fn equilibrium(&self) -> Normal {
-        self.combined(|member| member.equilibrium(self.displacement))
+        self.combined(|placed| placed.equilibrium())
     }
 
     /// Force in excess of it, N.
     pub(super) fn excess_force(&self) -> Normal {
-        self.combined(|member| member.state.force(&member.model) - member.equilibrium(self.displacement))
+        self.combined(|placed| placed.force() - placed.equilibrium())
     }
 
     /// Strain in excess of equilibrium.
     pub(super) fn excess_strain(&self) -> Normal {
-        self.combined(|member| member.excess(self.displacement))
+        self.combined(|placed| placed.excess())
     }
 
     /// v|x|ⁿ⁻¹, 1/s.
@@ -284,10 +334,7 @@ impl ModelFilter {
 
     /// The force after `dt` (s) more with the jaw where it is, N.
     pub(super) fn force_after(&self, dt: f64) -> Normal {
-        self.combined(|member| {
-            let mut state = member.state;
-            state.step(&member.model, dt, self.displacement + member.offset).unwrap_or(0.0)
-        })
+        self.combined(|placed| placed.force_after(dt))
     }
 }
 

@@ -23,7 +23,11 @@
 //!
 //! With a calibrated [`Material`](crate::calibrate::Material) its model runs beside the record, so that the excess strain is known from
 //! first touch on; the measured forces correct the uncertain parameters, the stiffness of this body and first touch. If the forces are not
-//! those of that body, the hold is fitted without the material. Displacements are then measured from first touch.
+//! those of that body, the hold is fitted without the material. Displacements are then measured from first touch. While the jaw stands the
+//! model is at the mean of its last readings; the standard errors contain the noise of that mean, or of one reading in motion.
+//!
+//! What is held slips once its force is at or below that of slip, whatever the phase. A force is held once it was clearly above its noise and
+//! above that of slip, or clearly above its noise with a jaw that closed on it.
 //!
 //! ```
 //! use palpate::latency::decay;

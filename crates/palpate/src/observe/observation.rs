@@ -73,7 +73,7 @@ pub enum Slip {
     None,
     /// Within the time to warn slip cannot be excluded.
     Soon,
-    /// The force is at or below the force of slip.
+    /// The force of something that was held is at or below the force of slip, in whatever phase.
     Slipping,
 }
 
@@ -100,6 +100,8 @@ pub struct Observation {
     pub held: Option<Held>,
     /// When the hold began, s.
     pub held_since: Option<f64>,
+    /// Filtered force when the hold began, N.
+    pub held_force: Option<f64>,
     /// True on the one tick at which a hold is detected.
     pub began: bool,
     /// Filtered force, N: the fitted curve within a hold as long as the readings follow it, the output of a filter elsewhere.

@@ -7,7 +7,7 @@ use super::{Held, Kept, Normal, Observation, ObserveError, ObserverOptions, Slip
 use crate::statistics::coverage_factor;
 
 /// Noise (standard deviations of one reading) within which a signal stands.
-const NOISE: f64 = 5.0;
+pub(super) const NOISE: f64 = 5.0;
 /// Share of its range within which a jaw stands that has no noise.
 const SERVO: f64 = 0.001;
 /// Share of its range within which a controller holds a force.
@@ -16,7 +16,7 @@ const CONTROLLER: f64 = 0.015;
 const OPEN: (f64, f64) = (0.02, 4.0);
 /// A jaw, and a force, stand once they would have gone so many tolerances at their last speed. A controller that sets a force goes in
 /// steps, and stands between them.
-const PATIENCE: (f64, f64) = (4.0, 8.0);
+pub(super) const PATIENCE: (f64, f64) = (4.0, 8.0);
 /// Tolerances of the force above which a force may be held: below, noise hides how it moves.
 const PLAIN: f64 = 2.0;
 /// A fit is made again once the hold is longer by this share.
@@ -25,13 +25,15 @@ const AGAIN: f64 = 0.04;
 const READINGS: u32 = 8;
 
 /// What the bytes of an observer begin with.
-const FORMAT: [u8; 8] = *b"observe4";
+const FORMAT: [u8; 8] = *b"observe5";
 
 /// A hold that goes on.
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct Hold {
     pub(super) held: Held,
     pub(super) since: f64,
+    /// Filtered force by then, N.
+    pub(super) force: f64,
     pub(super) fit: Option<HoldFit>,
     /// Of readings with what the last fit before them predicted.
     correlation: Correlation,
@@ -40,16 +42,15 @@ pub(super) struct Hold {
     /// Time since the hold began at which the next fit is due, s.
     pub(super) due: f64,
     pub(super) readings: u32,
-    /// The warning after the last tick.
-    pub(super) slip: Slip,
 }
-kept!(Hold: held, since, fit, correlation, crossing, creep, due, readings, slip);
+kept!(Hold: held, since, force, fit, correlation, crossing, creep, due, readings);
 
 impl Hold {
-    fn new(held: Held, since: f64) -> Self {
+    fn new(held: Held, (since, force): (f64, f64)) -> Self {
         Self {
             held,
             since,
+            force,
             ..Self::default()
         }
     }
@@ -74,20 +75,26 @@ pub(super) struct Observed {
     pub(super) grip: Stand,
     /// Least and largest displacement and force, m and N.
     pub(super) reached: [(f64, f64); 2],
-    /// The force since the jaw stands, from `relaxes_from` (s) on.
+    /// The force since the jaw stands, from `relaxes_from` (s) on, and the filtered force by then, N.
     pub(super) relaxation: Bins,
     pub(super) relaxes_from: f64,
-    /// The displacement since the force stands.
+    pub(super) relaxes_at: f64,
+    /// The displacement since the force stands, and the filtered force by then, N.
     pub(super) creep: Bins,
+    pub(super) creeps_at: f64,
     pub(super) displacement_observed: bool,
     pub(super) alone: Alone,
     pub(super) hold: Option<Hold>,
+    /// Whether something is held that may slip.
+    pub(super) is_gripped: bool,
+    /// The warning after the last tick.
+    pub(super) slip: Slip,
     /// Readings off a place that the jaw has perhaps not left, kept from the material until the next tells: time (s), and displacement (m) and force (N).
     pub(super) doubted: Option<(f64, (f64, f64))>,
 }
 kept!(
-    Observed: last, displacement_noise, force_noise, smooth, jaw, grip, reached, relaxation, relaxes_from, creep,
-    displacement_observed, alone, hold, doubted
+    Observed: last, displacement_noise, force_noise, smooth, jaw, grip, reached, relaxation, relaxes_from, relaxes_at,
+    creep, creeps_at, displacement_observed, alone, hold, is_gripped, slip, doubted
 );
 
 impl Observer {
@@ -141,9 +148,7 @@ impl Observer {
             self.fit(time);
         }
         let stated = self.say(time, began);
-        if let Some(hold) = &mut self.observed.hold {
-            hold.slip = stated.slip;
-        }
+        self.observed.slip = stated.slip;
         Ok(stated)
     }
 
@@ -155,12 +160,17 @@ impl Observer {
             self.observed.doubted = Some((time, (displacement, force)));
             return;
         }
+        let noise = self.observed.displacement_noise.deviation().zip(self.observed.force_noise.deviation());
+        let of_jaw = noise.map_or(0.0, |noise| noise.0);
+        let mut feed = |time: f64, displacement: f64, force: f64| {
+            filter.feed(time, self.observed.jaw.at(displacement, of_jaw), force, noise);
+        };
         if let Some((time, (displacement, force))) = self.observed.doubted.take()
             && !self.observed.jaw.stands
         {
-            filter.feed(time, displacement, force);
+            feed(time, displacement, force);
         }
-        filter.feed(time, displacement, force);
+        feed(time, displacement, force);
     }
 
     /// The material, once it has observed where the jaw is.
@@ -230,18 +240,17 @@ impl Observer {
                     .max(1.01 * meter.quantum().min(reached.1 - reached.0)),
             )
         };
+        let jaw_tolerance = tolerance(&self.observed.displacement_noise, self.observed.reached[0], SERVO);
         let force_tolerance = tolerance(&self.observed.force_noise, self.observed.reached[1], CONTROLLER);
         let grip = self.observed.grip.feed(time, force, force_tolerance, PATIENCE.1);
         if matches!(grip, Change::Moved | Change::Left | Change::Crept) {
             self.observed.creep.clear();
+            self.observed.creeps_at = self.observed.smooth.level;
         } else if let Some(displacement) = displacement {
             self.observed.creep.push(time - self.observed.grip.start, displacement);
         }
         let jaw = match displacement {
-            Some(displacement) => {
-                let tolerance = tolerance(&self.observed.displacement_noise, self.observed.reached[0], SERVO);
-                self.observed.jaw.feed(time, displacement, tolerance, PATIENCE.0)
-            }
+            Some(displacement) => self.observed.jaw.feed(time, displacement, jaw_tolerance, PATIENCE.0),
             None if self.observed.displacement_observed => Change::Same,
             None => {
                 let tolerance = self.observed.force_noise.deviation().map(|noise| NOISE * noise * Smooth::kept());
@@ -256,7 +265,7 @@ impl Observer {
         if matches!(jaw, Change::Moved | Change::Left | Change::Crept) || self.is_open() {
             // The first reading at a place may still belong to the way there.
             self.observed.relaxation.clear();
-            self.observed.relaxes_from = time;
+            (self.observed.relaxes_from, self.observed.relaxes_at) = (time, self.observed.smooth.level);
         } else if !self.observed.jaw.is_doubtful() {
             let elapsed = time - self.observed.relaxes_from;
             self.observed.relaxation.push(elapsed, force);
@@ -267,7 +276,9 @@ impl Observer {
             }
         }
         let reported = force_tolerance.is_some_and(|tolerance| self.observed.smooth.level.abs() > PLAIN * tolerance);
-        self.begin_or_end(jaw, grip, reported)
+        let began = self.begin_or_end(jaw, grip, reported);
+        self.grip(jaw_tolerance, reported);
+        began
     }
 
     /// `reported` is whether the force is large enough for its standing still to mean anything.
@@ -278,14 +289,14 @@ impl Observer {
             hold.readings = hold.readings.saturating_add(1);
             let goes_on = match hold.held {
                 Held::Displacement if jaw == Change::Crept && self.observed.grip.stands => {
-                    *hold = Hold::new(Held::Force, hold.since);
+                    *hold = Hold::new(Held::Force, (hold.since, hold.force));
                     true
                 }
                 Held::Displacement => !matches!(jaw, Change::Left | Change::Crept),
                 Held::Force if grip == Change::Same => true,
                 // The force gave way, the jaw did not.
                 Held::Force if jaw_stands => {
-                    *hold = Hold::new(Held::Displacement, hold.since);
+                    *hold = Hold::new(Held::Displacement, (hold.since, hold.force));
                     true
                 }
                 Held::Force => false,
@@ -300,13 +311,13 @@ impl Observer {
             return false;
         }
         self.observed.hold = if stands {
-            Some(Hold::new(Held::Displacement, self.observed.relaxes_from))
+            Some(Hold::new(Held::Displacement, (self.observed.relaxes_from, self.observed.relaxes_at)))
         } else if self.observed.displacement_observed
             && self.observed.grip.stands
             && self.observed.jaw.slowed()
             && reported
         {
-            Some(Hold::new(Held::Force, self.observed.grip.start))
+            Some(Hold::new(Held::Force, (self.observed.grip.start, self.observed.creeps_at)))
         } else {
             None
         };

@@ -1,5 +1,6 @@
 //! What an observer says after a tick: its state as an observation, and warnings.
 
+use super::observer::{NOISE, PATIENCE};
 use super::signal::Smooth;
 use super::{ContactPhase, Held, Normal, Observation, Observer, Slip, SlipForecast};
 use crate::grip::TimeToSlip;
@@ -7,9 +8,6 @@ use crate::grip::TimeToSlip;
 /// Slip that cannot be excluded is no warning where the best value is so many times farther than the warning is wanted: in the first moments
 /// of a hold nothing can be excluded.
 const FALSE_ALARM: f64 = 4.0;
-
-/// Standard deviations of the filtered readings within which they follow a law.
-const FOLLOWS: f64 = 5.0;
 
 /// How many times longer the time to slip has to be for a warning to be taken back.
 const STAYS: f64 = 2.0;
@@ -34,6 +32,7 @@ impl Observer {
         if let Some(hold) = &self.observed.hold {
             stated.held = Some(hold.held);
             stated.held_since = Some(hold.since);
+            stated.held_force = Some(hold.force);
             stated.creep_rate = hold.creep.map(Into::into);
             let elapsed = time - self.observed.relaxes_from;
             if let Some(fit) = &hold.fit {
@@ -54,8 +53,7 @@ impl Observer {
                 });
                 // A law by which it slips now does not forecast readings that are clearly above it.
                 let is_past = matches!(stated.time_to_slip, Some(SlipForecast::Known { best: TimeToSlip::After(best), .. }) if best <= 0.0);
-                let noise = self.observed.force_noise.deviation().unwrap_or(0.0) * Smooth::kept();
-                if is_past && stated.force > slip + FOLLOWS * noise {
+                if is_past && stated.force > slip + self.margin() {
                     stated.time_to_slip = Some(SlipForecast::Unknown);
                 }
             }
@@ -67,9 +65,8 @@ impl Observer {
     /// The force of a law or a material, if the readings follow it; else that of the readings.
     fn as_read(&self, force: f64) -> f64 {
         let read = self.observed.smooth.level;
-        let noise = self.observed.force_noise.deviation().map(|noise| noise * Smooth::kept());
         // A reading off the place where the jaw stands says nothing of the hold until the next tells whether it was left.
-        let is_off = noise.is_some_and(|noise| (force - read).abs() > FOLLOWS * noise);
+        let is_off = self.observed.force_noise.deviation().is_some() && (force - read).abs() > self.margin();
         if is_off && !self.observed.jaw.is_doubtful() { read } else { force }
     }
 
@@ -98,20 +95,44 @@ impl Observer {
         }
     }
 
+    /// Whether something is held that may slip: its force was clearly above noise and the force of slip, or a jaw that came holds it. A
+    /// weak force alone may be a drift of its zero.
+    ///
+    /// It is let go where the force ends as the jaw moves; where it ends though the jaw stands, what was held is lost.
+    pub(super) fn grip(&mut self, jaw_tolerance: Option<f64>, reported: bool) {
+        let observed = &self.observed;
+        if self.is_open() && !observed.jaw.stands {
+            self.observed.is_gripped = false;
+            return;
+        }
+        let travel = observed.reached[0].1 - observed.reached[0].0;
+        let came =
+            observed.jaw.direction > 0.0 && jaw_tolerance.is_some_and(|tolerance| travel > PATIENCE.0 * tolerance);
+        let enough = self.options.slip_force.is_some_and(|slip| observed.smooth.level > slip + self.margin());
+        self.observed.is_gripped |= reported && (enough || (came && observed.hold.is_some()));
+    }
+
+    /// How far a filtered force has to be from another to differ clearly, N.
+    pub(super) fn margin(&self) -> f64 {
+        NOISE * self.observed.force_noise.deviation().unwrap_or(0.0) * Smooth::kept()
+    }
+
     fn warning(&self, stated: &Observation) -> Slip {
         let Some(slip) = self.options.slip_force else {
             return Slip::None;
         };
-        if stated.phase != ContactPhase::Holding {
+        if !self.observed.is_gripped {
             return Slip::None;
         }
         let noise = self.observed.force_noise.deviation().unwrap_or(0.0) * Smooth::kept();
-        let before = self.observed.hold.map_or(Slip::None, |hold| hold.slip);
+        let before = self.observed.slip;
         // A warning stays until there is clearly no cause for it any more.
         let early = if before == Slip::None { 1.0 } else { STAYS };
-        let margin = if before == Slip::Slipping { 3.0 * noise } else { 0.0 };
+        let margin = if before == Slip::Slipping { self.margin() } else { 0.0 };
         match stated.time_to_slip {
             _ if stated.force <= slip + margin => Slip::Slipping,
+            // Any other is of a hold.
+            _ if stated.held.is_none() => Slip::None,
             Some(SlipForecast::Known {
                 best: TimeToSlip::After(value),
                 low: TimeToSlip::After(low),

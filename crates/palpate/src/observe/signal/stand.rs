@@ -1,6 +1,6 @@
 //! Whether a signal stands still, reported within a few readings.
 
-use crate::observe::kept::kept;
+use crate::observe::{Normal, kept};
 
 /// Fewest readings of a stand.
 const FEWEST: u32 = 3;
@@ -23,6 +23,8 @@ pub(in crate::observe) struct Stand {
     last: f64,
     place: f64,
     count: f64,
+    /// Mean of the readings of the stand, of which the last [`PLACE`] count most: it follows a creep.
+    mean: f64,
     readings: u32,
     outside: u32,
     /// Since when the signal has been farther from the place than one tolerance, s.
@@ -35,7 +37,7 @@ pub(in crate::observe) struct Stand {
     /// Whether the stand was reported.
     pub(in crate::observe) stands: bool,
 }
-kept!(Stand: start, middle, last, place, count, readings, outside, drifts_since, speed, fastest, direction, stands);
+kept!(Stand: start, middle, last, place, count, mean, readings, outside, drifts_since, speed, fastest, direction, stands);
 
 /// A signal creeps where it leaves this much slower than it came.
 const CREEPS: f64 = 0.2;
@@ -107,7 +109,7 @@ impl Stand {
     }
 
     fn begin(&mut self, time: f64, value: f64) {
-        (self.start, self.middle, self.place) = (time, time, value);
+        (self.start, self.middle, self.place, self.mean) = (time, time, value, value);
         (self.count, self.readings, self.outside, self.stands) = (1.0, 1, 0, false);
         (self.last, self.drifts_since) = (time, None);
     }
@@ -115,11 +117,24 @@ impl Stand {
     fn stay(&mut self, time: f64, value: f64) {
         self.readings = self.readings.saturating_add(1);
         self.last = time;
+        if self.outside == 0 {
+            self.mean += (value - self.mean) / f64::from(self.readings).min(PLACE);
+        }
         if self.count < PLACE {
             self.count += 1.0;
             self.place += (value - self.place) / self.count;
             self.middle += (time - self.middle) / self.count;
         }
+    }
+
+    /// Where the signal is that last read `value` with the standard deviation `noise`: the mean of its readings while it stands.
+    pub(in crate::observe) fn at(&self, value: f64, noise: f64) -> Normal {
+        if !self.stands {
+            return Normal::new(value, noise);
+        }
+        // A mean that forgets has the variance α/(2 − α) of one reading, α = 1/PLACE, and before it forgets that of a plain mean.
+        let count = f64::from(self.readings).min(2.0 * PLACE - 1.0);
+        Normal::new(self.mean, noise / count.sqrt())
     }
 
     /// Whether the stand was reported, and the last reading is off its place: a dropout, or the first of a motion.

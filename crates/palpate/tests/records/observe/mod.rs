@@ -2,6 +2,7 @@
 #![expect(clippy::unwrap_used, reason = "a test that cannot run has failed")]
 
 mod material;
+mod warnings;
 
 use material::material;
 use palpate::fit::Estimate;
