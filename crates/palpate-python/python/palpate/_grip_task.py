@@ -105,6 +105,35 @@ class SoftGripTask:
         return self.mass_kg * self.gravity_m_per_s2 / (2.0 * self.friction)
 
 
+def task_of(settings: Mapping[str, Any]) -> SoftGripTask:
+    """The task with settings by name."""
+    known = [one.name for one in fields(SoftGripTask)]
+    for name in settings:
+        if name not in known:
+            raise OptionError(f"settings: expected names among {', '.join(known)}, found {name}")
+    return SoftGripTask(**settings)
+
+
+def slid(
+    speed: NDArray[np.float64], before: NDArray[np.float64], after: NDArray[np.float64], dt: float
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Speed (m/s) and way (m) of bodies after a time dt (s) in which the pull by mass goes straight from before to after (m/s^2).
+
+    No body is drawn back: dv/dt is the pull while v > 0 or the pull is above 0. So v falls to 0 once at most, and rises from there again where
+    the pull rises above 0.
+    """
+    rise = (after - before) / dt
+    with np.errstate(divide="ignore", invalid="ignore"):
+        root = np.sqrt(before * before - 2.0 * rise * speed)
+        stops = np.where(before > 0.0, -(before + root) / rise, 2.0 * speed / (root - before))
+        stands = (stops >= 0.0) & (stops < dt)
+        rest = np.where(stands & (rise > 0.0), np.clip(dt + before / rise, 0.0, dt), 0.0)
+    goes = np.where(stands, stops, dt)
+    way = goes * (speed + goes * (before / 2.0 + goes * rise / 6.0)) + rise * rest**3 / 6.0
+    last = np.where(stands, rise * rest**2 / 2.0, speed + dt * (before + after) / 2.0)
+    return np.maximum(last, 0.0), np.maximum(way, 0.0)
+
+
 def _number(name: str, value: Any, zero: bool) -> float:
     wanted = "0 or more" if zero else "above 0"
     try:

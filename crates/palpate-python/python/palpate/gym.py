@@ -23,7 +23,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from palpate._grip_task import Bodies, Control, SoftGripTask
+from palpate._grip_task import Bodies, Control, SoftGripTask, slid, task_of
 from palpate._palpate import ContactStates, ModelError, OptionError
 
 try:
@@ -70,16 +70,17 @@ class SoftGripVectorEnv(VectorEnv[_Floats, _Floats, NDArray[Any]]):
     An **action** in [-1, 1] is a share a' = (a + 1)/2 of the most that can be commanded. With ``control="position"`` the jaw goes to
     a' ``travel_m``; with "force" the finger pushes with f = a' ``force_n`` and moves by c dd/dt = f - F(d); with "impedance" a spring pulls it to
     a' ``travel_m``, c dd/dt = k (a' travel - d) - F(d). Both are solved implicitly with the stiffness of the contact. The jaw is never faster than
-    ``speed_m_per_s``. An action of NaN leaves the command as it was.
+    ``speed_m_per_s``. An action of NaN leaves the command as it was. A jaw that would go beyond the body crushes it, and stays where it was.
 
     An **observation** is [d/travel_m, F/force_n, load/(2 mu_0 force_n), t/episode] with the displacement d of the jaw, the force F of a finger,
     the load that the fingers carry, the coefficient of friction mu_0 of the task, and the time t; in [0, 1], force and load up to 2.
 
-    The support gives way from ``lift_s`` on; the load then rises to m g within ``lift_takes_s``. The body **slips** with m dv/dt = load - 2 mu F, v >= 0.
+    The support gives way from ``lift_s`` on; the load then rises to m g within ``lift_takes_s``. The body **slips** with m dv/dt = load - 2 mu F,
+    v >= 0, integrated exactly for a pull load - 2 mu F that goes straight within a step.
 
     The **reward** of a step is 1 - force_cost F/force_n - slip_cost min(v/(0.1 m/s), 1), less ``loss_cost`` in the step that ends the episode.
-    The episode **terminates** where slip exceeds ``slip_limit_m`` (``infos["lost"]``) or F ``crush_force_n`` (``infos["crushed"]``), and is
-    truncated after ``max_episode_steps``.
+    The episode **terminates** where slip exceeds ``slip_limit_m`` (``infos["lost"]``) or F ``crush_force_n``, or where the jaw
+    would go beyond the body (``infos["crushed"]``), and is truncated after ``max_episode_steps``.
 
     Parameters
     ----------
@@ -121,7 +122,7 @@ class SoftGripVectorEnv(VectorEnv[_Floats, _Floats, NDArray[Any]]):
         copy: bool = True,
         **settings: Any,
     ) -> None:
-        self.task = SoftGripTask(**settings)
+        self.task = task_of(settings)
         if max_episode_steps is not None:
             max_episode_steps = _steps("max_episode_steps", max_episode_steps)
         self.num_envs = _steps("num_envs", num_envs)
@@ -135,8 +136,8 @@ class SoftGripVectorEnv(VectorEnv[_Floats, _Floats, NDArray[Any]]):
         self._span = max_episode_steps or EPISODE
         self.bodies = Bodies(self.task, self.num_envs)
         self.contacts = ContactStates(self.task.model, self.num_envs)
-        zeros = [np.zeros(self.num_envs) for _ in range(7)]
-        self._command, self._jaw, self._next, self._force, self._load, self._speed, self._slip = zeros
+        zeros = [np.zeros(self.num_envs) for _ in range(8)]
+        self._command, self._jaw, self._next, self._force, self._load, self._pull, self._speed, self._slip = zeros
         self._steps = np.zeros(self.num_envs, np.int64)
         self._observed = np.zeros((self.num_envs, 4), np.float32)
         self._ended = np.zeros(self.num_envs, np.bool_)
@@ -166,7 +167,7 @@ class SoftGripVectorEnv(VectorEnv[_Floats, _Floats, NDArray[Any]]):
         self._bear()
         rewards = 1.0 - task.force_cost / task.force_n * self._force
         rewards -= task.slip_cost / _FAST_M_PER_S * np.minimum(self._speed, _FAST_M_PER_S)
-        lost, crushed = self._slip > task.slip_limit_m, self._force > task.crush_force_n
+        lost, crushed = self._slip > task.slip_limit_m, (self._force > task.crush_force_n) | self.contacts.failed
         terminations = lost | crushed
         truncations = np.zeros(self.num_envs, np.bool_) if self._episode is None else self._steps >= self._episode
         rewards -= task.loss_cost * terminations
@@ -209,7 +210,7 @@ class SoftGripVectorEnv(VectorEnv[_Floats, _Floats, NDArray[Any]]):
 
     def _begin_again(self, mask: _Marks) -> None:
         """All back to the start, where the bodies are untouched."""
-        for column in (self._command, self._jaw, self._force, self._load, self._speed, self._slip, self._steps):
+        for column in (self._command, self._jaw, self._force, self._load, self._pull, self._speed, self._slip, self._steps):
             column[mask] = 0
         self._ended[mask] = False
 
@@ -242,7 +243,7 @@ class SoftGripVectorEnv(VectorEnv[_Floats, _Floats, NDArray[Any]]):
         if fresh is not None:
             going[fresh] = 0.0
         self.contacts.step(dt, going, out=self._force, substeps=task.substeps, errors="mask")
-        # A jaw that its body stops stays where it was.
+        # A jaw that would go beyond its body stays where it was.
         np.copyto(self._jaw, going, where=~self.contacts.failed)
 
     def _bear(self) -> None:
@@ -251,11 +252,10 @@ class SoftGripVectorEnv(VectorEnv[_Floats, _Floats, NDArray[Any]]):
         lifted = (self._steps * dt - task.lift_s) / task.lift_takes_s
         np.clip(lifted, 0.0, 1.0, out=lifted)
         np.multiply(lifted, bodies.mass_kg * task.gravity_m_per_s2, out=self._load)
-        pull = self._load - 2.0 * bodies.friction * self._force
-        pull *= dt / bodies.mass_kg
-        self._speed += pull
-        np.maximum(self._speed, 0.0, out=self._speed)
-        self._slip += dt * self._speed
+        pull = (self._load - 2.0 * bodies.friction * self._force) / bodies.mass_kg
+        self._speed, way = slid(self._speed, self._pull, pull, dt)
+        self._pull = pull
+        self._slip += way
 
     def _observe(self) -> None:
         task, observed = self.task, self._observed

@@ -131,6 +131,35 @@ def test_too_much_force_crushes() -> None:
     assert rewards == pytest.approx(1.0 - 0.5 * infos["force_n"] / 10.0 - 10.0)
 
 
+def test_a_jaw_that_would_go_beyond_the_body_crushes_it() -> None:
+    # It stayed at 0, with a reward of 1.
+    envs = SoftGripVectorEnv(1, travel_m=0.1, speed_m_per_s=5.0)
+    envs.reset(seed=0)
+    _, rewards, terminations, _, infos = envs.step(pushed(envs, 1.0))
+    assert terminations[0] and infos["crushed"][0] and not infos["lost"][0] and rewards[0] == 1.0 - 10.0
+
+
+@pytest.mark.parametrize("lift_takes_s", [0.02, 0.5])
+def test_slip_does_not_depend_on_the_time_of_a_step(lift_takes_s: float) -> None:
+    def slips(period_s: float) -> np.ndarray[Any, Any]:
+        envs = SoftGripVectorEnv(
+            1, max_episode_steps=None, period_s=period_s, mass_kg=0.2, lift_s=0.3, lift_takes_s=lift_takes_s, slip_limit_m=1.0
+        )
+        envs.reset(seed=0)
+        # A squeeze that is not enough, and one that catches the body again.
+        moves = [(0.2, 45), (0.4, 15)]
+        found = []
+        for share, steps in moves:
+            for _ in range(round(steps * 0.02 / period_s)):
+                infos = envs.step(pushed(envs, share))[4]
+                found.append(float(infos["slip_m"][0]))
+        return np.array(found)
+
+    coarse, fine = slips(0.02), slips(5e-4)[39::40]
+    assert fine[-1] == fine[-2] > 2e-3
+    np.testing.assert_allclose(coarse, fine, rtol=0.02, atol=0.02 * 1e-3)
+
+
 @pytest.mark.parametrize("control", CONTROLS)
 def test_an_action_of_nan_leaves_the_command_and_one_beyond_is_the_most(control: str) -> None:
     plain, odd = (SoftGripVectorEnv(4, control=control) for _ in range(2))
@@ -323,6 +352,7 @@ def test_draws_that_are_no_body_are_repeated() -> None:
         ({"ranges": {"stiffness": (1, 2)}}, "ranges: expected names among modulus_pa"),
         ({"ranges": {"mass_kg": (2, 1)}}, "ranges: mass_kg: expected a lower and an upper end"),
         ({"ranges": {"mass_kg": 1}}, "ranges: mass_kg: expected a lower and an upper end, found 1"),
+        ({"frictoin": 0.5}, "settings: expected names among model, control, .*, found frictoin"),
         ({"num_envs": 0}, "num_envs: expected a whole number, 1 or more"),
         ({"model": {"specimen": {"shape": "ball"}}}, "law"),
     ],
