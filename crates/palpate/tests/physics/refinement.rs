@@ -2,9 +2,9 @@
 
 #![allow(clippy::unwrap_used, reason = "in a test a panic is the verdict")]
 
-use palpate::contact::{Layers, Shape, Sides, Specimen};
+use palpate::contact::{Layers, RateDependence, Shape, Sides, Specimen};
 use palpate::latency::LatencyLaw;
-use palpate::simulate::{ContactModel, ProtocolStep, Sampling, Separation, protocol, simulate};
+use palpate::simulate::{Contact, ContactModel, Motion, ProtocolStep, Sampling, Separation, protocol, simulate};
 
 /// Excess strain at 0.6 s and forces (N) at 0.6 and 10.6 s of a ball that is squeezed by 5 mm at 500 mm/min and held for 10 s.
 fn squeezed(radius: f64, layers: Layers) -> [f64; 3] {
@@ -56,4 +56,30 @@ fn layers_of_one_thickness_do_not_feel_how_large_the_body_is() {
     // (m − 1)/depth tends to 1/ℓ.
     let far = squeezed(1e3 * 0.035, Layers::of_thickness(4.375e-3, 35.0).unwrap())[0];
     assert!((far - 0.1366).abs() < 1e-4, "{far}");
+}
+
+/// With a factor near 1 a ramp had a few sections, and its forces were off by 4·10⁻⁴ of the largest.
+#[test]
+fn a_rate_coefficient_that_hardly_changes_is_followed_as_exactly_as_one_that_does() {
+    let times: Vec<f64> = (1..=180).map(|i| 0.01 * f64::from(i)).collect();
+    for factor in [0.2, 0.9, 0.95, 0.985, 1.02] {
+        let contact = Contact::Latency {
+            model: ContactModel {
+                specimen: Specimen::new(Shape::Ball { radius: 0.035 }, 28e3, Sides::Two).unwrap(),
+                law: LatencyLaw::new(4.0, 5e3).unwrap(),
+                layers: Layers::new(8.0).unwrap(),
+                separation: Separation::Bonded,
+            },
+            rate: RateDependence::Strain { factor },
+        };
+        let forces = |pieces: u32| {
+            let at = |i: u32| f64::from(i) / f64::from(pieces);
+            let (knots, places) = (0..=pieces).map(|i| (1.8 * at(i), 15e-3 * at(i))).unzip();
+            let motion = Motion::new(knots, places).unwrap();
+            simulate(&motion, &contact, &Sampling::Times(times.clone())).unwrap().force
+        };
+        let (whole, cut) = (forces(1), forces(1000));
+        let off = whole.iter().zip(&cut).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+        assert!(off < 2e-5 * cut[cut.len() - 1], "{factor}: {off}");
+    }
 }
