@@ -108,8 +108,9 @@ def energy(
     Table
         Energies in J, of both contacts of a body that is squeezed from two sides. By time: ``time_s``, ``work_j``, ``given_back_j``,
         ``stored_j``, ``lost_j``. By step: ``step``, ``from_s``, ``until_s``, displacements, ``work_j``, ``given_back_j``, ``lost_j``. By
-        cycle: ``cycle``, ``from_s``, ``until_s``, ``done_j``, ``given_back_j``, ``lost_j``, ``share_lost``, and whether the loop is
-        ``closed``. What the law does not say of a body whose contact grows is missing.
+        cycle: ``cycle``, ``from_s``, ``until_s``, ``done_j``, ``given_back_j``, ``lost_j``, ``share_lost``, and whether it is ``closed``:
+        the jaw is back, to 1 % of its travel, and what the body holds, to 1 % of the work done. ``lost_j`` went to heat, in open cycles too; of a
+        body whose contact grows it is the area of a closed loop. What the law does not say of such a body is missing.
 
     Raises
     ------
@@ -122,10 +123,10 @@ def energy(
     >>> cycle = palpate.energy({
     ...     "specimen": {"shape": "block", "area": "10 cm^2", "length": "40 mm", "modulus": "100 kPa"},
     ...     "law": {"name": "latency", "exponent": 3, "rate_coefficient": "100 /s"},
-    ...     "step": [{"to": "4 mm", "rate": "4 mm/s"}, {"to": "0 mm", "rate": "4 mm/s"}],
+    ...     "step": [{"to": "4 mm", "rate": "4 mm/s"}, {"to": "0 mm", "rate": "4 mm/s", "hold": "10 min"}],
     ... }, by="cycle")
     >>> round(float(cycle["share_lost"][0]), 3)
-    0.793
+    0.791
     """
     path, text = described(protocol)
     return _palpate.energy(path, text, *_driver(drive, drive_by), by)

@@ -242,16 +242,21 @@ fn work_between<L: Layer>(stretch: &Stretch<L>, model: &L, (from, to): (f64, f64
 
 /// What one contact of a body of constant section stores, J.
 pub(super) fn stored_at<L: Layer>(stretch: &Stretch<L>, model: &L, time: f64) -> f64 {
+    let (u, excess) = surface_at(stretch, model, time);
+    model.stored(&excess, u, model.specimen().stiffness(u).0)
+}
+
+/// Displacement of the surface of the body (m), and the excess of the layer.
+pub(super) fn surface_at<L: Layer>(stretch: &Stretch<L>, model: &L, time: f64) -> (f64, L::Excess) {
     let elapsed = time - stretch.start;
-    let (u, excess) = match &stretch.state {
+    match &stretch.state {
         StretchState::Touching(piece) => (stretch.jaw_at(time), piece.excess_at(elapsed)),
         StretchState::Forced(forced) => (stretch.jaw_at(time), forced.excess_at(elapsed)),
         StretchState::Free { surface, since } => {
             let u = model.surface(surface, time - since);
             (u, model.met(surface, time - since, u))
         }
-    };
-    model.stored(&excess, u)
+    }
 }
 
 /// Most halvings of a piece.

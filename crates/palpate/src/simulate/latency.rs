@@ -196,9 +196,8 @@ impl Layer for Latency<'_> {
         u - self.model.layers.thickness(specimen.depth()) * strain
     }
 
-    fn stored(&self, &excess: &f64, u: f64) -> f64 {
+    fn stored(&self, &excess: &f64, u: f64, stiffness: f64) -> f64 {
         let depth = self.specimen().depth();
-        let (stiffness, _) = self.specimen().stiffness(u);
         let elastic = 0.5 * stiffness * u * u / depth;
         // A single layer has no excess.
         if excess == 0.0 {

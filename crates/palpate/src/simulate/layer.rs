@@ -49,8 +49,8 @@ pub(super) trait Layer {
     fn strain_of(&self, excess: &Self::Excess, u: f64) -> f64;
     fn is_finite(excess: &Self::Excess) -> bool;
     fn behind(&self, excess: &Self::Excess, u: f64) -> Self::Behind;
-    /// What one contact of a body of constant section stores, J.
-    fn stored(&self, excess: &Self::Excess, u: f64) -> f64;
+    /// What one contact of a body of constant section stores, J, whose stiffness is E A (N).
+    fn stored(&self, excess: &Self::Excess, u: f64, stiffness: f64) -> f64;
 
     /// From contact displacement `from` (m) at `speed` (m/s) for `duration` (s).
     fn moving(

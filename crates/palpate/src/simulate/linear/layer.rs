@@ -46,11 +46,14 @@ impl Layer for LinearContact {
     }
 
     /// The springs of a generalised Maxwell body.
-    fn stored(&self, excess: &Vec<f64>, u: f64) -> f64 {
-        let (depth, (stiffness, _)) = (self.specimen.depth(), self.specimen.stiffness(u));
-        let (even, per) = (self.specimen.equilibrium_strain(u), self.per_strain(u));
+    fn stored(&self, excess: &Vec<f64>, u: f64, stiffness: f64) -> f64 {
+        let even = self.specimen.equilibrium_strain(u);
+        let per = match self.memory {
+            Memory::Strain => 1.0,
+            Memory::Force => stiffness,
+        };
         let springs = excess.iter().zip(self.law.terms()).map(|(x, term)| (x / per).powi(2) / term.overshoot);
-        0.5 * stiffness * depth * (even * even + springs.sum::<f64>())
+        0.5 * stiffness * self.specimen.depth() * (even * even + springs.sum::<f64>())
     }
 
     fn moving(
