@@ -146,13 +146,12 @@ pub struct PlanGrip {
         arg(long, value_enum, default_value_t, requires = "band_n", help_heading = "Question")
     )]
     pub regrip: RegripFor,
-    /// The shortest pause between two squeezes of least work.
+    /// The shortest pause between two squeezes of that schedule; if not given, 1 s with least work, and any with fewest moves.
     #[cfg_attr(feature = "clap", arg(
-        long = "shortest-pause", value_name = "TIME", value_parser = crate::typed::time,
-        default_value = crate::typed::seconds(PlanGrip::default().shortest_pause_s), allow_hyphen_values = true,
+        long = "shortest-pause", value_name = "TIME", value_parser = crate::typed::time, allow_hyphen_values = true,
         requires = "band_n", help_heading = "Question",
     ))]
-    pub shortest_pause_s: f64,
+    pub shortest_pause_s: Option<f64>,
     /// Probability with which the verdict has to hold, between 0 and 1; 0.5 for the best estimate. Intervals are of 95 %.
     #[cfg_attr(feature = "clap", arg(
         long, value_name = "SHARE", value_parser = crate::typed::coverage, allow_hyphen_values = true,
@@ -198,7 +197,7 @@ impl Default for PlanGrip {
             objective: Objective::Squeeze,
             band_n: None,
             regrip: RegripFor::Moves,
-            shortest_pause_s: 1.0,
+            shortest_pause_s: None,
             confidence: Question::CONFIDENCE,
         }
     }
@@ -262,6 +261,12 @@ impl PlanGrip {
                 "leave ⟨control=force⟩ out, or ask with ⟨force⟩",
             ));
         }
+        if self.control == Control::Force && self.objective != Objective::default() {
+            return Err(JobError::option(
+                "⟨objective⟩ is for a squeeze that is sought, and the force is held",
+                "leave ⟨control=force⟩ out, or leave ⟨objective⟩ out",
+            ));
+        }
         Ok(Question {
             control: self.control,
             squeeze: self.squeeze_m,
@@ -271,9 +276,11 @@ impl PlanGrip {
             confidence: Some(self.confidence),
             band: self.band_n.map(|(low, high)| Band { low, high }),
             regrip: match self.regrip {
-                RegripFor::Moves => Regrip::FewestMoves,
+                RegripFor::Moves => Regrip::FewestMoves {
+                    shortest_pause: self.shortest_pause_s.unwrap_or(0.0),
+                },
                 RegripFor::Work => Regrip::LeastWork {
-                    shortest_pause: self.shortest_pause_s,
+                    shortest_pause: self.shortest_pause_s.unwrap_or(1.0),
                 },
             },
         })

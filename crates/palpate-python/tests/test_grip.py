@@ -248,6 +248,7 @@ def test_a_question_that_is_none_has_the_words_of_the_command_line(
         ({"band_n": (2.1, 3), "regrip": "time"}, 'regrip is one of "moves", "work", found "time"'),
         ({"force_n": 2.0}, 'force_n is for a force that is held, and the displacement is\nhint: add control="force"'),
         ({"control": "force", "squeeze_m": 5e-3}, "squeeze_m is for a displacement that is held, and the force is\nhint: leave control"),
+        ({"control": "force", "objective": "work"}, "objective is for a squeeze that is sought, and the force is held\nhint: leave control"),
         ({"squeeze_m": 5e-3, "objective": "work"}, "objective: expected either this or squeeze_m, found both"),
         ({"regrip": "work"}, "regrip is for squeezes that keep the force in a band, and there is none\nhint: add band_n"),
         ({"shortest_pause_s": 2.0}, "shortest_pause_s is for squeezes that keep the force in a band"),

@@ -79,7 +79,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         1e3 * pressed.displacement_start,
         1e3 * pressed.displacement_end
     );
-    let schedule = grip.regrip(Band { low: 2.5, high: 3.2 }, Regrip::FewestMoves, 600.0)?;
+    let schedule = grip.regrip(Band { low: 2.5, high: 3.2 }, Regrip::default(), 600.0)?;
     println!("kept between 2.5 N and 3.2 N for ten minutes by {} moves, at", schedule.moves.len());
     for squeeze in &schedule.moves {
         println!("  {:6.1} s to {:.2} mm", squeeze.time, 1e3 * squeeze.to);

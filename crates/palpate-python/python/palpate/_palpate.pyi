@@ -1044,7 +1044,7 @@ class Material(_Value):
         regrip : str, optional
             What that schedule should have least of: "moves" (if left out) or "work".
         shortest_pause_s : float, optional
-            The shortest pause between two squeezes of least work, s; 1 if left out.
+            The shortest pause between two squeezes of that schedule, s; if left out, 1 with least work, and any with fewest moves.
         confidence : float
             Probability with which the verdict has to hold, between 0 and 1; 0.5 for the best estimate. Intervals are of 95 %.
 

@@ -330,7 +330,7 @@ shown! {
     /// regrip : str, optional
     ///     What that schedule should have least of: "moves" (if left out) or "work".
     /// shortest_pause_s : float, optional
-    ///     The shortest pause between two squeezes of least work, s; 1 if left out.
+    ///     The shortest pause between two squeezes of that schedule, s; if left out, 1 with least work, and any with fewest moves.
     /// confidence : float
     ///     Probability with which the verdict has to hold, between 0 and 1; 0.5 for the best estimate. Intervals are of 95 %.
     ///
@@ -414,7 +414,6 @@ shown! {
                 return Err(refused::<OptionError>(message, Some("add band_n, such as band_n=(2.1, 3.0)")));
             }
         }
-        let usual = PlanGrip::default();
         let question = PlanGrip {
             mass_kg,
             friction,
@@ -437,7 +436,7 @@ shown! {
             objective: choice("objective", &["squeeze", "peak-force", "work"], objective.unwrap_or("squeeze"))?,
             band_n,
             regrip: choice("regrip", &["moves", "work"], regrip.unwrap_or("moves"))?,
-            shortest_pause_s: shortest_pause_s.unwrap_or(usual.shortest_pause_s),
+            shortest_pause_s,
             confidence,
         };
         self.warn_of_open(py)?;

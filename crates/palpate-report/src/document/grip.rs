@@ -175,7 +175,7 @@ documents! {
     /// Squeezes that keep the force in a band.
     ScheduleDocument(found: &Schedule) with {
         let objective = match found.objective {
-            Regrip::FewestMoves => "fewest_moves",
+            Regrip::FewestMoves { .. } => "fewest_moves",
             Regrip::LeastWork { .. } => "least_work",
         };
     } {

@@ -385,7 +385,7 @@ fn on_back_off(found: &BackOff) -> String {
 
 fn on_schedule(found: &Schedule) -> String {
     let least = match found.objective {
-        Regrip::FewestMoves => "fewest moves",
+        Regrip::FewestMoves { .. } => "fewest moves",
         Regrip::LeastWork { .. } => "least work",
     };
     format!(

@@ -139,7 +139,7 @@ impl Grip<'_> {
     }
 
     /// Why a force is not met, or not carried by a body that creeps, in words of the grip.
-    fn not_carried(&self, force: f64, error: SimulateError) -> GripError {
+    pub(super) fn not_carried(&self, force: f64, error: SimulateError) -> GripError {
         match error {
             SimulateError::Unreachable { most, .. } => beyond("force", force, most, " N"),
             SimulateError::Force { .. } => {

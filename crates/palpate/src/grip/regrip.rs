@@ -2,22 +2,30 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::{Grip, GripError, above_zero, beyond, bisected, check, check_duration};
+use super::{Grip, GripError, above_zero, at_least, beyond, bisected, check, check_duration};
 use crate::calibrate::Prediction;
 use crate::simulate::ProgramStep;
 
 /// What a schedule should have least of.
-#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case", tag = "kind")]
 pub enum Regrip {
-    /// Moves: each goes to the upper edge of the band.
-    #[default]
-    FewestMoves,
+    /// Moves: each goes to the upper edge of the band, where the pauses are longest.
+    FewestMoves {
+        /// The shortest pause between two moves, s; 0 for any.
+        shortest_pause: f64,
+    },
     /// Work: moves go only as far up as pauses of a least length need.
     LeastWork {
         /// The shortest pause between two moves, s.
         shortest_pause: f64,
     },
+}
+
+impl Default for Regrip {
+    fn default() -> Self {
+        Self::FewestMoves { shortest_pause: 0.0 }
+    }
 }
 
 /// Forces between which the grasp is kept, N.
@@ -78,11 +86,11 @@ impl Grip<'_> {
     ///
     /// The higher a move goes, the longer the pause behind it, for the force falls from farther up and the squeeze is deeper: with all moves up to the
     /// upper edge there are fewest of them. Each move lower costs less work and is needed more often; of [`Regrip::LeastWork`] the best of 16 equal
-    /// targets between the edges is taken whose pauses, but for the last, are as long as is requested.
+    /// targets between the edges is taken. Pauses, but for the last, are as long as is requested.
     ///
     /// # Errors
-    /// [`GripError::Number`] for edges that are none, [`GripError::BeyondLimit`] where band or squeeze go beyond the limits,
-    /// [`GripError::BandSlips`] where less is allowed than is needed, [`GripError::TooManyMoves`] beyond 60 moves.
+    /// [`GripError::Number`] for edges that are none, [`GripError::BeyondLimit`] where band or squeeze go beyond the limits or the body,
+    /// [`GripError::BandSlips`] where less is allowed than is needed, [`GripError::TooManyMoves`] beyond 60 moves and where a pause is too short.
     pub fn regrip(&self, band: Band, objective: Regrip, duration: f64) -> Result<Schedule, GripError> {
         check_duration(duration)?;
         above_zero("lower edge of the band", band.low, " N")?;
@@ -93,7 +101,10 @@ impl Grip<'_> {
             return Err(beyond("force", band.high, limit, " N"));
         }
         let found = match objective {
-            Regrip::FewestMoves => self.schedule(band, band.high, objective, duration, 0.0)?,
+            Regrip::FewestMoves { shortest_pause } => {
+                at_least("shortest pause", shortest_pause, 0.0, " s")?;
+                self.schedule(band, band.high, objective, duration, shortest_pause)?
+            }
             Regrip::LeastWork { shortest_pause } => {
                 above_zero("shortest pause", shortest_pause, " s")?;
                 let mut best = self.schedule(band, band.high, objective, duration, shortest_pause)?;
@@ -137,7 +148,7 @@ impl Grip<'_> {
             rate: self.limits.speed,
         };
         let mut steps = vec![squeeze];
-        let first = self.ends(&steps)?[0];
+        let first = self.ends(&steps).map_err(|error| self.not_carried(target, error))?[0];
         let end = first.time + duration;
         let mut now = first;
         let mut moves = vec![Move {
@@ -173,7 +184,7 @@ impl Grip<'_> {
             }
             steps.push(ProgramStep::HoldPosition { duration: pause });
             steps.push(squeeze);
-            let ends = self.ends(&steps)?;
+            let ends = self.ends(&steps).map_err(|error| self.not_carried(target, error))?;
             let (before, behind) = (ends[ends.len() - 2], ends[ends.len() - 1]);
             moves.push(Move {
                 time: before.time,

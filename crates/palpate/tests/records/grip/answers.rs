@@ -171,7 +171,7 @@ fn the_time_to_close_is_a_limit_of_every_grip() {
 #[test]
 fn a_band_that_begins_below_the_needed_force_is_refused() {
     let material = ball(None);
-    let refused = grip(&material, 0.25).regrip(Band { low: 1.0, high: 3.0 }, Regrip::FewestMoves, 3600.0).unwrap_err();
+    let refused = grip(&material, 0.25).regrip(Band { low: 1.0, high: 3.0 }, Regrip::default(), 3600.0).unwrap_err();
     assert!(
         matches!(refused, GripError::BandSlips { low: 1.0, needed } if (needed - 2.043).abs() < 1e-3),
         "{refused}"
@@ -188,6 +188,24 @@ fn forces_and_squeezes_beyond_the_body_are_answers() {
         let refused = grip.force_hold(Some(force), 60.0).unwrap_err();
         assert!(matches!(refused, GripError::BeyondLimit { name: "force", limit, .. } if limit > 100.0), "{refused}");
     }
+    let question = Question {
+        band: Some(Band { low: 2.1e3, high: 3e3 }),
+        ..Question::default()
+    };
+    let answer = grip.answer(&question).unwrap();
+    let refused = answer.schedule.unwrap().unwrap_err();
+    assert!(
+        matches!(
+            refused,
+            GripError::BeyondLimit {
+                name: "force",
+                found: 3e3,
+                ..
+            }
+        ),
+        "{refused}"
+    );
+    assert!(answer.squeeze.is_ok());
     let refused = grip.position_hold(&Plan::squeeze(0.08, SPEED)).unwrap_err();
     assert_eq!(refused.to_string(), "a squeeze of 80.00 mm is beyond the limit of 70.00 mm");
     let heavy = self::grip(&material, 250.0).force_hold(None, 60.0).unwrap_err();

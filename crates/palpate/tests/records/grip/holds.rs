@@ -185,7 +185,7 @@ fn schedules_keep_the_force_in_the_band() {
     let material = ball(None);
     let grip = grip(&material, 0.25);
     let band = Band { low: 2.1, high: 3.0 };
-    let fewest = grip.regrip(band, Regrip::FewestMoves, 3600.0).unwrap();
+    let fewest = grip.regrip(band, Regrip::default(), 3600.0).unwrap();
     let least = grip.regrip(band, Regrip::LeastWork { shortest_pause: 0.1 }, 3600.0).unwrap();
     assert!(fewest.moves.len() > 1 && least.moves.len() >= fewest.moves.len() && least.work < fewest.work);
     for schedule in [&fewest, &least] {
@@ -200,8 +200,12 @@ fn schedules_keep_the_force_in_the_band() {
             assert!((pair[1].force_from / band.low - 1.0).abs() < 1e-6 && pair[1].to > pair[0].to);
         }
     }
-    let hasty = grip.regrip(band, Regrip::LeastWork { shortest_pause: 0.5 }, 3600.0).unwrap_err();
-    assert!(matches!(hasty, GripError::TooManyMoves { moves: 1, .. }), "{hasty}");
-    let narrow = grip.regrip(Band { low: 2.1, high: 2.1001 }, Regrip::FewestMoves, 3600.0).unwrap_err();
+    // The shortest pause counted for nothing of the fewest moves.
+    for objective in [Regrip::LeastWork { shortest_pause: 0.5 }, Regrip::FewestMoves { shortest_pause: 0.5 }] {
+        let hasty = grip.regrip(band, objective, 3600.0).unwrap_err();
+        assert!(matches!(hasty, GripError::TooManyMoves { moves: 1, .. }), "{hasty}");
+    }
+    assert_eq!(grip.regrip(band, Regrip::FewestMoves { shortest_pause: 0.1 }, 3600.0).unwrap().moves, fewest.moves);
+    let narrow = grip.regrip(Band { low: 2.1, high: 2.1001 }, Regrip::default(), 3600.0).unwrap_err();
     assert!(matches!(narrow, GripError::TooManyMoves { .. }) && narrow.is_answer(), "{narrow}");
 }
