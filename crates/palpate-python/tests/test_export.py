@@ -47,12 +47,12 @@ def test_a_card_is_that_of_the_command(engine: Engine, tmp_path: Path) -> None:
 
 def test_every_option_is_that_of_the_command() -> None:
     keywords: dict[str, Any] = {
-        **{"depth_m": 0.012, "speed_m_per_s": 0.01, "hold_s": 30.0, "mass_kg": 0.25},
+        **{"depth_m": 0.012, "speed_m_per_s": 0.01, "mass_kg": 0.25},
     }
-    flags = ["--depth", "12 mm", "--speed", "10 mm/s", "--hold", "30 s", "--format", "json"]
-    of_continua = ["--poisson-ratio", "0.4", "--terms-per-decade", "3"]
+    flags = ["--depth", "12 mm", "--speed", "10 mm/s", "--format", "json"]
+    of_continua = ["--hold", "30 s", "--poisson-ratio", "0.4", "--terms-per-decade", "3"]
     of_contacts = ["--slowest", "4 mm/s", "--friction", "0.6"]
-    abaqus = palpate.export(BALL, "abaqus", **keywords, poisson_ratio=0.4, terms_per_decade=3.0)
+    abaqus = palpate.export(BALL, "abaqus", **keywords, hold_s=30.0, poisson_ratio=0.4, terms_per_decade=3.0)
     assert abaqus.to_json() == command("abaqus", *flags, *of_continua)
     drake = palpate.export(BALL, "drake", **keywords, slowest_m_per_s=0.004, friction=0.6)
     assert drake.to_json() == command("drake", *flags, *of_contacts)

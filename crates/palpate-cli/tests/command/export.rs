@@ -238,6 +238,7 @@ fn bad_input_is_refused_with_what_helps() {
         ["febio", "--friction", "0.5"],
         ["abaqus", "--slowest", "1 mm/s"],
         ["mujoco", "--terms-per-decade", "3"],
+        ["mujoco", "--hold", "10 s"],
         ["newton", "--poisson-ratio", "0.3"],
     ] {
         let error = refused(&root, &["export", engine, &ball, "--mass", "250g", option, value]);

@@ -178,15 +178,15 @@ impl Export {
 
     /// Refuses options that have no effect on the card of the engine.
     fn check_effects(&self) -> Result<(), JobError> {
-        let is_dense = self.terms_per_decade.to_bits() != Self::default().terms_per_decade.to_bits();
+        let usual = Self::default();
+        let is_dense = self.terms_per_decade.to_bits() != usual.terms_per_decade.to_bits();
+        let is_held = self.hold_s.to_bits() != usual.hold_s.to_bits();
+        let of_contacts = [("friction", self.friction.is_some()), ("slowest", self.slowest_m_per_s.is_some())];
+        let of_elements =
+            [("poisson_ratio", self.poisson_ratio.is_some()), ("terms_per_decade", is_dense), ("hold", is_held)];
         let (kind, others) = match self.engine.is_continuum() {
-            true => (
-                "engines of contacts",
-                [("friction", self.friction.is_some()), ("slowest", self.slowest_m_per_s.is_some())],
-            ),
-            false => {
-                ("finite elements", [("poisson_ratio", self.poisson_ratio.is_some()), ("terms_per_decade", is_dense)])
-            }
+            true => ("engines of contacts", &of_contacts[..]),
+            false => ("finite elements", &of_elements[..]),
         };
         match others.iter().find(|(_, is_given)| *is_given) {
             Some((name, _)) => {
