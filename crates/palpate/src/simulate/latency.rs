@@ -2,7 +2,7 @@
 //!
 //! A hold has the closed form (4), (5) with the coefficient of its place, a ramp of one coefficient is one [`Element`]. Where the coefficient
 //! depends on the strain, a ramp is cut into parts, each with the coefficient of its middle. Over N parts in which ln v changes by c in all, the
-//! error is near 0.1 c/N² of the force: N = √c/[`CHANGE`] keeps it at 10⁻⁵, and c/[`CHANGE`] where that is more. Where it depends on the
+//! error is near 0.3 c/N² of the force: N = √c/[`CHANGE`] keeps it below 4·10⁻⁵, and c/[`CHANGE`] where that is more. Where it depends on the
 //! direction the parts meet at x = 0, and nothing is approximated. Under a force the law keeps a time of its own, in which the coefficient is
 //! one more factor. A surface without a jaw recovers in parts in the same way.
 

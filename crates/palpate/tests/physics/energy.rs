@@ -203,7 +203,7 @@ fn steps_and_cycles_share_out_the_work_of_the_jaw() {
     }
 }
 
-/// A dent that was still there, and a force with which a bonded block pulled, were in the loss of a cycle that said it was closed.
+/// A dent that was still there, and a force with which a bonded block pulled, were in the loss of a cycle that counted as closed.
 #[test]
 fn a_cycle_is_closed_where_the_body_is_back_and_not_the_jaw_alone() {
     for shape in [BLOCK, Shape::Ball { radius: 0.04 }] {
