@@ -88,7 +88,7 @@ struct Request<'a, 'py> {
     dt_s: &'a Bound<'py, PyAny>,
     to: (&'a Bound<'py, PyAny>, &'static str),
     out: Option<&'a Bound<'py, PyAny>>,
-    substeps: i64,
+    substeps: u32,
     errors: &'a str,
 }
 
@@ -110,7 +110,7 @@ impl ContactStates {
 
     /// Steps all contacts; with errors="raise" all or none.
     fn stepped<'py>(&mut self, py: Python<'py>, request: &Request<'_, 'py>) -> PyResult<Bound<'py, PyArray1<f64>>> {
-        let (substeps, refusal) = (substeps_of(request.substeps)?, refusal_of(request.errors)?);
+        let (substeps, refusal) = (request.substeps, refusal_of(request.errors)?);
         let shape = self.shape();
         let mut states = self.states.write(py, shape)?;
         let dt = Values::new(request.dt_s, "dt_s", self.count)?;
@@ -203,11 +203,11 @@ impl ContactStates {
 }
 
 /// A number of equal parts.
-fn substeps_of(substeps: i64) -> PyResult<u32> {
-    match u32::try_from(substeps) {
+fn substeps_of(found: &Bound<'_, PyAny>) -> PyResult<u32> {
+    match found.extract::<u32>() {
         Ok(number) if (1..=1_000_000).contains(&number) => Ok(number),
         _ => {
-            let message = format!("substeps: expected a whole number from 1 to 1000000, found {substeps}");
+            let message = format!("substeps: expected a whole number from 1 to 1000000, found {found}");
             Err(refused_plainly::<OptionError>(message))
         }
     }
@@ -338,7 +338,7 @@ shown! {
         dt_s: &Bound<'py, PyAny>,
         displacement_m: &Bound<'py, PyAny>,
         out: Option<&Bound<'py, PyAny>>,
-        substeps: i64,
+        #[pyo3(from_py_with = substeps_of)] substeps: u32,
         errors: &str,
     ) -> PyResult<Bound<'py, PyArray1<f64>>> {
         let request = Request {
@@ -377,7 +377,7 @@ shown! {
         dt_s: &Bound<'py, PyAny>,
         force_n: &Bound<'py, PyAny>,
         out: Option<&Bound<'py, PyAny>>,
-        substeps: i64,
+        #[pyo3(from_py_with = substeps_of)] substeps: u32,
         errors: &str,
     ) -> PyResult<Bound<'py, PyArray1<f64>>> {
         let request = Request {
