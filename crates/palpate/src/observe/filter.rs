@@ -255,7 +255,7 @@ impl ModelFilter {
             return;
         }
         // A mean of displacements errs for as many readings as it has: together they tell as if each had the noise of one reading.
-        let by_place = self.by_place(noise.0, |placed| placed.force());
+        let by_place = self.by_place(noise.0, Placed::force);
         let of_reading = self.noise.max(noise.1).powi(2) + by_place * by_place;
         let mut variance = of_reading;
         for (gain, row) in self.gain.iter_mut().zip(self.covariance.chunks_exact(self.slope.len())) {
@@ -314,7 +314,7 @@ impl ModelFilter {
 
     /// Force that a hold here tends to, N.
     pub(super) fn equilibrium(&self) -> Normal {
-        self.combined(|placed| placed.equilibrium())
+        self.combined(Placed::equilibrium)
     }
 
     /// Force in excess of it, N.
@@ -324,7 +324,7 @@ impl ModelFilter {
 
     /// Strain in excess of equilibrium.
     pub(super) fn excess_strain(&self) -> Normal {
-        self.combined(|placed| placed.excess())
+        self.combined(Placed::excess)
     }
 
     /// v|x|ⁿ⁻¹, 1/s.
