@@ -96,20 +96,20 @@ struct Placed<'a> {
     displacement: f64,
 }
 
+fn force_of(placed: &Placed<'_>) -> f64 {
+    placed.state.force(&placed.member.model)
+}
+
+fn excess_of(placed: &Placed<'_>) -> f64 {
+    placed.member.excess(&placed.state, placed.displacement)
+}
+
+fn equilibrium_of(placed: &Placed<'_>) -> f64 {
+    let specimen = &placed.member.model.specimen;
+    specimen.equilibrium_force(specimen.contact_displacement(placed.displacement + placed.member.offset).max(0.0))
+}
+
 impl Placed<'_> {
-    fn force(&self) -> f64 {
-        self.state.force(&self.member.model)
-    }
-
-    fn excess(&self) -> f64 {
-        self.member.excess(&self.state, self.displacement)
-    }
-
-    fn equilibrium(&self) -> f64 {
-        let specimen = &self.member.model.specimen;
-        specimen.equilibrium_force(specimen.contact_displacement(self.displacement + self.member.offset).max(0.0))
-    }
-
     fn force_after(&self, dt: f64) -> f64 {
         let mut state = self.state;
         state.step(&self.member.model, dt, self.displacement + self.member.offset).unwrap_or(0.0)
@@ -255,7 +255,7 @@ impl ModelFilter {
             return;
         }
         // A mean of displacements errs for as many readings as it has: together they tell as if each had the noise of one reading.
-        let by_place = self.by_place(noise.0, Placed::force);
+        let by_place = self.by_place(noise.0, force_of);
         let of_reading = self.noise.max(noise.1).powi(2) + by_place * by_place;
         let mut variance = of_reading;
         for (gain, row) in self.gain.iter_mut().zip(self.covariance.chunks_exact(self.slope.len())) {
@@ -314,17 +314,17 @@ impl ModelFilter {
 
     /// Force that a hold here tends to, N.
     pub(super) fn equilibrium(&self) -> Normal {
-        self.combined(Placed::equilibrium)
+        self.combined(equilibrium_of)
     }
 
     /// Force in excess of it, N.
     pub(super) fn excess_force(&self) -> Normal {
-        self.combined(|placed| placed.force() - placed.equilibrium())
+        self.combined(|placed| force_of(placed) - equilibrium_of(placed))
     }
 
     /// Strain in excess of equilibrium.
     pub(super) fn excess_strain(&self) -> Normal {
-        self.combined(Placed::excess)
+        self.combined(excess_of)
     }
 
     /// v|x|ⁿ⁻¹, 1/s.
