@@ -22,6 +22,7 @@ mod command;
 mod contacts;
 mod errors;
 mod files;
+mod finding;
 mod fits;
 mod html;
 mod listed;
@@ -64,6 +65,7 @@ mod _palpate {
         contacts::sweep::{_checked_sweep, sweep},
         errors::{FitError, ModelError, OptionError, PalpateError, PalpateWarning, RecordError},
         files::{BatchResult, batch, convert, inspect, reproduce, watch},
+        finding::Finding,
         fits::estimate::PyEstimate,
         fits::fit::PyFit,
         fits::fit_hold::fit_hold,
@@ -81,7 +83,6 @@ mod _palpate {
         pickles::Piece,
         records::analysis::{Analysis, report_all},
         records::compare::{Comparison, RecordComparison, compare},
-        records::finding::Finding,
         records::forecast::forecast,
         records::read::{read, read_all},
         records::record::Record,

@@ -9,9 +9,9 @@ use pyo3::prelude::*;
 use serde::{Deserialize, Serialize};
 
 use crate::errors::{PalpateError, in_keywords, refused_plainly, warn_of};
+use crate::finding::Finding;
 use crate::html::framed;
 use crate::materials::material::{Material, as_toml};
-use crate::records::finding::Finding;
 use crate::shown::shown;
 use crate::table::{Column, Table, budget_columns, columns, parameter_columns};
 use crate::work::{job, plain, printed};

@@ -21,11 +21,11 @@ use serde::{Deserialize, Serialize};
 
 use crate::arrays::array;
 use crate::errors::{OptionError, PalpateError, refused_plainly, unwritten, warn_of};
+use crate::finding::Finding;
 use crate::fits::fit::PyFit;
 use crate::html::framed;
 use crate::listed::Listed;
 use crate::pickles::{Made, Piece, Pieces, made_again, unpickled};
-use crate::records::finding::Finding;
 use crate::records::hold_fit::{Curve, HoldNumber, curves, fit_of};
 use crate::records::kept::Kept;
 use crate::report_files::file_options;

@@ -3,7 +3,6 @@
 pub(crate) mod analysis;
 mod columns;
 pub(crate) mod compare;
-pub(crate) mod finding;
 pub(crate) mod forecast;
 mod hold_fit;
 pub(crate) mod kept;
