@@ -52,7 +52,7 @@ impl Trust<'_> {
 
     /// How the size of the noise changes along evenly spaced samples.
     fn spread(&self, solution: &Solution, residuals: &Residuals<'_>) -> Option<Spread> {
-        if !self.may_vary || self.noise == NoiseChoice::White || self.uneven_times().0.is_some() {
+        if !self.may_vary || self.noise == NoiseChoice::White {
             return None;
         }
         let curve = self.curve.map_or_else(|| Cow::Owned(fitted(solution)), Cow::Borrowed);
@@ -78,7 +78,7 @@ impl Assessed {
         let taken_up = if inverse.is_some() { columns.clone() } else { independent(&columns) };
         let residuals = Residuals::of(&solution.residuals, taken_up.len());
         let (times, time_unit) = trust.uneven_times();
-        let spread = trust.spread(solution, &residuals);
+        let spread = if times.is_none() { trust.spread(solution, &residuals) } else { None };
         effort.hear()?;
         let (noise, noise_p_value) = match trust.noise {
             NoiseChoice::White => {
