@@ -183,12 +183,15 @@ fn creeps(
 /// Steps of its rounding that a force exceeds which goes from one level to another.
 const STAIRS: f64 = 3.0;
 
+/// Fewest steps of its rounding over which a force goes; where it goes over fewer, they are loads.
+const STEPS: f64 = 25.0;
+
 /// Whether a level of the force is one step of a drift that was rounded: within half its length on either side the force changes by fewer than three
 /// `step`s.
 fn is_stair(record: &Record, level: &Level, step: f64) -> bool {
     let (force, half) = (record.force(), (level.end - level.start).div_ceil(2));
     let beside = &force[level.start.saturating_sub(half)..(level.end + half).min(force.len())];
-    range(beside) < STAIRS * step
+    range(beside) < STAIRS * step && range(force) > STEPS * step
 }
 
 /// How far from its level a force is that a controller has not reached yet, in standard deviations of its noise.

@@ -52,6 +52,11 @@ enum Drive {
 
 /// The record of a body under a drive, at 20 Hz, with 2 µm and 0.05 N of noise.
 fn driven(duration: f64, drive: impl Fn(f64) -> Drive) -> Record {
+    measured(duration, [2e-3, 0.05], drive)
+}
+
+/// The same with this noise of jaw (mm) and force (N).
+fn measured(duration: f64, noise: [f64; 2], drive: impl Fn(f64) -> Drive) -> Record {
     let (mut body, mut random) = (Body::new(), Rng::new(11));
     let (mut time, mut jaw, mut force) = (Vec::new(), Vec::new(), Vec::new());
     for step in 0..(duration / Body::STEP) as u32 {
@@ -62,8 +67,8 @@ fn driven(duration: f64, drive: impl Fn(f64) -> Drive) -> Record {
         };
         if step % 25 == 0 {
             time.push(t);
-            jaw.push(1e-3 * (place + 2e-3 * random.normal()));
-            force.push(load + 0.05 * random.normal());
+            jaw.push(1e-3 * (place + noise[0] * random.normal()));
+            force.push(load + noise[1] * random.normal());
         }
     }
     Record::new(time, Some(jaw), force).unwrap()
@@ -236,6 +241,32 @@ fn a_recovery_at_a_hundredth_of_the_force_begins_as_the_force_is_reached() {
             })
         });
         near(&holds(&record), &[(3.0, 63.0, HoldMode::ForceHeld), (64.0, 189.95, HoldMode::ForceHeld)], 0.16);
+    }
+}
+
+/// The one step of such a force was its rounding, so that only the end of the creep, where the jaw stands, was a hold.
+#[test]
+fn a_force_that_is_exactly_a_dead_weight_is_held_from_its_first_sample() {
+    let reached = |weights: &[f64], ramp: f64, t: f64| -> f64 {
+        let since = |index: usize| t - 2.0 - 40.0 * index as f64;
+        weights
+            .iter()
+            .enumerate()
+            .map(|(index, weight)| weight * (since(index) / ramp).clamp(0.0, 1.0))
+            .sum()
+    };
+    for weights in [&[20.0][..], &[5.0; 4]] {
+        for ramp in [1e-3, 0.1, 0.15, 0.2, 1.0] {
+            let last = 2.0 + 40.0 * weights.len() as f64;
+            for noise in [[0.0; 2], [2e-3, 0.0]] {
+                let record = measured(last, noise, |t| Drive::Force(reached(weights, ramp, t)));
+                let expected: Vec<_> = (0..weights.len())
+                    .map(|index| 2.0 + 40.0 * index as f64)
+                    .map(|start| (start + ramp, start + 40.0 - 0.05, HoldMode::ForceHeld))
+                    .collect();
+                near(&holds(&record), &expected, 0.16);
+            }
+        }
     }
 }
 
