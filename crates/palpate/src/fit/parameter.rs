@@ -192,8 +192,9 @@ impl PartialEq<str> for ParameterName {
 pub struct Estimate {
     /// The best value.
     pub value: f64,
-    /// Standard error, including the correlation of the residuals ([`NoiseModel`](crate::fit::NoiseModel)). `None` for a parameter that
-    /// was given, and where the data do not determine it.
+    /// Standard error, including the correlation of the residuals ([`NoiseModel`](crate::fit::NoiseModel)): half of the 95 % interval that curvature
+    /// gives over the quantile of Student's t. Where several models of the noise are likely it is less than the root of the mean covariance, which
+    /// an improbable model with a large variance may rule. `None` for a parameter that was given, and where the data do not determine it.
     pub standard_error: Option<f64>,
     /// Standard error as if the residuals were white noise, s² (JᵀJ)⁻¹ with s² = RSS/(N − p): what most other software states.
     #[serde(default)]

@@ -115,8 +115,9 @@ fn with_nothing_shared_each_record_is_calibrated_alone() {
         for (together, alone) in specimen.material.parameters().iter().zip(alone.material.parameters()) {
             let (a, b) = (together.estimate, alone.estimate);
             let errors = a.standard_error.unwrap() / b.standard_error.unwrap();
+            // A standard error is a quantile of a mixture: those of a combination do not follow exactly from those of its parts.
             assert!(
-                (a.value / b.value - 1.0).abs() < 1e-5 && (errors - 1.0).abs() < 1e-2,
+                (a.value / b.value - 1.0).abs() < 1e-5 && (errors - 1.0).abs() < 2e-2,
                 "{}: {a:?} {b:?}",
                 together.name
             );

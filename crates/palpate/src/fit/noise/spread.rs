@@ -10,75 +10,101 @@ use crate::vector::{accelerated, multiply, shifted, sum};
 /// Score of a change, in standard deviations, from which on it is one: 1 of 1,000 even noises.
 const OBSERVED: f64 = 3.3;
 
+/// The same from which on few samples leave a change possible.
+const POSSIBLE: f64 = 1.5;
+
+/// Fall of −2 ln L that a change has to bring to be as probable as none, and its bend to be taken in.
+const EVIDENCE: f64 = 4.0;
+
 /// Fewest samples of which the size is judged.
 const FEWEST: usize = 30;
+
+/// More samples than these observe every change that matters to an interval.
+const FEW: usize = 400;
+
+/// Least share of a sample that a fit leaves in its residual.
+pub(super) const LEAST_LEFT: f64 = 0.05;
 
 /// Largest ln of a variance over the mean.
 const FARTHEST: f64 = 14.0;
 
-/// The standard deviation of each sample, of which the mean square is 1.
+/// The standard deviation of each sample, of which the mean square is 1: over what a fit leaves of it in its residuals, where that is known.
 ///
-/// ln σ² is a quadratic in the fitted values, or in the number of the sample if that explains more; its coefficients are those of the
-/// largest likelihood of e²/σ² as a χ² of one degree of freedom (Harvey 1976).
-pub(super) struct Spread(Vec<f64>);
+/// ln σ² is a quadratic in the fitted values, or in the number of the sample if that explains more, or linear where no bend shows; its
+/// coefficients are those of the largest likelihood of e²/σ² as a χ² of one degree of freedom (Harvey 1976).
+pub(super) struct Spread {
+    deviations: Vec<f64>,
+    /// That the size changes at all.
+    pub(super) probability: f64,
+}
 
 impl Spread {
-    /// That of residuals with these partial autocorrelations; `None` where it is even.
+    /// That of residuals with these partial autocorrelations; `None` where it is even. `leverages` are the shares of each sample that its fit takes
+    /// up, which pulls the squares of its residuals down.
     ///
     /// Where they correlate, it is that of what each sample brings beyond its prediction by those before.
-    pub(super) fn of(residuals: &[f64], fitted: &[f64], partial: &[f64]) -> Option<Self> {
+    pub(super) fn of(
+        residuals: &[f64],
+        fitted: &[f64],
+        partial: &[f64],
+        leverages: impl FnOnce() -> Option<Vec<f64>>,
+    ) -> Option<Self> {
         let beyond = if partial.is_empty() {
             Cow::Borrowed(residuals)
         } else {
             Cow::Owned(innovations(residuals, partial))
         };
-        let square = dot(&beyond, &beyond) / beyond.len() as f64;
-        if beyond.len() < FEWEST || square <= f64::MIN_POSITIVE * 1e20 {
+        let (samples, square) = (beyond.len(), dot(&beyond, &beyond) / beyond.len() as f64);
+        if samples < FEWEST || square <= f64::MIN_POSITIVE * 1e20 {
             return None;
         }
         let mut squares = shifted(&beyond, 0.0, 1.0 / square);
         multiply(&mut squares, &beyond);
-        let numbers: Vec<f64> = (0..residuals.len()).map(|i| i as f64).collect();
+        let left: Option<Vec<f64>> = if partial.is_empty() && samples <= FEW { leverages() } else { None }
+            .map(|taken| taken.iter().map(|share| (1.0 - share).max(LEAST_LEFT)).collect());
+        if let Some(left) = &left {
+            squares.iter_mut().zip(left).for_each(|(square, left)| *square /= left);
+            let unit = 1.0 / mean(&squares);
+            squares.iter_mut().for_each(|square| *square *= unit);
+        }
+        let numbers: Vec<f64> = (0..samples).map(|i| i as f64).collect();
         let regressors = [fitted, &numbers];
         let scored = regressors.map(|of| (score(&squares, of).abs(), of)).into_iter();
         let (score, of) =
             scored.filter(|(score, _)| score.is_finite()).max_by(|(one, _), (other, _)| one.total_cmp(other))?;
-        (score > OBSERVED).then(|| Self(deviations(&squares, &standardised(of))))
+        let probability = if score > OBSERVED {
+            1.0
+        } else if score > POSSIBLE && samples <= FEW {
+            1.0 / (1.0 + (-0.5 * (score * score - EVIDENCE)).exp())
+        } else {
+            return None;
+        };
+        let mut variances = variances(&squares, &standardised(of));
+        let mean_left = match &left {
+            Some(left) => dot(&variances, left) / sum(left),
+            None => mean(&variances),
+        };
+        variances.iter_mut().for_each(|variance| *variance = (*variance / mean_left).sqrt());
+        Some(Self {
+            deviations: variances,
+            probability,
+        })
+    }
+
+    /// Whether the residuals show it.
+    pub(super) fn is_observed(&self) -> bool {
+        self.probability >= 1.0
     }
 
     /// What has the size of the noise, in units of it.
     pub(super) fn even(&self, column: &[f64]) -> Vec<f64> {
-        column.iter().zip(&self.0).map(|(value, deviation)| value / deviation).collect()
+        column.iter().zip(&self.deviations).map(|(value, deviation)| value / deviation).collect()
     }
 
     /// A column as noise of this size weighs it.
     pub(super) fn weighed(&self, column: &[f64]) -> Vec<f64> {
-        column.iter().zip(&self.0).map(|(value, deviation)| value * deviation).collect()
+        column.iter().zip(&self.deviations).map(|(value, deviation)| value * deviation).collect()
     }
-}
-
-/// JᵀVJ of white noise with V = diag(e²/(1 − h)²), h the leverages: HC3 of MacKinnon and White (1985), which needs no course of the size.
-pub(super) fn by_residuals(columns: &[&[f64]], amplitudes: &[f64], inverse: &[f64], residuals: &[f64]) -> Vec<f64> {
-    /// Least of 1 − h.
-    const LEAST: f64 = 0.05;
-    let size = columns.len();
-    let linear = size - amplitudes.len();
-    let factor = |column: usize| if column < linear { 1.0 } else { amplitudes[column - linear] };
-    let factors: Vec<f64> = (0..size).map(factor).collect();
-    let mut filling = vec![0.0; size * size];
-    let mut row = vec![0.0; size];
-    for (sample, residual) in residuals.iter().enumerate() {
-        row.iter_mut()
-            .zip(columns)
-            .zip(&factors)
-            .for_each(|((entry, column), by)| *entry = by * column[sample]);
-        let leverage: f64 = inverse.chunks_exact(size).zip(&row).map(|(line, entry)| entry * dot(line, &row)).sum();
-        let variance = (residual / (1.0 - leverage).max(LEAST)).powi(2);
-        for (line, one) in filling.chunks_exact_mut(size).zip(&row) {
-            line.iter_mut().zip(&row).for_each(|(sum, other)| *sum += variance * one * other);
-        }
-    }
-    filling
 }
 
 /// Values less their mean over their deviation.
@@ -95,45 +121,66 @@ fn score(squares: &[f64], of: &[f64]) -> f64 {
     (together - count * middle) / ((own - count) * (along / count - middle * middle)).sqrt()
 }
 
-/// Square roots of exp(a + b x + c x²) of the largest likelihood.
-fn deviations(squares: &[f64], of: &[f64]) -> Vec<f64> {
-    const ROUNDS: usize = 50;
+/// exp(a + b x + c x²) of the largest likelihood, without c where that explains as much.
+fn variances(squares: &[f64], of: &[f64]) -> Vec<f64> {
     let count = of.len() as f64;
     // x² without what 1 and x have of it.
     let bent: Vec<f64> = of.iter().map(|x| x * x).collect();
     let slope = dot(&bent, of) / count;
     let middle = mean(&bent);
     let bent: Vec<f64> = bent.iter().zip(of).map(|(square, x)| square - middle - slope * x).collect();
-    let size = dot(&bent, &bent);
-    let (mut a, mut b, mut c) = (0.0, 0.0, 0.0);
+    let straight = likeliest(squares, [of, &bent], [0.0; 3], false);
+    let bends = likeliest(squares, [of, &bent], straight.at, true);
+    if straight.deviance - bends.deviance > EVIDENCE { bends.variances } else { straight.variances }
+}
+
+/// Coefficients of ln σ², σ² of the samples, and −2 ln L.
+struct Course {
+    at: [f64; 3],
+    variances: Vec<f64>,
+    deviance: f64,
+}
+
+/// The course of the largest likelihood from a start on, with its bend or without.
+fn likeliest(squares: &[f64], [of, bent]: [&[f64]; 2], start: [f64; 3], bends: bool) -> Course {
+    const ROUNDS: usize = 50;
+    /// Step of ln σ² that is nothing beside its error of √(2/N).
+    const ENOUGH: f64 = 1e-4;
+    let (count, size) = (of.len() as f64, dot(bent, bent));
     let powers = |[a, b, c]: [f64; 3], by: f64| -> Vec<f64> {
         let mut out = vec![0.0; of.len()];
         accelerated(
             #[inline(always)]
             || {
-                for ((out, x), bent) in out.iter_mut().zip(of).zip(&bent) {
+                for ((out, x), bent) in out.iter_mut().zip(of).zip(bent) {
                     *out = exp(by * (a + b * x + c * bent).clamp(-FARTHEST, FARTHEST));
                 }
             },
         );
         out
     };
+    let mut at = start;
     for _ in 0..ROUNDS {
-        let mut beyond = powers([a, b, c], -1.0);
+        let mut beyond = powers(at, -1.0);
         multiply(&mut beyond, squares);
         let beyond = shifted(&beyond, 1.0, 1.0);
-        let steps = [mean(&beyond), dot(&beyond, of) / count, dot(&beyond, &bent) / size.max(f64::MIN_POSITIVE)];
+        let bend = if bends { dot(&beyond, bent) / size.max(f64::MIN_POSITIVE) } else { 0.0 };
+        let steps = [mean(&beyond), dot(&beyond, of) / count, bend];
         // Fisher's steps are long where the size is far from even.
-        let shortened = 1.0f64.min(1.0 / steps.iter().map(|step| step.abs()).fold(0.0, f64::max).max(1e-300));
-        (a, b, c) = (a + shortened * steps[0], b + shortened * steps[1], c + shortened * steps[2]);
-        if steps.iter().all(|step| step.abs() < 1e-6) {
+        let longest = steps.iter().map(|step| step.abs()).fold(0.0, f64::max);
+        let shortened = 1.0f64.min(1.0 / longest.max(1e-300));
+        at.iter_mut().zip(steps).for_each(|(at, step)| *at += shortened * step);
+        if longest < ENOUGH {
             break;
         }
     }
-    let mut found = powers([a, b, c], 0.5);
-    let unit = (dot(&found, &found) / count).sqrt();
-    found.iter_mut().for_each(|deviation| *deviation /= unit);
-    found
+    let variances = powers(at, 1.0);
+    let deviance = variances.iter().zip(squares).map(|(variance, square)| variance.ln() + square / variance).sum();
+    Course {
+        at,
+        variances,
+        deviance,
+    }
 }
 
 #[cfg(test)]
@@ -154,30 +201,52 @@ mod tests {
     #[test]
     fn even_noise_has_no_course_and_that_which_follows_the_signal_has() {
         let signal = signal(400);
-        let even = (0..1000).filter(|seed| Spread::of(&noise(&[1.0; 400], *seed), &signal, &[]).is_some()).count();
+        let even = (0..1000)
+            .filter(|seed| {
+                Spread::of(&noise(&[1.0; 400], *seed), &signal, &[], || None).is_some_and(|found| found.is_observed())
+            })
+            .count();
         assert!(even <= 8, "{even} of 1000");
         let proportional: Vec<f64> = signal.iter().map(|y| y - 0.8).collect();
         let mean_square = dot(&proportional, &proportional) / 400.0;
         for seed in 0..20 {
-            let found = Spread::of(&noise(&proportional, seed), &signal, &[]).unwrap();
+            let found = Spread::of(&noise(&proportional, seed), &signal, &[], || None).unwrap();
             let unit = mean_square.sqrt();
-            let off = found.0.iter().zip(&proportional).map(|(found, true_one)| (found * unit / true_one).ln().abs());
+            let off = found
+                .deviations
+                .iter()
+                .zip(&proportional)
+                .map(|(found, true_one)| (found * unit / true_one).ln().abs());
             let worst = off.fold(0.0, f64::max);
             assert!(worst < 0.7, "{seed}: {worst}");
-            assert!((dot(&found.0, &found.0) / 400.0 - 1.0).abs() < 1e-9);
+            assert!((dot(&found.deviations, &found.deviations) / 400.0 - 1.0).abs() < 1e-9);
         }
     }
-
+    /// Of 50 samples of noise that follows the signal, most were of even noise, and intervals of the first amplitude held the truth in 64 of 100.
     #[test]
-    fn hc3_of_a_mean_is_that_of_the_jackknife() {
-        // Of one constant column h = 1/N, and Σ e²/(1 − 1/N)² / N² the variance of the mean.
-        let residuals = noise(&[2.0; 50], 3);
-        let middle = mean(&residuals);
-        let left: Vec<f64> = residuals.iter().map(|value| value - middle).collect();
-        let ones = [1.0; 50];
-        let filling = by_residuals(&[&ones], &[], &[1.0 / 50.0], &left);
-        let without = |skip: usize| (50.0 * middle - residuals[skip]) / 49.0;
-        let jackknife: f64 = (0..50).map(|skip| (without(skip) - middle).powi(2)).sum();
-        assert!((filling[0] / 2500.0 / jackknife - 1.0).abs() < 1e-12);
+    fn few_samples_leave_a_change_possible_and_what_their_fit_takes_up_counts() {
+        let signal = signal(50);
+        let proportional: Vec<f64> = signal.iter().map(|y| y - 0.5).collect();
+        // A fit of the first samples alone takes up most of them.
+        let leverages: Vec<f64> = (0..50).map(|i| 0.9 * (-f64::from(i)).exp()).collect();
+        let left = |seed: u64| -> Vec<f64> {
+            noise(&proportional, seed)
+                .iter()
+                .zip(&leverages)
+                .map(|(noise, taken)| noise * (1.0 - taken).sqrt())
+                .collect()
+        };
+        let probability = |seed: u64, known: bool| {
+            let found = Spread::of(&left(seed), &signal, &[], || known.then(|| leverages.clone()));
+            found.map_or(0.0, |found| found.probability)
+        };
+        let mean_of = |known: bool| (0..200).map(|seed| probability(seed, known)).sum::<f64>() / 200.0;
+        let (known, unknown) = (mean_of(true), mean_of(false));
+        assert!(known > 0.7 && unknown < 0.75 && known > unknown + 0.08, "{known} {unknown}");
+        let even = (0..200).map(|seed| {
+            Spread::of(&noise(&[1.0; 50], seed), &signal, &[], || None).map_or(0.0, |found| found.probability)
+        });
+        let even = even.sum::<f64>() / 200.0;
+        assert!(even < 0.12, "{even}");
     }
 }

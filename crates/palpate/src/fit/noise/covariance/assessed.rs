@@ -5,6 +5,7 @@ use std::borrow::Cow;
 use super::columns::Columns;
 use super::sandwich::Sandwich;
 use super::uncertainty::{Scale, Uncertainty};
+use super::uneven::leverages;
 use crate::fit::noise::model::Noise;
 use crate::fit::noise::portmanteau::{UNEXPLAINED, p_value};
 use crate::fit::noise::residuals::Residuals;
@@ -51,12 +52,17 @@ impl Trust<'_> {
     }
 
     /// How the size of the noise changes along evenly spaced samples.
-    fn spread(&self, solution: &Solution, residuals: &Residuals<'_>) -> Option<Spread> {
+    fn spread(
+        &self,
+        solution: &Solution,
+        residuals: &Residuals<'_>,
+        leverages: impl FnOnce() -> Option<Vec<f64>>,
+    ) -> Option<Spread> {
         if !self.may_vary || self.noise == NoiseChoice::White {
             return None;
         }
         let curve = self.curve.map_or_else(|| Cow::Owned(fitted(solution)), Cow::Borrowed);
-        Spread::of(residuals.values, &curve, &residuals.partial)
+        Spread::of(residuals.values, &curve, &residuals.partial, leverages)
     }
 }
 
@@ -78,13 +84,15 @@ impl Assessed {
         let taken_up = if inverse.is_some() { columns.clone() } else { independent(&columns) };
         let residuals = Residuals::of(&solution.residuals, taken_up.len());
         let (times, time_unit) = trust.uneven_times();
-        let spread = if times.is_none() { trust.spread(solution, &residuals) } else { None };
+        let taken = || inverse.map(|inverse| leverages(&columns, amplitudes, inverse));
+        let spread = if times.is_none() { trust.spread(solution, &residuals, taken) } else { None };
+        let observed = spread.as_ref().filter(|spread| spread.is_observed());
         effort.hear()?;
         let (noise, noise_p_value) = match trust.noise {
             NoiseChoice::White => {
                 (Noise::white(residuals.square / (residuals.values.len() - units.len()) as f64), None)
             }
-            NoiseChoice::FromResiduals => noise_of(&taken_up, &residuals, spread.as_ref(), times),
+            NoiseChoice::FromResiduals => noise_of(&taken_up, &residuals, observed, times),
         };
         effort.hear()?;
         let mut assessed = Self {
@@ -93,14 +101,15 @@ impl Assessed {
             noise: noise.model.in_unit(time_unit),
             noise_p_value,
             correlation: residuals.correlations[0],
-            uneven: spread.is_some(),
+            uneven: observed.is_some(),
         };
         let Some(inverse) = inverse else { return Ok(assessed) };
         let weighed: Option<Vec<Vec<f64>>> =
             spread.as_ref().map(|spread| columns.iter().map(|column| spread.weighed(column)).collect());
         let views: Option<Vec<&[f64]>> = weighed.as_ref().map(|weighed| weighed.iter().map(Vec::as_slice).collect());
         let correlates = noise.likely.iter().any(|likely| likely.model != NoiseModel::White);
-        let correlated = correlates.then(|| Columns::new(views.as_ref().unwrap_or(&columns), times));
+        let in_size = views.as_ref().filter(|_| observed.is_some()).unwrap_or(&columns);
+        let correlated = correlates.then(|| Columns::new(in_size, times));
         let ratio = solution.variance * (residuals.values.len() - units.len()) as f64 / solution.residual_square;
         let fit = Sandwich {
             columns: &columns,
@@ -110,7 +119,7 @@ impl Assessed {
             residuals: residuals.values,
             ratio: if ratio.is_finite() { ratio } else { 1.0 },
             correlated: correlated.as_ref(),
-            is_uneven: spread.is_some(),
+            uneven: spread.as_ref().zip(views.as_deref()).map(|(spread, views)| (spread.probability, views)),
         };
         assessed.white = Some(fit.scaled(inverse, solution.variance)).filter(|rows| is_finite(rows));
         if assessed.white.is_some() {
@@ -172,6 +181,7 @@ impl Assessed {
         if let Some(uncertainty) = &mut self.uncertainty {
             add(&mut uncertainty.covariance);
             uncertainty.models.iter_mut().for_each(|model| add(&mut model.covariance));
+            uncertainty.settle();
         }
     }
 

@@ -12,14 +12,20 @@ use crate::vector::normal::scaled_tail;
 /// Half an interval in ln beyond which the data leave a parameter open: its curvature then says nothing of where it ends.
 const OPEN: f64 = 6.907_755_278_982_137; // ln 1000
 
+/// The coverage of the intervals that standard errors are taken from.
+const USUAL: f64 = 0.95;
+
 /// Numbers side by side: two of the widest vectors, since one would wait for its own roots and quotients.
 const LANES: usize = 16;
 
 type Lanes = [f64; LANES];
 
 impl Uncertainty {
-    /// Estimates of `values`, of which column a of `gradients` has the derivatives by parameter a (of ln value on the logarithmic scale), with
-    /// something of the variances `added` on top; `white` is the covariance of the parameters if noise were white.
+    /// Estimates of `values`, with standard errors that are halves of 95 % intervals over the quantile of Student's t: what some model with a
+    /// small probability and a large variance adds to the mean of variances is no measure of how far an estimate strays.
+    ///
+    /// Column a of `gradients` has the derivatives by parameter a (of ln value on the logarithmic scale), and the variances `added` come on top;
+    /// `white` is the covariance of the parameters if noise were white.
     pub(crate) fn estimates(
         &self,
         values: &[f64],
@@ -28,13 +34,17 @@ impl Uncertainty {
         added: impl Fn(usize) -> f64,
         scale: impl Fn(usize) -> Scale,
     ) -> Vec<Estimate> {
-        let mut mixture = Mixture::new(self);
+        let mut mixture = Mixture::new(self, self.confidence);
+        let mut usual = (self.confidence != USUAL).then(|| Mixture::new(self, USUAL));
+        let of_usual = coverage_factor(USUAL, self.freedom);
         let mut found = Vec::with_capacity(values.len());
         for (index, some) in values.chunks(LANES).enumerate() {
             let block: SmallVec<[Lanes; 8]> =
                 gradients.iter().map(|column| lanes(&column.as_ref()[index * LANES..])).collect();
             let added: Lanes = std::array::from_fn(|lane| added((index * LANES + lane).min(values.len() - 1)));
-            let [errors, halves] = mixture.errors(&block, &added);
+            let halves = mixture.halves(&block, &added);
+            let errors =
+                usual.as_mut().map_or(halves, |usual| usual.halves(&block, &added)).map(|half| half / of_usual);
             let white = variances(&block, white);
             for (lane, value) in some.iter().enumerate() {
                 let white = (white[lane] + added[lane]).sqrt();
@@ -44,11 +54,27 @@ impl Uncertainty {
         found
     }
 
-    /// Half an interval over the standard error of a number with this gradient.
+    /// Standard errors of the parameters.
+    pub(super) fn standard_errors(&self) -> Vec<f64> {
+        let size = self.covariance.len();
+        let mut usual = Mixture::new(self, USUAL);
+        let of_usual = coverage_factor(USUAL, self.freedom);
+        let mut found = Vec::with_capacity(size);
+        for first in (0..size).step_by(LANES) {
+            let block: SmallVec<[Lanes; 8]> = (0..size)
+                .map(|row| std::array::from_fn(|lane| if (first + lane).min(size - 1) == row { 1.0 } else { 0.0 }))
+                .collect();
+            let halves = usual.halves(&block, &[0.0; LANES]);
+            found.extend(halves.iter().take(size - first).map(|half| half / of_usual));
+        }
+        found
+    }
+
+    /// Half an interval over the root of the variance of a number with this gradient.
     pub(crate) fn factor(&self, gradient: &[f64]) -> f64 {
         let block: SmallVec<[Lanes; 8]> = gradient.iter().map(|entry| [*entry; LANES]).collect();
-        let [errors, halves] = Mixture::new(self).errors(&block, &[0.0; LANES]);
-        halves[0] / errors[0]
+        Mixture::new(self, self.confidence).halves(&block, &[0.0; LANES])[0]
+            / variances(&block, &self.covariance)[0].sqrt()
     }
 }
 
@@ -89,6 +115,8 @@ fn estimate(value: f64, [error, white, half]: [f64; 3], scale: Scale) -> Estimat
 /// quantiles of Student's and of the normal distribution.
 struct Mixture<'a> {
     uncertainty: &'a Uncertainty,
+    /// c.
+    confidence: f64,
     /// t_c.
     alone: f64,
     /// z² over ln(1 + h²/(ν v_m)).
@@ -98,28 +126,29 @@ struct Mixture<'a> {
 }
 
 impl<'a> Mixture<'a> {
-    fn new(uncertainty: &'a Uncertainty) -> Self {
-        let alone = coverage_factor(uncertainty.confidence, uncertainty.freedom);
+    fn new(uncertainty: &'a Uncertainty, confidence: f64) -> Self {
+        let alone = coverage_factor(confidence, uncertainty.freedom);
         let square = match uncertainty.models.len() {
             0 => f64::NAN,
-            _ => normal_factor(uncertainty.confidence).powi(2) / (alone * alone / uncertainty.freedom).ln_1p(),
+            _ => normal_factor(confidence).powi(2) / (alone * alone / uncertainty.freedom).ln_1p(),
         };
         Self {
             uncertainty,
+            confidence,
             alone,
             square,
             near: [alone, 1.0],
         }
     }
 
-    /// Standard errors and halves of intervals.
-    fn errors(&mut self, block: &[Lanes], added: &Lanes) -> [Lanes; 2] {
+    /// Halves of intervals.
+    fn halves(&mut self, block: &[Lanes], added: &Lanes) -> Lanes {
         let Uncertainty { covariance, models, .. } = self.uncertainty;
         let variance = variances(block, covariance);
         let variance: Lanes = std::array::from_fn(|lane| variance[lane] + added[lane]);
         let errors = variance.map(f64::sqrt);
         if models.is_empty() {
-            return [errors, errors.map(|error| error * self.alone)];
+            return errors.map(|error| error * self.alone);
         }
         let ratios: SmallVec<[(f64, Lanes); 16]> = models
             .iter()
@@ -135,10 +164,7 @@ impl<'a> Mixture<'a> {
         let [.., before, last] = factors;
         self.near = [last, last / before];
         // What no parameter moves has no interval under any model.
-        [
-            errors,
-            std::array::from_fn(|lane| if errors[lane] > 0.0 { errors[lane] * factors[lane] } else { errors[lane] }),
-        ]
+        std::array::from_fn(|lane| if errors[lane] > 0.0 { errors[lane] * factors[lane] } else { errors[lane] })
     }
 
     /// The factors k for weights of models and ratios v/v_m, by Halley's method for ln k: the logarithm of a tail is about straight in that of k.
@@ -146,10 +172,8 @@ impl<'a> Mixture<'a> {
     fn factors(&self, ratios: &[(f64, Lanes)]) -> Lanes {
         /// Step of ln k whose cube is nothing: the next would be as long as that.
         const ENOUGH: f64 = 1e-3;
-        let Uncertainty {
-            confidence, freedom, ..
-        } = *self.uncertainty;
-        let target = 0.5 * (1.0 - confidence);
+        let freedom = self.uncertainty.freedom;
+        let target = 0.5 * (1.0 - self.confidence);
         // Each model alone would have a factor between these.
         let (mut low, mut high) = ([f64::INFINITY; LANES], [0.0; LANES]);
         for (_, ratio) in ratios {
@@ -290,6 +314,23 @@ mod tests {
                 assert!((all / (1.0 - confidence) - 1.0).abs() < 1e-9, "{freedom} {i}: {all}");
             }
         }
+    }
+
+    /// Standard errors were 1.4 to 7 times the scatter of estimates under white noise, where a walk of a few per cent probability is wide.
+    #[test]
+    fn a_wide_model_that_is_hardly_likely_hardly_widens_a_standard_error() {
+        let at = |confidence: f64| {
+            let found = mixture(1e4, confidence, &[(0.97, 1.0), (0.03, 30.0)]);
+            found
+                .estimates(&[0.0], &[[1.0], [0.0]], &found.covariance, |_| 0.0, |_| Scale::Linear)
+                .swap_remove(0)
+        };
+        let estimate = at(0.95);
+        let error = estimate.standard_error.unwrap();
+        assert!(error < 1.5, "{error}");
+        assert!((estimate.interval.unwrap().1 / error / coverage_factor(0.95, 1e4) - 1.0).abs() < 1e-12);
+        // Whatever intervals are wanted.
+        assert!((at(0.8).standard_error.unwrap() / error - 1.0).abs() < 1e-9);
     }
 
     #[test]

@@ -5,6 +5,7 @@
 //! | `assessed.rs` | the noise of a fit, and estimates with their errors |
 //! | `sandwich.rs` | covariances of parameters from that of the noise |
 //! | `columns.rs` | products of the columns of a fit with the correlations between them |
+//! | `uneven.rs` | noise whose size changes, by the squares of the residuals |
 //! | `blocks.rs` | how noise sums up over blocks of neighbours, where no model describes it |
 //! | `uncertainty.rs` | covariances under all models that are likely |
 //! | `mixture.rs` | intervals of many numbers where several models are likely |
@@ -15,6 +16,7 @@ mod columns;
 mod mixture;
 mod sandwich;
 mod uncertainty;
+mod uneven;
 
 pub(crate) use assessed::{Assessed, Trust};
 #[cfg(test)]

@@ -2,8 +2,11 @@
 
 use super::blocks::by_blocks;
 use super::columns::Columns;
+use super::uncertainty::ModelCovariance;
+use super::uneven::by_residuals;
 use crate::fit::NoiseModel;
-use crate::fit::noise::spread::by_residuals;
+use crate::fit::noise::model::Likely;
+use crate::vector::cross_products;
 
 /// A fit by least squares, ready for the covariances (JᵀJ)⁻¹ JᵀVJ (JᵀJ)⁻¹ of its parameters in the caller's units.
 pub(super) struct Sandwich<'a> {
@@ -19,22 +22,37 @@ pub(super) struct Sandwich<'a> {
     pub(super) ratio: f64,
     /// Columns as noise weighs them, with products of them; where the noise is not white.
     pub(super) correlated: Option<&'a Columns<'a>>,
-    /// Whether the size of the noise changes along the samples.
-    pub(super) is_uneven: bool,
+    /// Where the size of the noise may change along the samples: the probability that it does, and columns as it weighs them.
+    pub(super) uneven: Option<(f64, &'a [&'a [f64]])>,
 }
 
 impl Sandwich<'_> {
-    /// For noise of this model and variance; squares of the residuals stand for white noise whose size changes.
-    pub(super) fn covariance(&self, model: NoiseModel, variance: f64) -> Vec<Vec<f64>> {
-        match self.correlated {
-            _ if model == NoiseModel::White && self.is_uneven => {
-                let filling = by_residuals(self.columns, self.amplitudes, self.inverse, self.residuals);
-                self.filled(&filling, self.ratio)
+    /// For noise of this model and variance, with probabilities.
+    ///
+    /// Of white noise whose size changes, the squares of the residuals know the size without a course, and the course that fits them knows it with
+    /// less noise: half of each.
+    pub(super) fn covariances(&self, likely: &Likely) -> Vec<ModelCovariance> {
+        let of = |share: f64, covariance: Vec<Vec<f64>>| ModelCovariance {
+            probability: share * likely.probability,
+            covariance,
+        };
+        let variance = self.ratio * likely.variance;
+        match (likely.model, self.correlated, self.uneven) {
+            (NoiseModel::White, _, Some((probability, weighed))) => {
+                let squares = by_residuals(self.columns, self.amplitudes, self.inverse, self.residuals);
+                let mut course = vec![0.0; weighed.len() * weighed.len()];
+                cross_products(weighed, weighed, &mut course);
+                let even = (probability < 1.0).then(|| of(1.0 - probability, self.scaled(self.inverse, variance)));
+                let changes = [
+                    of(0.5 * probability, self.filled(&squares, self.ratio)),
+                    of(0.5 * probability, self.filled(&with_amplitudes(course, self.amplitudes), variance)),
+                ];
+                even.into_iter().chain(changes).collect()
             }
-            Some(columns) if model != NoiseModel::White => {
-                self.filled(&with_amplitudes(columns.quadratic(model), self.amplitudes), self.ratio * variance)
+            (model, Some(columns), _) if model != NoiseModel::White => {
+                vec![of(1.0, self.filled(&with_amplitudes(columns.quadratic(model), self.amplitudes), variance))]
             }
-            _ => self.scaled(self.inverse, self.ratio * variance),
+            _ => vec![of(1.0, self.scaled(self.inverse, variance))],
         }
     }
 

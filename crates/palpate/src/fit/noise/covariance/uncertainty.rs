@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::sandwich::Sandwich;
-use crate::fit::noise::model::{Likely, Noise};
+use crate::fit::noise::model::Noise;
 use crate::optimise::Effort;
 use crate::statistics::mean;
 use crate::watch::Cancelled;
@@ -42,7 +42,7 @@ pub struct Uncertainty {
     pub freedom: f64,
     /// Standard deviation of the noise in the unit of the signal; of a sample of mean weight if they have weights.
     pub deviation: f64,
-    /// Covariance in the order of `parameters`: the mean over the models.
+    /// Covariance in the order of `parameters`: squares of standard errors, with the correlations of the mean over the models.
     pub covariance: Vec<Vec<f64>>,
     /// Models of the noise, if there are several.
     pub models: Vec<ModelCovariance>,
@@ -65,31 +65,48 @@ impl Uncertainty {
         (confidence, unit): (f64, f64),
         effort: &Effort<'_>,
     ) -> Result<Self, Cancelled> {
-        let of_model = |likely: &Likely| {
+        let mut models: Vec<ModelCovariance> = Vec::with_capacity(noise.likely.len());
+        for likely in &noise.likely {
             effort.hear()?;
-            Ok(ModelCovariance {
-                probability: likely.probability,
-                covariance: fit.covariance(likely.model, likely.variance),
-            })
-        };
-        let mut models: Vec<ModelCovariance> = noise.likely.iter().map(of_model).collect::<Result<_, Cancelled>>()?;
+            models.extend(fit.covariances(likely));
+        }
         let size = fit.units.len();
-        let mut covariance = vec![vec![0.0; size]; size];
-        for model in &models {
-            for (sums, row) in covariance.iter_mut().zip(&model.covariance) {
-                sums.iter_mut().zip(row).for_each(|(sum, entry)| *sum += model.probability * entry);
-            }
-        }
-        if models.len() == 1 {
-            models.clear();
-        }
-        Ok(Self {
+        let mut found = Self {
             confidence,
             freedom: (fit.residuals.len() - size) as f64,
             deviation: noise.variance(fit.residuals.len()).sqrt() * unit,
-            covariance,
-            models,
-        })
+            covariance: Vec::new(),
+            models: Vec::new(),
+        };
+        if models.len() > 1 {
+            found.models = models;
+            found.settle();
+        } else if let Some(only) = models.pop() {
+            found.covariance = only.covariance;
+        }
+        Ok(found)
+    }
+
+    /// Forms the covariance of the models.
+    pub(super) fn settle(&mut self) {
+        let Some(first) = self.models.first() else { return };
+        let size = first.covariance.len();
+        let mut mean = vec![vec![0.0; size]; size];
+        for model in &self.models {
+            for (sums, row) in mean.iter_mut().zip(&model.covariance) {
+                sums.iter_mut().zip(row).for_each(|(sum, entry)| *sum += model.probability * entry);
+            }
+        }
+        self.covariance = mean;
+        // An improbable model with a large variance rules a mean, and no error that is to be expected.
+        let errors = self.standard_errors();
+        let by: Vec<f64> = (0..size)
+            .map(|i| errors[i] / self.covariance[i][i].sqrt())
+            .map(|by| if by.is_finite() { by } else { 1.0 })
+            .collect();
+        for (row, one) in self.covariance.iter_mut().zip(&by) {
+            row.iter_mut().zip(&by).for_each(|(entry, other)| *entry *= one * other);
+        }
     }
 
     /// Multiplies covariances by the mean ratio of these variances to those there are, where it is above 1.
