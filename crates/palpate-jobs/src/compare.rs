@@ -1,6 +1,8 @@
 //! Comparison of laws on records: the law to use and its certainty.
 
-use palpate::analysis::{AnalysisOptions, CreepError, analyze_watched, corrected_watched, creep_holds};
+use palpate::analysis::{
+    AnalysisOptions, CreepError, analyze_watched, corrected_watched, creep_holds, record_findings,
+};
 use palpate::fit::{IntervalMethod, Loss, SampleChoice};
 use palpate::forecast::{CompareOptions, RampChoice};
 use palpate::laws::{Law, Response};
@@ -202,7 +204,7 @@ impl Compare {
                 CreepError::Cancelled(cancelled) => cancelled.into(),
                 error => JobError::new(ErrorKind::Record, &error, error.hint().to_owned()).of(path),
             };
-            return Ok(ComparedRecord::of_creep(holds.map_err(refused)?, input));
+            return Ok(ComparedRecord::of_creep(holds.map_err(refused)?, record_findings(&record), input));
         }
         let analysis = analyze_watched(&record, requested, watch).map_err(|error| JobError::analysis(&error, path))?;
         Ok(ComparedRecord::of_analysis(&analysis, input))

@@ -157,13 +157,19 @@ fn a_short_hold_is_ranked_by_information() {
 #[test]
 fn creep_at_constant_force() {
     let folder = tempdir().unwrap();
-    let mut text = String::from("time_s,displacement_mm,force_n\n");
-    for i in 0..=420 {
-        let t = 0.05 * f64::from(i);
-        let crept = 0.3 * (1.0 - (-(t - 1.0).max(0.0) / 5.0).exp());
-        text.push_str(&format!("{t:.2},{:.9},{:.6}\n", t.min(1.0) + crept, 6.0 * t.min(1.0)));
-    }
-    let record = file(folder.path(), "creep.csv", text);
+    let creep = |sign: f64| {
+        let mut text = String::from("time_s,displacement_mm,force_n\n");
+        for i in 0..=420 {
+            let t = 0.05 * f64::from(i);
+            let crept = 0.3 * (1.0 - (-(t - 1.0).max(0.0) / 5.0).exp());
+            text.push_str(&format!("{t:.2},{:.9},{:.6}\n", t.min(1.0) + crept, 6.0 * sign * t.min(1.0)));
+        }
+        text
+    };
+    let negative = file(folder.path(), "negative.csv", creep(-1.0));
+    let document = json(folder.path(), &["compare", &negative, "--creep", "--laws", "sls", "--format", "json"]);
+    assert_eq!(document["records"][0]["findings"][0]["code"], "sign_suspicious");
+    let record = file(folder.path(), "creep.csv", creep(1.0));
     let document = json(folder.path(), &["compare", &record, "--creep", "--format", "json"]);
     assert_eq!(document["settings"]["response"], "creep");
     let hold = &document["records"][0]["holds"][0];
@@ -187,7 +193,10 @@ fn creep_at_constant_force() {
     assert_eq!(holds[0]["comparison"]["verdict"]["law"], "standard-linear-solid");
     file(folder.path(), "given.toml", given("mode = \"displacement\""));
     let error = refused(folder.path(), &arguments);
-    assert!(error.contains("the displacement is constant wherever the force is constant"), "{error}");
+    assert!(
+        error.contains("the displacement changes by no more than its noise wherever the force is constant"),
+        "{error}"
+    );
     file(folder.path(), "given.toml", given("").replace("13 s", "99 s"));
     let error = refused(folder.path(), &arguments);
     assert!(error.contains("99") && error.contains("21"), "{error}");

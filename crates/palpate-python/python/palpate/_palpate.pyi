@@ -1818,7 +1818,7 @@ class Comparison(_Summed):
     """All that in one sentence."""
     reservation: Final[str | None]
     """What stands against every law, so that the one named is the best approximation and no recommendation: "refuted" by the hold
-    itself, or "unpredictive"; None where nothing does.
+    itself, "unpredictive", or "drive_changes" where what is held goes on; None where nothing does.
     """
     forecast: Final[Table | None]
     """What the hold will show next, from all laws together: ``elapsed_s``, ``value`` and the band ``low`` to ``high`` that covers a

@@ -132,7 +132,7 @@ shown! {
         /// All that in one sentence.
         sentence: Option<&str> = self.verdict(|verdict| &verdict.sentence),
         /// What stands against every law, so that the one named is the best approximation and no recommendation: "refuted" by the hold
-        /// itself, or "unpredictive"; None where nothing does.
+        /// itself, "unpredictive", or "drive_changes" where what is held goes on; None where nothing does.
         reservation: Option<&str> = self.document.verdict.as_ref().and_then(|verdict| verdict.reservation.as_deref()),
         /// What the hold will show next, from all laws together: ``elapsed_s``, ``value`` and the band ``low`` to ``high`` that covers a
         /// sample in 95 of 100 holds. None where the hold is too short for that.

@@ -122,6 +122,10 @@ impl HoldAnswer {
             Some("refuted") => {
                 "No law describes this hold down to its noise; this is the best approximation. ".to_owned()
             }
+            Some("drive_changes") => {
+                "The force changes in this hold, and the displacement follows it: a law describes both together. "
+                    .to_owned()
+            }
             Some(_) => "No law predicts this hold; this one is the closest. ".to_owned(),
             None => String::new(),
         };

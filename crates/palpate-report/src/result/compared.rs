@@ -160,7 +160,7 @@ impl ComparedRecord {
 
     /// Holds of creep.
     #[must_use]
-    pub fn of_creep(holds: Vec<CreepHold>, input: Input) -> Self {
+    pub fn of_creep(holds: Vec<CreepHold>, findings: Vec<Finding>, input: Input) -> Self {
         let holds = holds.into_iter().map(|hold| ComparedHold {
             number: hold.number,
             after: hold.after,
@@ -177,7 +177,7 @@ impl ComparedRecord {
         Self {
             input,
             holds: holds.collect(),
-            findings: Vec::new(),
+            findings,
         }
     }
 

@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 use crate::fit::{Fit, TrendVerdict, UNEXPLAINED};
 use crate::laws::Law;
 use crate::record::Column;
-use crate::segment::{LabelCheck, Ripple, Rupture, TouchMethod};
+use crate::segment::{HoldMode, LabelCheck, Ripple, Rupture, TouchMethod};
 
 /// Severity of a finding.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
@@ -138,6 +138,17 @@ pub enum Finding {
         travel: f64,
         /// How much the force changes, N.
         change: f64,
+    },
+    /// What the machine holds goes on in the hold.
+    DriveChanges {
+        /// What is held.
+        mode: HoldMode,
+        /// At the start of the fit, N or m.
+        from: f64,
+        /// At its end, N or m.
+        to: f64,
+        /// Share of the creep or of the relaxation that this change makes, about.
+        share: f64,
     },
     /// The body ruptured during loading.
     Ruptured(Rupture),
@@ -424,6 +435,7 @@ impl Finding {
                 | Self::NothingHeld { .. }
                 | Self::FeedbackControlled { .. }
                 | Self::ForceStep { .. }
+                | Self::DriveChanges { .. }
         );
         (std::cmp::Reverse(self.severity()), !is_no_hold)
     }

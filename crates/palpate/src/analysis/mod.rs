@@ -34,7 +34,8 @@ pub use holds::{CreepError, CreepHold, HoldAnalysis, HoldoutError, RateBias, Sig
 pub use options::{AnalysisOptions, Geometry, LayersChoice};
 pub use pipeline::{Analysis, analyze, analyze_watched, examine};
 pub use prepare::{
-    ClockSkew, ColumnLag, Corrected, Prepared, clock_skew, corrected, corrected_watched, prepared, suspicious_signs,
+    ClockSkew, ColumnLag, Corrected, Prepared, clock_skew, corrected, corrected_watched, prepared, record_findings,
+    suspicious_signs,
 };
 pub(crate) use prepare::{measured_motion, signal_findings};
 pub use stated::{HoldReport, StatedRelaxation};

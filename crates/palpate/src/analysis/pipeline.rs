@@ -170,7 +170,7 @@ fn examined(
         .map(|(index, number)| {
             hear("preparing the holds")?;
             let loading = measured.then(|| imposed(&record, segments, index, options.separation)).flatten();
-            Ok((prepare_hold(&record, &segments[index], number, specimen.as_ref(), options), loading))
+            Ok((prepare_hold(&record, (segments, index), number, specimen.as_ref(), options), loading))
         })
         .collect::<Result<Vec<_>, Cancelled>>()?
         .into_iter()

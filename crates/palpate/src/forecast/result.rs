@@ -92,6 +92,8 @@ pub enum Reservation {
     Refuted,
     /// The forecasts of each miss by more than a third of the change.
     Unpredictive,
+    /// What the machine holds goes on in the hold, and the body answers that, too.
+    DriveChanges,
 }
 
 /// Which law to use.
@@ -116,4 +118,11 @@ pub struct Verdict {
     pub cuts_near_best: usize,
     /// What every other law costs: its error over that of the chosen one (forward), or its excess of BIC (information).
     pub costs: Vec<(Law, f64)>,
+}
+
+impl Verdict {
+    /// States what stands against every law, so that none is recommended.
+    pub(crate) fn reserve(&mut self, reservation: Reservation) {
+        (self.reservation, self.certainty) = (Some(reservation), Certainty::Open);
+    }
 }

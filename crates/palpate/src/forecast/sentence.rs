@@ -16,6 +16,8 @@ const NOTHING_HELD_OUT: &str = "The hold is too short, or changes too little, fo
 const REFUTED: &str = "No law that was compared describes this hold down to its noise (BIC)";
 /// See [`REFUTED`].
 const UNPREDICTIVE: &str = "No law that was compared predicts this hold";
+/// See [`REFUTED`].
+const DRIVE_CHANGES: &str = "What the machine holds changes in this hold, so that no law is that of the body alone";
 
 impl Comparison {
     /// What the hold will show next, in one sentence; `None` without a forecast.
@@ -74,6 +76,7 @@ impl Comparison {
         let named = format!("{} ({} parameters)", name_in_words(row.law), rounded(row.effective_parameters));
         text.push_str(&match (verdict.reservation, verdict.certainty) {
             (Some(Reservation::Refuted), _) => format!("{REFUTED}; the best approximation is {named}"),
+            (Some(Reservation::DriveChanges), _) => format!("{DRIVE_CHANGES}; the closest is {named}"),
             (Some(Reservation::Unpredictive), _) => format!("{UNPREDICTIVE}; the closest is {named}"),
             (None, Certainty::Clear) => format!("Use {named}; that is clear"),
             (None, Certainty::Likely) => format!("Use {named}; that is likely"),

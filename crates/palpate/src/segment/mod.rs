@@ -30,7 +30,7 @@ const SERVO: f64 = 0.002;
 const CONTROLLER: f64 = 0.02;
 
 pub use error::SegmentError;
-pub(crate) use mode::{OBSERVED, PARTS, change, error_of_mean, mode as held_in};
+pub(crate) use mode::{OBSERVED, PARTS, change, creeps, error_of_mean};
 use mode::{mode, mode_at_large};
 pub(crate) use phases::ramps_alone;
 pub use phases::{GivenHold, find_phases, phases_watched, phases_with};

@@ -81,6 +81,18 @@ fn judged([jaw, force]: [&[f64]; 2], [way, rise]: [f64; 2]) -> HoldMode {
     }
 }
 
+/// Whether the jaw moves in samples `from..until`, however little, while the force stays, or goes half as far as a share of all that it does.
+pub(crate) fn creeps(record: &Record, from: usize, until: usize) -> bool {
+    let Some(displacement) = record.displacement().filter(|_| until >= from + PARTS) else {
+        return false;
+    };
+    let (jaw, force) = (&displacement[from..until], &record.force()[from..until]);
+    let is_observed = |column: &[f64]| moved(column).abs() > OBSERVED * error_of_mean(column);
+    let [travelled, changed] =
+        [(jaw, displacement), (force, record.force())].map(|(of, all)| moved(of).abs() / range(all));
+    is_observed(jaw) && (!is_observed(force) || travelled > FARTHER * changed)
+}
+
 /// Share of its way to the hold that a jaw may drift over it and still hold the displacement.
 const DRIFTS: f64 = 0.01;
 

@@ -6,6 +6,7 @@ use crate::fit::TrendVerdict;
 use crate::forecast::listed;
 use crate::number::{counted, exact, significant, with_interval};
 use crate::record::Column;
+use crate::segment::HoldMode;
 use crate::statistics::coverage_factor;
 
 /// Code, severity, observation, meaning and remedy.
@@ -200,6 +201,22 @@ impl Finding {
                 "the machine held neither; part of the force change is due to the motion, which the laws of relaxation omit",
                 "begin the fit after the jaw has settled (hold_start), end it earlier (until), or hold the jaw more steadily",
             ),
+            Self::DriveChanges { mode, from, to, share } => {
+                let creeps = *mode != HoldMode::DisplacementHeld;
+                let (drive, unit, answer, scale) =
+                    if creeps { ("force", "N", "creep", 1.0) } else { ("jaw", "mm", "relaxation", 1e3) };
+                caution(
+                    "drive_changes",
+                    format!(
+                        "the {drive} goes from {} to {} {unit} in the hold, which by itself makes about {} % of the {answer}",
+                        significant(scale * from, 4),
+                        significant(scale * to, 4),
+                        significant(100.0 * share, 2)
+                    ),
+                    "a time that a law has there may be that of the machine and not of the body",
+                    "begin the fit after the machine has settled (hold_start), or calibrate, which takes what was imposed as it was measured",
+                )
+            }
             Self::Ruptured(rupture) => warning(
                 "ruptured",
                 format!(

@@ -3,6 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::compared::{add_forecasts, comparison_findings, not_a_hold};
+use super::drive::drive_changes;
 use super::jump::force_step;
 use super::rate_bias::{RateBias, rate_bias};
 use crate::analysis::{AnalysisOptions, Finding};
@@ -114,12 +115,12 @@ impl HoldAnalysis {
 /// A hold of a corrected record with its signal, before any fit.
 pub(in crate::analysis) fn prepare_hold(
     record: &Record,
-    segment: &Segment,
+    (segments, index): (&[Segment], usize),
     number: usize,
     specimen: Option<&Specimen>,
     options: &AnalysisOptions,
 ) -> HoldAnalysis {
-    let mut segment = *segment;
+    let mut segment = segments[index];
     let reopened = specimen.and_then(|_| open_until(record, &segment, options));
     if let Some(closed) = reopened.filter(|closed| *closed > segment.fit_start) {
         (segment.fit_start, segment.fit_start_rule) = (closed, Some(FitStartRule::ContactClosed));
@@ -169,6 +170,9 @@ pub(in crate::analysis) fn prepare_hold(
     }
     take_signal(&mut hold, record, if force_held { None } else { specimen }, options);
     if hold.relaxes() {
+        if segment.mode == Some(HoldMode::DisplacementHeld) {
+            hold.findings.extend(drive_changes(record, segments, index, segment.end));
+        }
         let (times, values) = (&hold.times[..hold.fitted], &hold.values[..hold.fitted]);
         hold.rates = strain_rates(times, values, &options.rate_window);
     }

@@ -6,12 +6,14 @@
 //! | `imposed.rs` | what was imposed before it |
 //! | `exponents.rs` | fits in both domains with the listed exponents, the extension of the list, the free one |
 //! | `creep.rs` | holds of constant force |
+//! | `drive.rs` | what is held and goes on in the hold |
 //! | `jump.rs` | steps of the force within a hold |
 //! | `rate_bias.rs` | how far noise takes the rate domain from the truth |
 //! | `compared.rs` | what a comparison of laws gives cause to say; holds that are none: drift, feedback control |
 
 mod compared;
 mod creep;
+mod drive;
 mod exponents;
 mod hold;
 mod imposed;

@@ -23,5 +23,5 @@ pub use corrected::{Corrected, Prepared, corrected, corrected_watched, prepared}
 pub use lag::ColumnLag;
 pub(crate) use motion::measured_motion;
 pub(crate) use signals::signal_findings;
-pub use signals::suspicious_signs;
+pub use signals::{record_findings, suspicious_signs};
 pub use skew::{ClockSkew, clock_skew};

@@ -24,12 +24,11 @@ pub(crate) fn signal_findings(
         segmentation,
         contact,
     } = prepared;
-    let mut findings = correction_findings(&corrected.record);
+    let mut findings = record_findings(&corrected.record);
     // Of clocks that differ the force goes on while the jaw stands already: that is no saturation.
     let aligned = corrected.aligned(measured.0);
     let aligned = aligned.as_ref().map_or(measured, |(record, signals)| (record, signals));
     findings.extend(column_findings(aligned, segmentation, record));
-    findings.extend(rows_astray(&corrected.record));
     findings.extend(corrected.skew_finding().into_iter().chain(corrected.lag.map(Finding::from)));
     if !segmentation.settings.from_displacement {
         findings.push(Finding::PhasesFromForce);
@@ -48,7 +47,6 @@ pub(crate) fn signal_findings(
     }
     findings.extend(segmentation.ripple.map(Finding::JawHunts));
     findings.extend(segmentation.ruptures.iter().copied().map(Finding::Ruptured));
-    findings.extend(suspicious_signs(&corrected.record));
     if contact.air_travel > 0.0 {
         findings.push(Finding::AirTravel {
             travel: contact.air_travel,
@@ -58,6 +56,15 @@ pub(crate) fn signal_findings(
     if options.geometry.is_some() && options.touch == ContactChoice::AsRecorded {
         findings.extend(wrong_zero(record));
     }
+    findings
+}
+
+/// Findings on a record whatever its phases: what was done to it, rows of the force that stray, and columns that may have the wrong sign.
+#[must_use]
+pub fn record_findings(record: &Record) -> Vec<Finding> {
+    let mut findings = correction_findings(record);
+    findings.extend(rows_astray(record));
+    findings.extend(suspicious_signs(record));
     findings
 }
 
