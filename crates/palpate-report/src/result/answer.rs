@@ -4,7 +4,7 @@ use std::cmp::Ordering;
 
 use palpate::analysis::{Finding, Severity};
 use palpate::fit::Fit;
-use palpate::forecast::{Certainty, Comparison, PooledVerdict, Ranking, Verdict, name_in_words, pooled};
+use palpate::forecast::{Certainty, Comparison, PooledVerdict, Ranking, Reservation, Verdict, name_in_words, pooled};
 use palpate::laws::Law;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -199,15 +199,19 @@ fn sentence(record: &ComparedRecord, law: Option<Law>, agreeing: usize, judged: 
     };
     let name = name_in_words(law);
     let compared = judged.len();
-    let reserved = judged
+    let reservations: Vec<Reservation> = judged
         .iter()
-        .filter(|found| found.verdict.as_ref().is_some_and(|verdict| verdict.reservation.is_some()));
-    let what = match reserved.count() {
-        0 => &*open_on_most(judged, law).map_or_else(
+        .filter_map(|found| found.verdict.as_ref().and_then(|verdict| verdict.reservation))
+        .collect();
+    let what = match &reservations[..] {
+        [] => &*open_on_most(judged, law).map_or_else(
             || "Law for this record".to_owned(),
             |open| format!("{open} The first choice for this record"),
         ),
-        all if all == compared => {
+        all if all.contains(&Reservation::DriveChanges) => {
+            "In some holds what is held goes on, so that no law there is that of the body alone. The closest for this record"
+        }
+        all if all.len() == compared => {
             "No law that was compared describes this record down to its noise. The best approximation"
         }
         _ => "Best approximation for this record, of which some holds refute every law",

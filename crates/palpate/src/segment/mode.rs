@@ -81,8 +81,11 @@ fn judged([jaw, force]: [&[f64]; 2], [way, rise]: [f64; 2]) -> HoldMode {
     }
 }
 
-/// Whether the jaw moves in samples `from..until`, however little, while the force stays, or goes half as far as a share of all that it does.
+/// Whether the displacement is not what is held in samples `from..until`, or moves, however little, while the force stays.
 pub(crate) fn creeps(record: &Record, from: usize, until: usize) -> bool {
+    if mode(record, from, until) != HoldMode::DisplacementHeld {
+        return true;
+    }
     let Some(displacement) = record.displacement().filter(|_| until >= from + PARTS) else {
         return false;
     };

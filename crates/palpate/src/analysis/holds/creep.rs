@@ -206,7 +206,7 @@ pub fn creep_holds(
         let samples = Samples::new(&times[..last], &displacement[..last]);
         let mut comparison = fitted(compare_laws_watched(&samples, &each, &[], watch))?;
         let mut findings = comparison.as_ref().map_or_else(Vec::new, |found| comparison_findings(found, times[1]));
-        if let Some(changes) = drive_changes(&record, &segments, *place, from + last) {
+        if let Some(changes) = drive_changes(&record, (&segments, *place), HoldMode::ForceHeld, from + last) {
             // No law of a constant force is the law of a body under this one.
             if let Some(verdict) = comparison.as_mut().and_then(|found| found.verdict.as_mut()) {
                 verdict.reserve(Reservation::DriveChanges);

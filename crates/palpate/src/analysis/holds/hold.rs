@@ -171,7 +171,8 @@ pub(in crate::analysis) fn prepare_hold(
     take_signal(&mut hold, record, if force_held { None } else { specimen }, options);
     if hold.relaxes() {
         if segment.mode == Some(HoldMode::DisplacementHeld) {
-            hold.findings.extend(drive_changes(record, segments, index, segment.end));
+            hold.findings
+                .extend(drive_changes(record, (segments, index), HoldMode::DisplacementHeld, segment.end));
         }
         let (times, values) = (&hold.times[..hold.fitted], &hold.values[..hold.fitted]);
         hold.rates = strain_rates(times, values, &options.rate_window);
