@@ -22,6 +22,7 @@ from whole_records import RECORDS, ROOT
 PAGE = ROOT / "docs" / "validation" / "extrapolations.md"
 WIDE = {
     "longest_hold": '"1e9 s"',
+    "longest_force_hold": '"1e9 s"',
     "deepest": '"1e3 m"',
     "fastest": '"1e3 m/s"',
     "largest_force": '"1e9 N"',

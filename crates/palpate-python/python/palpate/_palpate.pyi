@@ -927,8 +927,9 @@ class Material(_Value):
     noise_n: Final[float]
     """Standard deviation of what the law left of the measured force, N: noise of one reading."""
     calibration_range: Final[dict[str, float]]
-    """The range of the test, beyond which predictions are extrapolations: ``longest_hold_s``, ``deepest_m``, ``fastest_m_per_s``,
-    ``slowest_m_per_s``, ``largest_force_n``, ``farthest_retreat_m``, ``loadings``.
+    """The range of the test, beyond which predictions are extrapolations: ``longest_hold_s`` of the displacement,
+    ``longest_force_hold_s``, ``deepest_m``, ``fastest_m_per_s``, ``slowest_m_per_s``, ``largest_force_n``,
+    ``farthest_retreat_m``, ``loadings``.
     """
     origin: Final[dict[str, Any]]
     """Where the parameters come from: ``record``, ``sha256`` of its file, number of ``specimens`` of a batch another of which it is, ``test`` description, version of ``palpate``, ``samples`` fitted."""

@@ -147,12 +147,14 @@ shown! {
             self.source.file.material.uncertainty().map(|uncertainty| uncertainty.confidence),
         /// Standard deviation of what the law left of the measured force, N: noise of one reading.
         noise_n: f64 = self.source.file.material.noise(),
-        /// The range of the test, beyond which predictions are extrapolations: ``longest_hold_s``, ``deepest_m``, ``fastest_m_per_s``,
-        /// ``slowest_m_per_s``, ``largest_force_n``, ``farthest_retreat_m``, ``loadings``.
+        /// The range of the test, beyond which predictions are extrapolations: ``longest_hold_s`` of the displacement,
+        /// ``longest_force_hold_s``, ``deepest_m``, ``fastest_m_per_s``, ``slowest_m_per_s``, ``largest_force_n``,
+        /// ``farthest_retreat_m``, ``loadings``.
         calibration_range<'py>(py): PyResult<Bound<'py, PyDict>> = {
             let range = self.source.file.material.range();
             let named = [
                 ("longest_hold_s", range.longest_hold),
+                ("longest_force_hold_s", range.longest_force_hold),
                 ("deepest_m", range.deepest),
                 ("fastest_m_per_s", range.fastest),
                 ("slowest_m_per_s", range.slowest),

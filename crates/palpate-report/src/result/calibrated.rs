@@ -178,9 +178,14 @@ pub(super) fn range_remark(range: &CalibrationRange) -> String {
         0.0 => "loading alone".to_owned(),
         retreat => format!("retreats of up to {}", quantity(retreat, "m", 3)),
     };
+    let holds: Vec<String> = [("", range.longest_hold), (" of the force", range.longest_force_hold)]
+        .into_iter()
+        .filter(|(_, longest)| *longest > 0.0)
+        .map(|(what, longest)| format!("holds{what} of up to {}, ", quantity(longest, "s", 3)))
+        .collect();
     format!(
-        "Calibration range: holds of up to {}, displacements of up to {}, ramps of {} to {}, forces of up to {}, {retreat}, {}. Predictions beyond this range are marked as extrapolations, and their intervals are wider.",
-        quantity(range.longest_hold, "s", 3),
+        "Calibration range: {}displacements of up to {}, ramps of {} to {}, forces of up to {}, {retreat}, {}. Predictions beyond this range are marked as extrapolations, and their intervals are wider.",
+        holds.concat(),
         quantity(range.deepest, "m", 3),
         quantity(range.slowest, "m/s", 3),
         quantity(range.fastest, "m/s", 3),

@@ -1,10 +1,12 @@
 //! What a model is fitted to: the motion of the jaw and the force it met.
 
 use super::CalibrateError;
+use super::range::Span;
 use crate::analysis::{AnalysisOptions, Finding, Geometry, Prepared, corrected, measured_motion, signal_findings};
 use crate::contact::{Specimen, SpecimenError};
 use crate::instrument::Instrument;
 use crate::record::Record;
+use crate::segment::HoldMode;
 use crate::simulate::{MeasuredMotion, Motion, Separation};
 
 /// Samples of force along a motion of the jaw that starts at first touch, ready to be fitted; SI units, loading positive.
@@ -25,6 +27,8 @@ pub struct CalibrationData {
     samples: usize,
     /// Contact displacements (m) at which the jaw was held, rising.
     levels: Vec<f64>,
+    /// Spans in which a force was held, in order.
+    force_held: Vec<Span>,
     /// What the columns of the record give cause to say.
     findings: Vec<Finding>,
 }
@@ -108,6 +112,7 @@ impl CalibrationData {
             motion,
             measured: None,
             instrument: Instrument::default(),
+            force_held: Vec::new(),
             findings: Vec::new(),
             times,
             forces,
@@ -139,10 +144,13 @@ impl CalibrationData {
             .map(|hold| crate::statistics::median(&mut displacement[hold.start..hold.end].to_vec()))
             .collect();
         let (times, forces) = (record.time().to_vec(), record.force().to_vec());
+        let pressed = segmentation.holds().filter(|hold| hold.mode == Some(HoldMode::ForceHeld));
+        let force_held = pressed.map(|hold| (times[hold.start], times[hold.end - 1])).collect();
         let motion = measured.motion.clone();
         Ok(Self {
             measured: Some(measured),
             instrument: options.instrument.with_touch(contact.displacement_error),
+            force_held,
             findings,
             ..Self::new(geometry, options.separation, motion, times, forces, &held)?
         })
@@ -212,6 +220,11 @@ impl CalibrationData {
     #[must_use]
     pub fn instrument(&self) -> &Instrument {
         &self.instrument
+    }
+
+    /// Spans (s) in which a force was held, in order; none in data of no record.
+    pub(super) fn force_held(&self) -> &[Span] {
+        &self.force_held
     }
 
     /// The measured force at a time, N: straight between the samples.

@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::range::{Held, Way};
+use super::range::{Held, Span, Way};
 use super::{CalibrationRange, Material};
 use crate::number::significant;
 use crate::simulate::{Drive, Sampling, SimulateError, Trajectory, simulate_watched};
@@ -12,11 +12,18 @@ use crate::watch::Stages;
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case", tag = "kind")]
 pub enum Extrapolation {
-    /// A longer hold than any of the test.
+    /// A longer hold of the displacement than any of the test.
     LongerHold {
         /// What was requested, s.
         requested: f64,
-        /// What was tested, s.
+        /// What was tested, s; 0 where it held none.
+        tested: f64,
+    },
+    /// A longer hold of the force than any of the test, or a force that is prescribed where the test held none.
+    LongerForceHold {
+        /// What was requested, s.
+        requested: f64,
+        /// What was tested, s; 0 where it held none.
         tested: f64,
     },
     /// A deeper squeeze.
@@ -54,14 +61,27 @@ pub enum Extrapolation {
         /// What was tested.
         tested: u32,
     },
-    /// A force that is held, which no test in displacement shows.
-    ForceHeld,
 }
 
 impl std::fmt::Display for Extrapolation {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         let digits = |value: f64| significant(value, 3);
         match *self {
+            Self::LongerHold { tested: 0.0, .. } => {
+                write!(
+                    f,
+                    "the displacement is held, while the test held none: the law predicts relaxation that was not observed"
+                )
+            }
+            Self::LongerForceHold { tested: 0.0, .. } => {
+                write!(f, "the force is held, while the test held none: the law predicts creep that was not observed")
+            }
+            Self::LongerForceHold { requested, tested } => write!(
+                f,
+                "the longest hold of the force lasts {} s, that of the test {} s: later displacements are extrapolated by the law",
+                digits(requested),
+                digits(tested)
+            ),
             Self::LongerHold { requested, tested } => write!(
                 f,
                 "the longest hold lasts {} s, that of the test {} s: later forces are extrapolated by the law",
@@ -103,12 +123,6 @@ impl std::fmt::Display for Extrapolation {
                 f,
                 "the body is loaded {requested} times, in the test {tested}: one that softens from cycle to cycle has less force"
             ),
-            Self::ForceHeld => {
-                write!(
-                    f,
-                    "the force is held, while the test held the displacement: the law predicts creep that was not observed"
-                )
-            }
         }
     }
 }
@@ -133,15 +147,15 @@ pub(super) struct Beyond {
 }
 
 impl Beyond {
-    /// Of the course of a drive with the best parameters.
+    /// Of the course of a drive with the best parameters; in a motion that was measured a force was held in these spans.
     pub(super) fn of(
         material: &Material,
-        drive: Drive<'_>,
+        (drive, force_held): (Drive<'_>, &[Span]),
         course: &Trajectory,
         stages: &mut Stages<'_>,
     ) -> Result<Self, SimulateError> {
         let (tested, contact) = (material.range(), material.contact());
-        let way = Way::of(drive, contact)?;
+        let way = Way::of(drive, contact, force_held)?;
         let extrapolations = extrapolations(tested, &way, course);
         let body = contact.specimen();
         let relaxed_at = |displacement: f64| body.equilibrium_force(body.contact_displacement(displacement));
@@ -173,12 +187,13 @@ impl Beyond {
             if done.loadings > tested.loadings {
                 add(BY_DAMAGE * force * (1.0 - f64::from(tested.loadings) / f64::from(done.loadings)));
             }
-            match done.held {
-                Held::Displacement if time - done.since > tested.longest_hold => {
-                    longer.push((index, done.since + tested.longest_hold));
-                }
-                Held::Force => beyond.displacement[index] += (BY_LAW * (displacement - done.from)).powi(2),
-                Held::Displacement | Held::Nothing | Held::Pressed => {}
+            let longest = match done.held {
+                Held::Displacement => tested.longest_hold,
+                Held::Force => tested.longest_force_hold,
+                Held::Nothing | Held::Pressed => continue,
+            };
+            if time - done.since > longest {
+                longer.push((index, done.since + longest));
             }
         }
         let mut tested_for: Vec<f64> = longer.iter().map(|(_, time)| *time).collect();
@@ -188,6 +203,10 @@ impl Beyond {
             for (index, time) in longer {
                 let at = tested_for.partition_point(|tested| *tested < time);
                 beyond.force[index] += (BY_LAW * (course.force[index] - there.force[at])).powi(2);
+                if !matches!(drive, Drive::Motion(_)) {
+                    let creep = course.displacement[index] - there.displacement[at];
+                    beyond.displacement[index] += (BY_LAW * creep).powi(2);
+                }
             }
         }
         Ok(beyond)
@@ -197,11 +216,16 @@ impl Beyond {
 fn extrapolations(tested: &CalibrationRange, way: &Way, course: &Trajectory) -> Vec<Extrapolation> {
     let done = way.follow().until(f64::INFINITY);
     let most = |values: &[f64]| values.iter().copied().fold(0.0, f64::max);
+    // A force that changes all the time is foreign to a test in displacement, too.
+    let least = if way.holds_force() { f64::MIN_POSITIVE } else { 0.0 };
     type Requested = (f64, f64, fn(f64, f64) -> Extrapolation);
-    let kinds: [Requested; 5] = [
+    let kinds: [Requested; 6] = [
         (done.longest_hold, tested.longest_hold, |requested, tested| Extrapolation::LongerHold {
             requested,
             tested,
+        }),
+        (done.longest_force_hold.max(least), tested.longest_force_hold, |requested, tested| {
+            Extrapolation::LongerForceHold { requested, tested }
         }),
         (most(&course.displacement).max(done.deepest), tested.deepest, |requested, tested| {
             Extrapolation::DeeperSqueeze { requested, tested }
@@ -224,6 +248,5 @@ fn extrapolations(tested: &CalibrationRange, way: &Way, course: &Trajectory) -> 
             tested: tested.loadings,
         });
     }
-    found.extend(way.holds_force().then_some(Extrapolation::ForceHeld));
     found
 }

@@ -133,5 +133,6 @@ fn largest(forces: &[f64]) -> f64 {
 
 /// What the fitted part of the record has shown.
 fn range(data: &CalibrationData) -> CalibrationRange {
-    CalibrationRange::of(data.motion(), data.times()[data.fitted() - 1], largest(&data.forces()[..data.fitted()]))
+    let until = data.times()[data.fitted() - 1];
+    CalibrationRange::of(data.motion(), data.force_held(), until, largest(&data.forces()[..data.fitted()]))
 }

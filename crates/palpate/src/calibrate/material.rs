@@ -233,6 +233,7 @@ impl MaterialParts {
         for (name, value) in [
             ("noise", self.noise),
             ("longest_hold", range.longest_hold),
+            ("longest_force_hold", range.longest_force_hold),
             ("deepest", range.deepest),
             ("fastest", range.fastest),
             ("slowest", range.slowest),

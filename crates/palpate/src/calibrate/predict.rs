@@ -3,6 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::extrapolation::{Beyond, Extrapolation};
+use super::range::Span;
 use super::{CalibrateError, CalibrationData, Material};
 use crate::analysis::{AnalysisOptions, Geometry};
 use crate::record::Record;
@@ -103,7 +104,7 @@ impl Material {
         confidence: f64,
         watch: &mut dyn Watch,
     ) -> Result<Prediction, SimulateError> {
-        self.predicted(drive.into(), sampling, confidence, watch)
+        self.predicted((drive.into(), &[]), sampling, confidence, watch)
     }
 
     /// The same along the measured displacement of a record, at the times (s) `at` on its clock, or at its samples if there are none: corrected,
@@ -132,13 +133,15 @@ impl Material {
         };
         let data = CalibrationData::of_record(record, &options)?;
         let times = if at.is_empty() { data.times() } else { at };
-        Ok(self.predict_watched(data.motion(), &Sampling::Times(times.to_vec()), confidence, watch)?)
+        let drive = (Drive::from(data.motion()), data.force_held());
+        Ok(self.predicted(drive, &Sampling::Times(times.to_vec()), confidence, watch)?)
     }
 
-    /// Without generics, so that it is compiled here, once, and not wherever it is called.
+    /// Without generics, so that it is compiled here, once, and not wherever it is called. A drive comes with the spans in which a measured
+    /// motion is that of a force that was held.
     fn predicted(
         &self,
-        drive: Drive<'_>,
+        (drive, force_held): (Drive<'_>, &[Span]),
         sampling: &Sampling,
         confidence: f64,
         watch: &mut dyn Watch,
@@ -169,7 +172,7 @@ impl Material {
                 displacement.add(&high.displacement, &low.displacement, share);
             }
         }
-        let beyond = Beyond::of(self, drive, &trajectory, &mut stages)?;
+        let beyond = Beyond::of(self, (drive, force_held), &trajectory, &mut stages)?;
         stages.finish()?;
         let [force, displacement] =
             [(force, &beyond.force), (displacement, &beyond.displacement)].map(|(spreads, beyond)| {

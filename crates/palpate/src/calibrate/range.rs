@@ -7,8 +7,11 @@ use crate::simulate::{Contact, Drive, Motion, ProgramStep, Sampling, SimulateErr
 /// Range of the test; predictions beyond it are extrapolations.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct CalibrationRange {
-    /// The longest hold, s.
+    /// The longest hold of the displacement, s; 0 of a test that held none.
     pub longest_hold: f64,
+    /// The longest hold of the force, s; 0 of a test that held none.
+    #[serde(default)]
+    pub longest_force_hold: f64,
     /// The deepest squeeze (travel of the jaw since first touch), m.
     pub deepest: f64,
     /// The fastest ramp, m/s.
@@ -69,12 +72,13 @@ pub(super) struct Done {
     /// Slowest and fastest ramp, m/s; 0 without one.
     pub(super) slowest: f64,
     pub(super) fastest: f64,
-    /// What is held now, since when (s), and where (m) that began.
+    /// What is held now, and since when (s).
     pub(super) held: Held,
     pub(super) since: f64,
-    pub(super) from: f64,
     /// The longest time that the displacement was held, s.
     pub(super) longest_hold: f64,
+    /// The longest time that the force was held, s.
+    pub(super) longest_force_hold: f64,
 }
 
 /// Share of the deepest displacement below which the jaw stands.
@@ -83,11 +87,14 @@ const STILL: f64 = 0.01;
 /// Share of it that is a retreat.
 const RETREAT: f64 = 0.05;
 
+/// Times (s) from which and until which a force is held.
+pub(super) type Span = (f64, f64);
+
 impl Way {
-    /// Of a drive, with what the body carries where forces are prescribed.
-    pub(super) fn of(drive: Drive<'_>, contact: &Contact) -> Result<Self, SimulateError> {
+    /// Of a drive, with what the body carries where forces are prescribed. In a motion that was measured a force was held in these spans.
+    pub(super) fn of(drive: Drive<'_>, contact: &Contact, force_held: &[Span]) -> Result<Self, SimulateError> {
         match drive {
-            Drive::Motion(motion) => Ok(Self::of_motion(motion)),
+            Drive::Motion(motion) => Ok(Self::of_motion(motion, force_held)),
             Drive::Force(history) => {
                 let times = history.times().to_vec();
                 let course = simulate(drive, contact, &Sampling::Times(times))?;
@@ -126,21 +133,45 @@ impl Way {
         }
     }
 
-    /// Of a motion, less what is noise in it.
-    pub(super) fn of_motion(motion: &Motion) -> Self {
+    /// Of a motion, less what is noise in it. In these spans, which follow each other, the jaw creeps under a force that is held.
+    pub(super) fn of_motion(motion: &Motion, force_held: &[Span]) -> Self {
         let deepest = motion.displacements().iter().copied().fold(0.0, f64::max);
         let simple = motion.simplified(STILL * deepest);
-        let mut before = simple.displacements()[0];
-        let corner = |(time, displacement): (&f64, &f64)| {
-            let is_still = (displacement - before).abs() <= 2.0 * STILL * deepest;
-            before = *displacement;
-            Corner {
-                time: *time,
-                displacement: *displacement,
-                held: if is_still { Held::Displacement } else { Held::Nothing },
+        let (times, displacements) = (simple.times(), simple.displacements());
+        let is_near_zero = |displacement: &f64| displacement.abs() <= 2.0 * STILL * deepest;
+        // A jaw that rests before first touch holds nothing.
+        let at_rest = displacements[1..displacements.len() - 1].iter().take_while(|end| is_near_zero(end)).count();
+        let first = if is_near_zero(&displacements[0]) { at_rest } else { 0 };
+        let mut corners = vec![Corner {
+            time: times[first],
+            displacement: displacements[first],
+            held: Held::Nothing,
+        }];
+        for (times, displacements) in times.windows(2).zip(displacements.windows(2)).skip(first) {
+            let is_still = is_near_zero(&(displacements[1] - displacements[0]));
+            let pressed = force_held.iter().map(|(from, until)| (until.min(times[1]) - from.max(times[0])).max(0.0));
+            let is_creep = pressed.sum::<f64>() > 0.5 * (times[1] - times[0]);
+            let bounds = force_held.iter().flat_map(|(from, until)| [*from, *until]);
+            let mut start = times[0];
+            for time in bounds.filter(|time| times[0] < *time && *time < times[1]).chain([times[1]]) {
+                let middle = 0.5 * (start + time);
+                corners.push(Corner {
+                    time,
+                    displacement: simple.displacement_at(time),
+                    held: if force_held.iter().any(|(from, until)| *from < middle && middle < *until) {
+                        Held::Force
+                    } else if is_creep {
+                        Held::Pressed
+                    } else if is_still {
+                        Held::Displacement
+                    } else {
+                        Held::Nothing
+                    },
+                });
+                start = time;
             }
-        };
-        Self::new(simple.times().iter().zip(simple.displacements()).map(corner).collect())
+        }
+        Self::new(corners)
     }
 
     fn new(corners: Vec<Corner>) -> Self {
@@ -167,8 +198,8 @@ impl Way {
             fastest: 0.0,
             held: Held::Nothing,
             since: first.time,
-            from: first.displacement,
             longest_hold: 0.0,
+            longest_force_hold: 0.0,
         };
         Follower {
             way: self,
@@ -228,7 +259,7 @@ impl State {
         let share = if time < end.time { (time - start.time) / whole } else { 1.0 };
         let place = start.displacement + share * (end.displacement - start.displacement);
         if end.held != done.held || matches!(end.held, Held::Nothing | Held::Pressed) {
-            (done.held, done.since, done.from) = (end.held, start.time, start.displacement);
+            (done.held, done.since) = (end.held, start.time);
         }
         match end.held {
             Held::Displacement => done.longest_hold = done.longest_hold.max(time - done.since),
@@ -237,7 +268,8 @@ impl State {
                 done.slowest = done.slowest.min(speed);
                 done.fastest = done.fastest.max(speed);
             }
-            Held::Nothing | Held::Pressed | Held::Force => {}
+            Held::Force => done.longest_force_hold = done.longest_force_hold.max(time - done.since),
+            Held::Nothing | Held::Pressed => {}
         }
         done.deepest = done.deepest.max(place);
         done.retreat = done.retreat.max(done.deepest - place);
@@ -251,11 +283,12 @@ impl State {
 }
 
 impl CalibrationRange {
-    /// Of a motion of the jaw up to a time (s), with the largest force until then (N).
-    pub(super) fn of(motion: &Motion, until: f64, largest_force: f64) -> Self {
-        let done = Way::of_motion(motion).follow().until(until);
+    /// Of a motion of the jaw up to a time (s), with the spans of it in which a force was held and the largest force until then (N).
+    pub(super) fn of(motion: &Motion, force_held: &[Span], until: f64, largest_force: f64) -> Self {
+        let done = Way::of_motion(motion, force_held).follow().until(until);
         Self {
             longest_hold: done.longest_hold,
+            longest_force_hold: done.longest_force_hold,
             deepest: done.deepest,
             fastest: done.fastest,
             slowest: done.slowest,
@@ -276,7 +309,7 @@ mod tests {
         let step = |to: f64, hold: f64| ProtocolStep { to, rate: 5e-3, hold };
         let motion =
             protocol(&[step(0.01, 5.0), step(0.004, 3.0), step(0.012, 8.0), step(0.0, 1.0), step(0.01, 2.0)]).unwrap();
-        let way = Way::of_motion(&motion);
+        let way = Way::of_motion(&motion, &[]);
         let mut jaw = way.follow();
         for time in (0..=(20.0 * motion.end()) as u32).map(|i| 0.05 * f64::from(i)) {
             assert_eq!(jaw.until(time), way.follow().until(time), "{time}");

@@ -31,7 +31,7 @@ use crate::watch::{Cancelled, Progress, Stages};
 ///     ],
 ///     uncertainty: None,
 ///     noise: 0.0,
-///     range: CalibrationRange { longest_hold: 20.0, deepest: 0.015, fastest: 0.5 / 60.0, slowest: 0.5 / 60.0, largest_force: 14.3, farthest_retreat: 0.01, loadings: 1 },
+///     range: CalibrationRange { longest_hold: 20.0, longest_force_hold: 0.0, deepest: 0.015, fastest: 0.5 / 60.0, slowest: 0.5 / 60.0, largest_force: 14.3, farthest_retreat: 0.01, loadings: 1 },
 /// })?;
 /// // 0.25 kg with μ = 0.6 need 2.04 N; 5 mm at 500 mm/min start with 3.04 N and relax to 1.06 N.
 /// let grip = Grip::new(&ball, Grasp::new(0.25, 0.6)?, Limits::new(0.5 / 60.0)?, 0.95)?;

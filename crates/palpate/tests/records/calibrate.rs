@@ -459,12 +459,12 @@ fn questions_beyond_the_test_are_stated_to_be() {
         .iter()
         .map(|found| match found {
             Extrapolation::LongerHold { .. } => "longer",
+            Extrapolation::LongerForceHold { .. } => "held",
             Extrapolation::DeeperSqueeze { .. } => "deeper",
             Extrapolation::FasterRamp { .. } => "faster",
             Extrapolation::LargerForce { .. } => "larger",
             Extrapolation::FartherRetreat { .. } => "retreat",
             Extrapolation::MoreLoadings { .. } => "loadings",
-            Extrapolation::ForceHeld => "held",
         })
         .collect();
     assert_eq!(kinds, ["longer", "deeper", "faster", "larger"]);

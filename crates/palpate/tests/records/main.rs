@@ -8,6 +8,7 @@ mod damage;
 mod exponents;
 mod grip;
 mod instrument;
+mod measured_motion;
 mod observe;
 mod phases;
 #[path = "../common/repeats.rs"]

@@ -300,16 +300,17 @@ fn range(source: &Source<'_>, table: &RangeTable) -> Result<CalibrationRange, De
         let value = source.si(&key, written, dimension)?;
         source.number(&key, value, "0 or more", |value| value >= 0.0)
     };
+    let none_if_omitted = |name: &str, written: &Option<QuantityText>, dimension| {
+        written.as_ref().map_or(Ok(0.0), |written| quantity(name, written, dimension))
+    };
     let range = CalibrationRange {
         longest_hold: quantity("longest_hold", &table.longest_hold, Dimension::Time)?,
+        longest_force_hold: none_if_omitted("longest_force_hold", &table.longest_force_hold, Dimension::Time)?,
         deepest: quantity("deepest", &table.deepest, Dimension::Length)?,
         fastest: quantity("fastest", &table.fastest, Dimension::Speed)?,
         slowest: quantity("slowest", &table.slowest, Dimension::Speed)?,
         largest_force: quantity("largest_force", &table.largest_force, Dimension::Force)?,
-        farthest_retreat: match &table.farthest_retreat {
-            Some(written) => quantity("farthest_retreat", written, Dimension::Length)?,
-            None => 0.0,
-        },
+        farthest_retreat: none_if_omitted("farthest_retreat", &table.farthest_retreat, Dimension::Length)?,
         loadings: table.loadings.unwrap_or(1).max(1),
     };
     if range.slowest > range.fastest {

@@ -130,8 +130,10 @@ pub(crate) struct ParameterTable {
 #[serde(deny_unknown_fields)]
 #[schemars(rename = "CalibrationRange")]
 pub(crate) struct RangeTable {
-    /// The longest hold.
+    /// The longest hold of the displacement, 0 s if there was none.
     pub(crate) longest_hold: QuantityText,
+    /// The longest hold of the force; none if omitted.
+    pub(crate) longest_force_hold: Option<QuantityText>,
     /// The largest displacement of the jaw since first touch.
     pub(crate) deepest: QuantityText,
     /// The fastest ramp.

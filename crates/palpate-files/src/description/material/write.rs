@@ -199,6 +199,7 @@ impl MaterialFile {
         out += "\n[calibration.range]\n";
         for (name, value, unit) in [
             ("longest_hold", range.longest_hold, "s"),
+            ("longest_force_hold", range.longest_force_hold, "s"),
             ("deepest", range.deepest, "m"),
             ("fastest", range.fastest, "m/s"),
             ("slowest", range.slowest, "m/s"),

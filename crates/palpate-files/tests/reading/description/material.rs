@@ -78,6 +78,7 @@ fn material(law: &str, equilibrium: EquilibriumLaw, shape: Shape) -> MaterialFil
             noise: 0.05 * third,
             range: CalibrationRange {
                 longest_hold: 60.0 * third,
+                longest_force_hold: 30.0 * third,
                 deepest: 0.01 * third,
                 fastest: 0.1 * third,
                 slowest: 0.01 * third,

@@ -74,6 +74,7 @@ impl Another {
 pub(super) fn range_of(ranges: impl Iterator<Item = CalibrationRange>) -> Option<CalibrationRange> {
     ranges.reduce(|a, b| CalibrationRange {
         longest_hold: a.longest_hold.max(b.longest_hold),
+        longest_force_hold: a.longest_force_hold.max(b.longest_force_hold),
         deepest: a.deepest.max(b.deepest),
         fastest: a.fastest.max(b.fastest),
         slowest: a.slowest.min(b.slowest),

@@ -54,6 +54,7 @@ fn ball(errors: Option<[f64; 4]>) -> Material {
         noise: 0.05,
         range: CalibrationRange {
             longest_hold: 20.0,
+            longest_force_hold: 0.0,
             deepest: 0.015,
             fastest: SPEED,
             slowest: SPEED,

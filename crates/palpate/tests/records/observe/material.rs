@@ -53,6 +53,7 @@ pub(super) fn material(stiffer: f64) -> palpate::calibrate::Material {
         noise: 0.05,
         range: CalibrationRange {
             longest_hold: 60.0,
+            longest_force_hold: 0.0,
             deepest: 0.01,
             fastest: 0.01,
             slowest: 0.001,

@@ -1,0 +1,105 @@
+//! Calibrations along motions of the jaw that no protocol prescribes: creep under a held force.
+#![expect(clippy::unwrap_used, reason = "a test that cannot run has failed")]
+
+use palpate::analysis::{AnalysisOptions, Geometry};
+use palpate::calibrate::{CalibrationData, Candidate, EquilibriumLaw, Extrapolation, Material, calibrate};
+use palpate::contact::{Equilibrium, Shape, Sides, Specimen};
+use palpate::record::Record;
+use palpate::simulate::{
+    Contact, ForceHistory, LinearContact, LinearLaw, LinearTerm, Memory, ProgramStep, Sampling, Separation, simulate,
+};
+use palpate::test_problems::Rng;
+use palpate::watch::Unwatched;
+
+const SHAPE: Shape = Shape::Prism {
+    area: 1e-4,
+    length: 0.02,
+};
+
+/// A block of 200 kPa with these overshoots and times (s).
+fn block(terms: &[(f64, f64)]) -> Contact {
+    let terms: Vec<LinearTerm> = terms
+        .iter()
+        .map(|(overshoot, time)| LinearTerm {
+            overshoot: *overshoot,
+            rate: 1.0 / time,
+        })
+        .collect();
+    Contact::Linear(LinearContact {
+        specimen: Specimen::new(SHAPE, 2e5, Sides::One).unwrap(),
+        law: LinearLaw::new(&terms).unwrap(),
+        memory: Memory::Strain,
+        separation: Separation::Bonded,
+    })
+}
+
+fn options() -> AnalysisOptions {
+    AnalysisOptions {
+        geometry: Some(Geometry {
+            shape: SHAPE,
+            sides: Sides::One,
+            modulus: None,
+            equilibrium: Equilibrium::UniformStrain,
+        }),
+        separation: Separation::Bonded,
+        ..AnalysisOptions::default()
+    }
+}
+
+fn calibrated(record: &Record, law: &str) -> Material {
+    let data = CalibrationData::of_record(record, &options()).unwrap();
+    let candidate = Candidate::new(law.parse().unwrap(), EquilibriumLaw::UniformStrain);
+    calibrate(&data, candidate, 0.95, &mut Unwatched).unwrap().material
+}
+
+/// A record of the force alone held at four levels for 29.5 s each and 37.5 s.
+fn creep() -> Record {
+    let contact = block(&[(1.5, 3.2)]);
+    let forces = vec![0.0, 0.0, 2.0, 2.0, 4.0, 4.0, 6.0, 6.0, 3.0, 3.0];
+    let history = ForceHistory::new(vec![0.0, 2.0, 2.5, 32.0, 32.5, 62.0, 62.5, 92.0, 92.5, 130.0], forces).unwrap();
+    let times: Vec<f64> = (0..2600).map(|i| 0.05 * f64::from(i)).collect();
+    let course = simulate(&history, &contact, &Sampling::Times(times.clone())).unwrap();
+    let mut random = Rng::new(3);
+    let mut noisy = |values: &[f64], noise: f64| values.iter().map(|v| v + noise * random.normal()).collect();
+    let (displacement, force) = (noisy(&course.displacement, 2e-7), noisy(&course.force, 2e-3));
+    Record::new(times, Some(displacement), force).unwrap()
+}
+
+/// A test of creep was one that "held the displacement for up to 16.0 s": creep of 30 s was 4.746 mm within [2.1, 7.3].
+#[test]
+fn creep_that_the_test_has_shown_is_no_extrapolation() {
+    let material = calibrated(&creep(), "standard-linear-solid");
+    let range = material.range();
+    assert_eq!(range.longest_hold, 0.0, "{range:?}");
+    assert!((35.0..38.0).contains(&range.longest_force_hold), "{range:?}");
+    assert!(range.slowest > 1e-5, "creep is no ramp: {range:?}");
+    let press = ProgramStep::Press { to: 5.0, rate: 10.0 };
+    let held = |duration| [press, ProgramStep::HoldForce { duration }];
+    let at = |times: &[f64]| Sampling::Times(times.to_vec());
+    let shown = material.predict(&held(30.0)[..], &at(&[20.0, 30.0]), 0.95).unwrap();
+    assert!(shown.extrapolations.is_empty(), "{:?}", shown.extrapolations);
+    let (low, high) = shown.displacement_interval(0).unwrap();
+    // u(20 s) = 4.746 mm of the true body.
+    assert!(low < 4.7465e-3 && 4.7455e-3 < high && high - low < 2e-5, "{low} {high}");
+    // Longer creep widens by what creeps after the test alone.
+    let longer = material.predict(&held(60.0)[..], &at(&[20.0, 60.0]), 0.95).unwrap();
+    assert!(
+        matches!(longer.extrapolations[..], [Extrapolation::LongerForceHold { tested, .. }] if tested > 35.0),
+        "{:?}",
+        longer.extrapolations
+    );
+    assert_eq!(longer.displacement_interval(0), shown.displacement_interval(0));
+    // Relaxation was not shown.
+    let squeeze = [ProgramStep::Move { to: 2e-3, rate: 1e-3 }, ProgramStep::HoldPosition { duration: 20.0 }];
+    let relaxed = material.predict(&squeeze[..], &at(&[22.0]), 0.95).unwrap();
+    assert!(
+        relaxed.extrapolations[0]
+            .to_string()
+            .starts_with("the displacement is held, while the test held none"),
+        "{:?}",
+        relaxed.extrapolations
+    );
+    // Along its own record it predicts what it was calibrated on.
+    let again = material.predict_record(&creep(), &options(), &[], 0.95, &mut Unwatched).unwrap();
+    assert!(again.extrapolations.is_empty(), "{:?}", again.extrapolations);
+}
