@@ -4,10 +4,13 @@
 //! |---|---|
 //! | `motion.rs` | the displacement of the jaw: a protocol's steps, or a measured series; straight between its knots |
 //! | `measured.rs` | the motion that noisy samples of a displacement show |
+//! | `hats.rs`, `bends.rs` | its knots by least squares; more of them along a curve |
 //! | `history.rs` | the force on the contact, straight between its knots |
 //! | `any.rs` | steps in displacement and in force, one after the other; any of the three |
 
 mod any;
+mod bends;
+mod hats;
 mod history;
 mod measured;
 mod motion;
