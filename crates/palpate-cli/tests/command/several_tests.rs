@@ -95,6 +95,35 @@ fn a_batch_has_rows_of_each() {
     assert_eq!((keys(&table), keys(&table).len()), (keys(&parameters), 12));
 }
 
+/// The same rows were four tests in Parquet and one test with spread stamps in text.
+#[test]
+fn rows_mixed_by_time_are_cut_in_text_as_in_parquet() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    let file = table(folder);
+    let mut rows: Vec<String> = Vec::new();
+    for (name, hold) in [("left / 1", 5.0), ("right", 8.0)] {
+        rows.extend(ramp_and_hold(hold, 20.0).lines().skip(1).map(|line| format!("{line},{name}")));
+    }
+    rows.sort_by_key(|row| row.split(',').next().map(|time| (1e4 * time.parse::<f64>().unwrap()) as u64));
+    let text = format!("time_s,displacement_mm,force_n,test_id\n{}\n", rows.join("\n"));
+    fs::write(folder.join("mixed.csv"), text).unwrap();
+    let fitted = |file: &str| -> Vec<String> {
+        done(folder, &["batch", file, "--out", "holds.csv"]);
+        let table = fs::read_to_string(folder.join("holds.csv")).unwrap();
+        let mut reader = csv::ReaderBuilder::new().comment(Some(b'#')).from_reader(table.as_bytes());
+        let header = reader.headers().unwrap().clone();
+        let places = ["part", "law", "equilibrium", "amplitude"]
+            .map(|name| header.iter().position(|column| column == name).unwrap());
+        reader
+            .records()
+            .map(Result::unwrap)
+            .map(|row| places.map(|place| row[place].to_owned()).join("|"))
+            .collect()
+    };
+    assert_eq!(fitted("mixed.csv"), fitted(file));
+}
+
 /// A first description of a file of several tests was refused.
 #[test]
 fn one_first_description_serves_all_of_them() {

@@ -314,29 +314,29 @@ impl FileError {
         Self { path, problem }
     }
 
-    /// The same, of lines of which so many more stand above them in the file.
-    pub(crate) fn moved_down(mut self, lines: usize) -> Self {
+    /// The same, of an excerpt of the file: `line_of` gives the line of the file that a line of the excerpt is.
+    pub(crate) fn on_lines(mut self, line_of: &dyn Fn(usize) -> usize) -> Self {
         match &mut self.problem {
             FileProblem::LineTooLong { line, .. }
             | FileProblem::Idle { line, .. }
             | FileProblem::OneColumn { line, .. }
             | FileProblem::AmbiguousDecimal { line, .. }
-            | FileProblem::CellCount { line, .. } => *line += lines,
+            | FileProblem::CellCount { line, .. } => *line = line_of(*line),
             FileProblem::TextInNumbers { place, .. }
             | FileProblem::NotFinite { place, .. }
-            | FileProblem::EmptyCell(place) => place.line += lines,
+            | FileProblem::EmptyCell(place) => place.line = line_of(place.line),
             FileProblem::ManyLacking {
                 place, lines: found, ..
             } => {
-                place.line += lines;
-                found.iter_mut().for_each(|line| *line += lines);
+                place.line = line_of(place.line);
+                found.iter_mut().for_each(|line| *line = line_of(*line));
             }
             FileProblem::Interrupted {
                 line, resumes, source, ..
             } => {
-                (*line, *resumes) = (*line + lines, *resumes + lines);
+                (*line, *resumes) = (line_of(*line), line_of(*resumes));
                 let below = std::mem::replace(&mut **source, Self::from(Cancelled));
-                **source = below.moved_down(lines);
+                **source = below.on_lines(line_of);
             }
             _ => {}
         }

@@ -12,6 +12,30 @@ pub(crate) fn of_text(text: &str) -> Vec<&str> {
     pieces.flat_map(|piece| piece.split('\r')).collect()
 }
 
+/// Some lines of a file, stretch by stretch: which line of the file each of them is.
+#[derive(Debug, Default)]
+pub(crate) struct Excerpt {
+    /// Of each stretch, in order, its first line in the excerpt and in the file.
+    stretches: Vec<(usize, usize)>,
+    lines: usize,
+}
+
+impl Excerpt {
+    /// Adds so many lines, of which the first has this number in the file, from 1.
+    pub(crate) fn push(&mut self, first: usize, lines: usize) {
+        self.stretches.push((self.lines + 1, first));
+        self.lines += lines;
+    }
+
+    /// The line of the file that a line of the excerpt is, and how many lines of the stretch follow it.
+    pub(crate) fn line(&self, own: usize) -> (usize, usize) {
+        let behind = self.stretches.partition_point(|(first, _)| *first <= own);
+        let end = self.stretches.get(behind).map_or(usize::MAX, |(first, _)| *first);
+        let (first, line) = behind.checked_sub(1).map_or((1, 1), |index| self.stretches[index]);
+        (line + (own - first), end - own - 1)
+    }
+}
+
 /// Hands out a file line by line from a buffer of bounded size.
 pub(crate) struct LineReader<'a> {
     input: &'a Input,

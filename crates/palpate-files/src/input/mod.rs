@@ -41,7 +41,7 @@ pub use encoding::Encoding;
 pub(crate) use hdf5::{Content, Hdf5, HeldInGroup};
 pub use idle::IDLE_A_ROW;
 pub(crate) use idle::Idle;
-pub(crate) use lines::{LONGEST_LINE, LineReader};
+pub(crate) use lines::{Excerpt, LONGEST_LINE, LineReader};
 pub use packing::{MOST_UNPACKED, Member, Packing};
 pub(crate) use packing::{is_hdf5, is_zip};
 #[cfg(feature = "arrow")]

@@ -5,6 +5,8 @@
 //! evenly spaced rows is what a recorder with a longer integration time would have written; how many rows each mean
 //! is made of is in the result ([`Columns::averaged`]).
 
+use crate::input::Excerpt;
+
 /// Most rows that are kept of a file (16,777,216). Of more, successive ones are averaged.
 pub const MOST_ROWS: usize = 1 << 24;
 
@@ -99,11 +101,21 @@ impl Columns {
         known.then(|| run.line + (row - run.row))
     }
 
-    /// The same, read from lines of which so many more stand above them in the file.
-    pub(crate) fn moved_down(mut self, lines: usize) -> Self {
-        self.runs.iter_mut().for_each(|run| run.line += lines);
-        self.ignored.footer.iter_mut().for_each(|footer| footer.first_line += lines);
-        self.ignored.lacking.lines.iter_mut().for_each(|line| *line += lines);
+    /// The same, read from an excerpt of the file.
+    pub(crate) fn of_excerpt(mut self, excerpt: &Excerpt) -> Self {
+        let line_of = |line: usize| excerpt.line(line).0;
+        self.ignored.footer.iter_mut().for_each(|footer| footer.first_line = line_of(footer.first_line));
+        self.ignored.lacking.lines.iter_mut().for_each(|line| *line = line_of(*line));
+        let runs = std::mem::take(&mut self.runs);
+        let ends = runs.iter().skip(1).map(|run| run.row).chain([self.rows]);
+        for (run, end) in runs.iter().zip(ends) {
+            let mut row = run.row;
+            while row < end && self.runs.len() < MOST_RUNS {
+                let (line, following) = excerpt.line(run.line + (row - run.row));
+                self.runs.push(Run { row, line });
+                row = row.saturating_add(following).saturating_add(1);
+            }
+        }
         self
     }
 

@@ -10,6 +10,7 @@
 //! | `columns.rs` | columns of numbers as they were read, in bounded memory |
 //! | `footer.rs`, `lacking.rs` | lines behind the data; rows that lack a number |
 //! | `layout.rs` | how a text is written |
+//! | `keyed.rs` | tests that a column tells apart |
 //! | `reader.rs` | what every format can do, and what a caller may fix in advance |
 //! | `block.rs`, `decimal.rs` | the rows of numbers among other lines, and their decimal mark |
 //! | `stacked.rs` | tables one below the other |
@@ -23,6 +24,7 @@ pub(crate) mod decimal;
 pub(crate) mod epoch;
 mod footer;
 pub(crate) mod header;
+mod keyed;
 mod lacking;
 mod layout;
 pub(crate) mod metadata;
@@ -39,6 +41,7 @@ pub(crate) use decimal::Doubt;
 pub(crate) use epoch::EPOCH;
 pub(crate) use footer::Suspect;
 pub(crate) use header::Header;
+pub(crate) use keyed::{Key, KeyedTest, KeyedTests, titled};
 pub(crate) use lacking::Lacking;
 pub use layout::{Day, Layout};
 pub(crate) use part::EXACT_DIGITS;

@@ -64,6 +64,23 @@ pub enum RecordError {
         /// Time found, s.
         found: f64,
     },
+    /// Rows in no order of time, as no clock writes them.
+    #[error(
+        "time must rise from row to row, found {steps} of {rows} rows that are earlier than the row before, first {found} s after \
+         {before} s in row {row}"
+    )]
+    NotInOrder {
+        /// First row that is stamped earlier than the one before it.
+        row: usize,
+        /// Time of the row before, s.
+        before: f64,
+        /// Time found, s.
+        found: f64,
+        /// Rows that are stamped earlier than the one before them.
+        steps: usize,
+        /// All rows.
+        rows: usize,
+    },
     /// More than a slip of a buffer: nothing says which stamps are right.
     #[error(
         "time must rise from row to row, found a clock that steps back by up to {largest} s ({late} of {rows} rows are earlier \
@@ -172,6 +189,7 @@ impl RecordError {
             | Self::NoMeasurement { row, .. }
             | Self::TimeNotRising { row, .. }
             | Self::ClockGoesBack { row, .. }
+            | Self::NotInOrder { row, .. }
             | Self::OutsideTable { row, .. } => Some(*row),
             _ => None,
         }
@@ -194,6 +212,7 @@ impl RecordError {
             Self::ClockGoesBack { late, rows, .. } if late + 1 >= *rows => {
                 "the rows are in reverse order: reverse them, or check the time column"
             }
+            Self::NotInOrder { .. } => "sort the rows by time, those of each test alone, or check the time column",
             Self::ClockGoesBack { .. } => {
                 "if the clock restarts, the file holds several tests: name each in a column test_id, or split it there; otherwise check the time column"
             }

@@ -179,6 +179,26 @@ mod tests {
         assert!(*rows == 4 && (largest - 0.07).abs() < 1e-12);
     }
 
+    /// Shuffled rows of a test that a column names were called several tests that a column should name.
+    #[test]
+    fn rows_in_no_order_are_to_be_sorted() {
+        let time: Vec<f64> = (0..300).map(|i| f64::from(i * 137 % 300)).collect();
+        let error = raw(&time, &time).into_record().unwrap_err();
+        assert!(
+            matches!(
+                error,
+                RecordError::NotInOrder {
+                    row: 3,
+                    steps: 136,
+                    rows: 300,
+                    ..
+                }
+            ),
+            "{error}"
+        );
+        assert!(error.hint().starts_with("sort the rows by time"), "{}", error.hint());
+    }
+
     #[test]
     fn a_clock_that_starts_again_is_an_error() {
         let time: Vec<f64> = (0..300).map(|i| 0.1 * f64::from(i % 200)).collect();

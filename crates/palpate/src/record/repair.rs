@@ -6,6 +6,8 @@ use super::{Clock, Correction, RecordError};
 const ROWS_PER_LATE: usize = 50;
 /// A step back by a larger share of the whole time is no slip of a buffer.
 const BACK: f64 = 0.05;
+/// Fewest steps back of rows in no order, and their least share of all; of those in reverse order it is one.
+const UNORDERED: (usize, f64) = (8, 0.25);
 
 /// Columns with one clock whose stamps rise from row to row, and what was done for it.
 #[derive(Debug)]
@@ -44,6 +46,7 @@ impl Repaired {
         let time = &self.time;
         let (mut latest, mut late, mut largest) = (f64::NEG_INFINITY, 0, 0.0f64);
         let (mut first, mut earliest) = (None, f64::INFINITY);
+        let steps = time.windows(2).filter(|pair| pair[1] < pair[0]).count();
         for (row, stamp) in time.iter().enumerate() {
             if *stamp < latest {
                 late += 1;
@@ -55,12 +58,23 @@ impl Repaired {
         }
         let Some(row) = first else { return Ok(()) };
         if ROWS_PER_LATE * late > time.len() || largest > BACK * (latest - earliest) {
+            let (before, found, rows) = (time[row - 1], time[row], time.len());
+            let share = steps as f64 / rows as f64;
+            if steps >= UNORDERED.0 && (UNORDERED.1..1.0 - UNORDERED.1).contains(&share) {
+                return Err(RecordError::NotInOrder {
+                    row,
+                    before,
+                    found,
+                    steps,
+                    rows,
+                });
+            }
             return Err(RecordError::ClockGoesBack {
                 row,
-                before: time[row - 1],
-                found: time[row],
+                before,
+                found,
                 late,
-                rows: time.len(),
+                rows,
                 largest,
             });
         }

@@ -12,19 +12,17 @@ use super::{
     kept::Kept,
     kind::{Kind, recognise},
     source::Source,
-    tests::{self, Test},
+    tests,
     values::{self, Reading},
 };
 use crate::{
     cell::unit,
     error::{FileError, FileProblem, few, shorten, shown},
-    faults::admits,
     input::Input,
-    table::{ColumnInfo, ColumnKind, Columns, Found, Heard, Part, ReadOptions, ReadPart, SkippedPart, share},
+    table::{
+        ColumnInfo, ColumnKind, Columns, Found, Heard, KeyedTest, Part, ReadOptions, ReadPart, SkippedPart, share,
+    },
 };
-
-/// Most columns of all tests together: each test describes its own.
-const MOST_DESCRIBED: u64 = 1 << 20;
 
 /// Most columns that are named where they are skipped.
 const MOST_NAMED: usize = 8;
@@ -33,7 +31,7 @@ struct Table {
     source: Source,
     /// Index in the file of every column that can be read, and how.
     columns: Vec<(usize, Reading)>,
-    tests: Vec<Test>,
+    tests: Vec<KeyedTest>,
     kept: Mutex<Kept>,
 }
 
@@ -49,19 +47,12 @@ pub(crate) fn look_into(input: &Input, _options: &ReadOptions) -> Result<Found, 
     let (tests, by) = match tests::column(&source) {
         Some(column) => {
             let name = source.schema.field(column).name().clone();
-            let (tests, without) = tests::reported_apart(&source, column)?;
-            if !admits((tests.len() * columns.len()) as u64, MOST_DESCRIBED) {
-                let expected = format!("at most {MOST_DESCRIBED} columns of all tests together");
-                let found = format!("{} tests of {} columns", tests.len(), columns.len());
-                let hint = "rename the column if it does not identify tests, or leave columns out that are not needed";
-                return Err(input.wrong(FileProblem::bad_cell(&format!("column {name}"), expected, found, hint)));
-            }
-            if without > 0 {
-                skipped.push(SkippedPart::new(format!("{without} rows"), format!("nothing in column {name}")));
-            }
-            (tests, Some(name))
+            let reported = tests::reported_apart(&source, column)?;
+            reported.check_described(&name, columns.len()).map_err(|problem| input.wrong(problem))?;
+            skipped.extend(reported.skipped(&name));
+            (reported.tests, Some(name))
         }
-        None => (vec![Test::of_all()], None),
+        None => (vec![KeyedTest::of_all()], None),
     };
     let samples = samples(&source, &columns)?;
     let described: Vec<ColumnInfo> = columns
@@ -75,7 +66,7 @@ pub(crate) fn look_into(input: &Input, _options: &ReadOptions) -> Result<Found, 
         .filter(|field| values::reading(field.data_type()).is_none())
         .map(|field| field.name().as_str())
         .collect();
-    let part = |test: &Test| Part {
+    let part = |test: &KeyedTest| Part {
         name: test.name.clone(),
         written: written(kind, by.as_deref(), test, &passed),
         rows: if by.is_some() { Some(test.count()) } else { source.rows },
@@ -96,7 +87,7 @@ pub(crate) fn look_into(input: &Input, _options: &ReadOptions) -> Result<Found, 
     Ok(Found { parts, skipped, reader })
 }
 
-fn written(kind: Kind, by: Option<&str>, test: &Test, passed: &[&str]) -> String {
+fn written(kind: Kind, by: Option<&str>, test: &KeyedTest, passed: &[&str]) -> String {
     let mut written = match kind {
         Kind::Parquet => "Parquet",
         Kind::File => "Arrow file",
@@ -160,7 +151,7 @@ fn samples(source: &Source, columns: &[(usize, Reading)]) -> Result<Vec<String>,
 
 impl ReadPart for Table {
     fn read(&self, part: usize, columns: &[usize], progress: &mut Heard<'_>) -> Result<Columns, FileError> {
-        let Some(Test { rows, .. }) = self.tests.get(part) else {
+        let Some(KeyedTest { rows, .. }) = self.tests.get(part) else {
             return Ok(Columns::of(columns.len()));
         };
         let fields: Vec<usize> = columns.iter().map(|number| self.columns[number - 1].0).collect();

@@ -52,8 +52,8 @@ fn gather<'t>(
     for (number, table) in tables {
         gathered.insert(number, Vec::new());
         for place in &table.places {
-            let stretch = (table.first_row, table.end.unwrap_or(u32::MAX), number);
-            columns.entry(*place).or_default().push(stretch);
+            let stretches = table.rows.iter().map(|rows| (rows.start, rows.end, number));
+            columns.entry(*place).or_default().extend(stretches);
         }
     }
     columns.values_mut().for_each(|stretches| stretches.sort_unstable());

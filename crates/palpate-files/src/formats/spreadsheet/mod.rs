@@ -10,6 +10,7 @@
 //! | `sample.rs` | the beginning of a sheet |
 //! | `table.rs` | finding the tables in it |
 //! | `stacked.rs` | tables one below the other |
+//! | `keyed.rs` | tests that a column of a table tells apart |
 //! | `read.rs` | reading chosen columns of a table |
 //! | `gathered.rs` | the cells of several tables of one sheet |
 //! | `xlsx/` | workbooks of Office Open XML |
@@ -18,6 +19,7 @@
 mod book;
 mod cell;
 mod gathered;
+mod keyed;
 mod moment;
 mod part;
 mod read;

@@ -8,7 +8,7 @@ use std::{
 use super::{
     book::{Book, Visitor},
     gathered::Gathered,
-    read,
+    keyed, read,
     sample::Sample,
     stacked,
     table::{self, FoundTables, Table},
@@ -19,7 +19,7 @@ use crate::{
     error::FileError,
     input::Input,
     naming::{MEANS, is_listed, words},
-    table::{ColumnKind, Columns, Found, Heard, Part, ReadOptions, ReadPart, SkippedPart, share},
+    table::{ColumnKind, Columns, Found, Heard, KeyedTest, Part, ReadOptions, ReadPart, SkippedPart, share},
 };
 
 /// How a workbook is written.
@@ -94,7 +94,17 @@ pub(crate) fn look_into(input: &Input, options: &ReadOptions) -> Result<Found, F
             let name = if is_stack { format!("{}, table {number}", sheet.name) } else { sheet.name.clone() };
             for table in found.tables {
                 let part = part((&sheet.name, &name), &table, several, found.beside, whole);
-                looked.push((Place { sheet: index, table }, part));
+                match keyed::cut(&input, book.as_ref(), (index, &table))? {
+                    Some(keyed) => {
+                        skipped.extend(keyed.skipped.map(|rows| (index, rows)));
+                        let column = keyed.column;
+                        let tests = keyed.tests.into_iter();
+                        looked.extend(
+                            tests.map(|(test, table)| (Place { sheet: index, table }, of_test(&part, &column, &test))),
+                        );
+                    }
+                    None => looked.push((Place { sheet: index, table }, part)),
+                }
             }
         }
     }
@@ -168,6 +178,17 @@ fn part((sheet, name): (&str, &str), table: &Table, several: bool, beside: usize
         columns: table.columns.clone(),
         metadata: table.metadata.clone(),
         ..Part::default()
+    }
+}
+
+/// One of the tests that a column of this name tells apart in a part.
+fn of_test(part: &Part, column: &str, test: &KeyedTest) -> Part {
+    let title = test.title(column);
+    Part {
+        name: Some(format!("{}, {title}", part.title())),
+        written: format!("{}, those with {column} {}", part.written, test.name.as_deref().unwrap_or_default()),
+        rows: Some(test.count()),
+        ..part.clone()
     }
 }
 

@@ -44,13 +44,16 @@ pub(super) fn read(
         last: None,
         suspect: None,
     };
-    let mut ends = (0, 0);
+    let (mut ends, mut stretch) = ((0, 0), 0);
     visit(&mut |cell, done, total| {
-        if cell.row < table.first_row {
-            return Ok(ControlFlow::Continue(()));
+        while table.rows.get(stretch).is_some_and(|rows| rows.end <= cell.row) {
+            stretch += 1;
         }
-        if table.end.is_some_and(|end| cell.row >= end) {
+        let Some(rows) = table.rows.get(stretch) else {
             return Ok(ControlFlow::Break(()));
+        };
+        if cell.row < rows.start {
+            return Ok(ControlFlow::Continue(()));
         }
         if let Ok(place) = table.places.binary_search(&cell.column) {
             if reading.number.is_some_and(|number| number != cell.row) {
@@ -134,7 +137,8 @@ impl Reading<'_> {
         if let Some(suspect) = self.suspect.take() {
             return Err(suspect.interrupted(&self.input.name, number as usize + 1));
         }
-        let gap = self.last.map_or(0, |last| number - last - 1);
+        let follows = |last: &u32| self.table.stretch(*last) == self.table.stretch(number);
+        let gap = self.last.filter(follows).map_or(0, |last| number - last - 1);
         self.read.ignored.blank += gap as usize;
         self.last = Some(number);
         self.read.push(&self.out, number as usize + 1);

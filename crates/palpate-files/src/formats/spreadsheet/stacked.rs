@@ -15,7 +15,8 @@ pub(super) fn find(pieces: &[Sample], options: &ReadOptions) -> Vec<FoundTables>
     let next = pieces.iter().skip(1).map(|piece| piece.rows.first().map(|row| row.number)).chain([None]);
     let found = pieces.iter().zip(next).map(|(piece, next)| {
         let mut tables = table::find(piece, options);
-        tables.tables.iter_mut().for_each(|table| table.end = next);
+        let end = next.unwrap_or(u32::MAX);
+        tables.tables.iter_mut().for_each(|table| table.rows.iter_mut().for_each(|rows| rows.end = end));
         tables
     });
     let found: Vec<FoundTables> = found.collect();

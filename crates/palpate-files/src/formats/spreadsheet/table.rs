@@ -1,6 +1,6 @@
 //! Finding the tables in the beginning of a sheet, as a person would.
 
-use std::collections::HashMap;
+use std::{collections::HashMap, ops::Range};
 
 use super::{
     cell::{Value, letters},
@@ -19,6 +19,7 @@ use crate::{
 const MOST_NAMED: usize = 1 << 16;
 
 /// A table in a sheet.
+#[derive(Clone)]
 pub(super) struct Table {
     /// How many named values above it go beyond the limit of all.
     pub(super) left_out: usize,
@@ -29,8 +30,8 @@ pub(super) struct Table {
     pub(super) first_row: u32,
     /// Last row of data in the sample, from 0.
     pub(super) last_row: u32,
-    /// Row, from 0, on which what belongs to the next table below begins.
-    pub(super) end: Option<u32>,
+    /// Its rows from the first on, from 0, which may have those of other tables between them and end where the next table below begins.
+    pub(super) rows: Vec<Range<u32>>,
     /// Index in `columns` of the first one of numbers, which tells rows of data from other rows.
     pub(super) leading: usize,
     /// Columns of moments: dates, times of day or durations.
@@ -51,6 +52,11 @@ impl Table {
         };
         let ranges: Vec<String> = groups(&self.places).map(range).collect();
         format!("columns {}", ranges.join(", "))
+    }
+
+    /// Index of the stretch of its rows that a row belongs to or lies above.
+    pub(super) fn stretch(&self, row: u32) -> usize {
+        self.rows.partition_point(|rows| rows.end <= row)
     }
 
     pub(super) fn names_time(&self) -> bool {
@@ -179,7 +185,7 @@ fn table_below(
         columns,
         first_row,
         last_row,
-        end: None,
+        rows: std::iter::once(first_row..u32::MAX).collect(),
         leading,
         moments: firsts.iter().map(|first| is_moment(*first)).collect(),
         dated: firsts.iter().map(|first| matches!(first, Some(Value::Moment(days)) if *days >= 1.0)).collect(),

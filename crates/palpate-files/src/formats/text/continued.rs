@@ -18,8 +18,8 @@ pub(super) fn joined(text: &str, path: &Path, sections: Vec<Section>) -> Vec<Sec
             (Some((above, Some(before))), Some(behind))
                 if continues(text, above, &section) && before.goes_on_to(behind.first) =>
             {
-                above.repeated.push(section.body.start..section.body.start + section.names(text).len());
-                above.body.end = section.body.end;
+                above.repeated += 1;
+                above.stretches.extend(section.below_names(text));
                 *before = Span {
                     first: before.first,
                     last: behind.last,
@@ -59,14 +59,14 @@ fn continues(text: &str, above: &Section, section: &Section) -> bool {
         let label = |column: &ColumnInfo| (column.name.clone(), column.unit.clone());
         layout.columns.iter().map(label).collect()
     };
-    let known: Vec<&str> = lines::of_text(above.names(text)).into_iter().map(str::trim).collect();
-    let is_known = |line: &&str| line.trim().is_empty() || known.contains(&line.trim());
+    let known: Vec<&str> = above.names(text).into_iter().map(str::trim).collect();
+    let is_known = |line: &str| line.trim().is_empty() || known.contains(&line.trim());
     above.title.is_none()
         && section.title.is_none()
         && section.layout.header_line.is_some()
         && above.layout.decimal == section.layout.decimal
         && named(&above.layout) == named(&section.layout)
-        && lines::of_text(section.names(text)).iter().all(is_known)
+        && section.names(text).into_iter().all(is_known)
 }
 
 /// The clock of a table of two rows or more.
@@ -74,7 +74,8 @@ fn span(text: &str, path: &Path, section: &Section) -> Option<Span> {
     let time = candidates(&section.layout.columns, Quantity::Time).first()?.number;
     let plan = RowPlan::new(path, &section.layout, &[time]).ok()?;
     let mut read = [0.0];
-    let rows = lines::of_text(&text[section.body.clone()]).into_iter().skip(section.layout.first_data_line - 1);
+    let own = section.text(text);
+    let rows = lines::of_text(&own).into_iter().skip(section.layout.first_data_line - 1);
     let times: Vec<f64> =
         rows.filter_map(|line| plan.read(line.as_bytes(), &mut read).ok().map(|()| read[0])).collect();
     match times[..] {

@@ -1,6 +1,6 @@
 //! Several tests below one line of names: a column tells them apart, or the clock begins again.
 
-use std::collections::HashSet;
+use std::{collections::HashSet, ops::Range};
 
 use super::{
     row::RowPlan,
@@ -12,40 +12,17 @@ use crate::{
     error::FileError,
     input::{Input, LONGEST_LINE, LineReader, Packing},
     naming::Quantity,
-    table::{ColumnKind, Found, Layout, ReadOptions, candidates},
+    table::{ColumnKind, Found, Key, KeyedTest, KeyedTests, Layout, ReadOptions, candidates, titled},
 };
-
-/// Names of columns that tell tests apart, in small letters without blanks and marks; a number may stand behind each.
-const NAMES: [&str; 22] = [
-    "testid",
-    "test",
-    "testno",
-    "testnumber",
-    "specimen",
-    "specimenid",
-    "specimenno",
-    "specimennumber",
-    "sampleid",
-    "samplename",
-    "runid",
-    "curveid",
-    "prüfling",
-    "probe",
-    "probennr",
-    "probennummer",
-    "probenid",
-    "éprouvette",
-    "essai",
-    "provino",
-    "probeta",
-    "ensayo",
-];
 
 /// Fewest rows of a test.
 const FEWEST: usize = 8;
 
 /// A clock begins again where it returns to where it began, to this share of the time since: none that passes midnight does.
 const AGAIN: f64 = 0.05;
+
+/// Name of a test, and its lines.
+type Run = (String, Vec<Range<usize>>);
 
 /// Looks for several tests below one line of names; `None` where there is one.
 pub(super) fn look_into(
@@ -56,7 +33,7 @@ pub(super) fn look_into(
     let Some(first) = sampled.get(layout.first_data_line - 1..) else {
         return Ok(None);
     };
-    let named = named(layout);
+    let key = key(layout);
     let begins_again = || match clock(input, layout) {
         Some(plan) => match restarts(first.iter().copied(), &plan) {
             Some(found) if found.is_empty() => begins_again_later(input, layout, (sampled, &plan)),
@@ -64,31 +41,53 @@ pub(super) fn look_into(
         },
         None => Ok(false),
     };
-    if options.header.is_some() || named.is_none() && !begins_again()? {
+    if options.header.is_some() || key.is_none() && !begins_again()? {
         return Ok(None);
     }
     let text = sections::whole(input, layout.encoding)?;
     let all = sections::numbered(&text);
     let head = layout.first_data_line - 1;
-    let rows = || all[head..].iter().map(|(_, line)| *line);
-    let starts = match named.and_then(|column| changes(rows(), layout, column)) {
-        Some(starts) => starts,
-        None => clock(input, layout).and_then(|plan| restarts(rows(), &plan)).unwrap_or_default(),
-    };
-    let goes_on =
-        clock(input, layout).is_some_and(|plan| starts.iter().all(|start| goes_on(&all[..head + start + 1], &plan)));
-    if starts.is_empty() || goes_on {
+    let rows = &all[head..];
+    let (mut runs, mut passed): (Vec<Run>, _) = (Vec::new(), None);
+    if let Some(key) = key {
+        let name = layout.columns[key.column].name.as_deref().unwrap_or_default();
+        let cells =
+            rows.iter().enumerate().filter(|(_, (_, line))| !line.trim().is_empty()).map(|(row, (_, line))| {
+                (row as u64, Some(cell(line, layout, key.column)).filter(|cell| !cell.is_empty()))
+            });
+        let (plan, mut read) = (clock(input, layout), [0.0]);
+        let mut time = |row: u64| {
+            let (_, line) = rows.get(row as usize)?;
+            plan.as_ref()?.read(line.as_bytes(), &mut read).ok().map(|()| read[0])
+        };
+        let tests = KeyedTests::among((key, name), &cells, &mut time).map_err(|problem| input.wrong(problem))?;
+        passed = tests.as_ref().and_then(|tests| tests.skipped(name));
+        let ranges = |test: &KeyedTest| {
+            test.rows.iter().map(|rows| head + rows.start as usize..head + rows.end as usize).collect()
+        };
+        let tests = tests.into_iter().flat_map(|tests| tests.tests);
+        runs = tests.map(|test| (test.title(name), ranges(&test))).collect();
+    }
+    if runs.is_empty()
+        && let Some(plan) = clock(input, layout)
+    {
+        let starts = restarts(rows.iter().map(|(_, line)| *line), &plan).unwrap_or_default();
+        let bounds = [0].into_iter().chain(starts).chain([rows.len()]);
+        let bounds: Vec<usize> = bounds.map(|row| head + row).collect();
+        let ranges = bounds.windows(2).map(|pair| std::iter::once(pair[0]..pair[1]).collect());
+        runs = titles(&all, &bounds, layout).into_iter().zip(ranges).collect();
+    }
+    if runs.len() < 2 {
         return Ok(None);
     }
-    let bounds: Vec<usize> = [0].into_iter().chain(starts).chain([all.len() - head]).map(|row| head + row).collect();
     // What stands above the names belongs to the first, and so to all.
     let skip = options.skip_lines.unwrap_or(0).min(head);
     let names = layout.header_line.map_or(head, |line| line - 1);
-    let places = bounds.windows(2).zip(titles(&all, &bounds, layout, named)).map(|(pair, title)| Place {
+    let places = runs.into_iter().enumerate().map(|(number, (title, lines))| Place {
         title: Some(title),
         is_step: false,
-        names: if pair[0] == head { skip..head } else { names..head },
-        lines: pair[0]..pair[1],
+        names: if number == 0 { skip..head } else { names..head },
+        lines,
     });
     let options = ReadOptions {
         delimiter: Some(layout.delimiter),
@@ -99,21 +98,18 @@ pub(super) fn look_into(
     };
     let places: Vec<Place> = places.collect();
     sections::check_number(input, &places)?;
-    let (found, skipped) = sections::laid_out(&all, places, (layout.encoding, &options));
+    let (found, mut skipped) = sections::laid_out(&all, places, (layout.encoding, &options));
+    skipped.extend(passed);
     Ok(Some(sections::of_sections(input, text, found, skipped, layout.encoding)))
 }
 
-/// Index of the column that is named as one that tells tests apart.
-fn named(layout: &Layout) -> Option<usize> {
-    let tells = |name: &str| {
-        let letters: String = name.to_lowercase().chars().filter(|letter| letter.is_alphabetic()).collect();
-        NAMES.contains(&letters.as_str())
-    };
-    let usable = |kind| matches!(kind, ColumnKind::Text | ColumnKind::Number);
-    layout
-        .columns
-        .iter()
-        .position(|column| usable(column.kind) && column.unit.is_none() && column.name.as_deref().is_some_and(tells))
+/// The column that is named as one that tells tests apart.
+fn key(layout: &Layout) -> Option<Key> {
+    let usable =
+        layout.columns.iter().enumerate().filter(|(_, column)| {
+            matches!(column.kind, ColumnKind::Text | ColumnKind::Number) && column.unit.is_none()
+        });
+    Key::among(usable.filter_map(|(index, column)| Some((index, column.name.as_deref()?))))
 }
 
 /// What reads the column of time, where one is named so.
@@ -160,40 +156,6 @@ fn cell<'t>(line: &'t str, layout: &Layout, column: usize) -> &'t str {
     cells(line, layout.delimiter).get(column).map_or("", |cell| cell.trim())
 }
 
-/// Rows at which a column changes; `None` where it tells no tests apart: some are too short, or one comes back.
-fn changes<'t>(rows: impl Iterator<Item = &'t str>, layout: &Layout, column: usize) -> Option<Vec<usize>> {
-    let (mut starts, mut known, mut begun, mut last) = (Vec::new(), HashSet::new(), 0, None);
-    for (row, line) in rows.enumerate() {
-        let found = cell(line, layout, column);
-        if found.is_empty() || last == Some(found) {
-            continue;
-        }
-        if !known.insert(found) || last.is_some() && row - begun < FEWEST {
-            return None;
-        }
-        if last.is_some() {
-            starts.push(row);
-            begun = row;
-        }
-        last = Some(found);
-    }
-    (!starts.is_empty()).then_some(starts)
-}
-
-/// Whether the clock goes on to the last of these lines as it went before: parts of one test have names, too.
-fn goes_on(lines: &[Line<'_>], plan: &RowPlan<'_>) -> bool {
-    /// How many times the step before.
-    const LONGEST: f64 = 3.0;
-    let mut read = [0.0];
-    let mut time = |line: &Line<'_>| plan.read(line.1.as_bytes(), &mut read).ok().map(|()| read[0]);
-    let mut last = lines.iter().rev();
-    let mut next = || last.next().and_then(&mut time);
-    match (next(), next(), next()) {
-        (Some(here), Some(before), Some(first)) => (0.0..=LONGEST * (before - first)).contains(&(here - before)),
-        _ => false,
-    }
-}
-
 /// Rows at which the clock begins again; `None` where it steps back elsewhere.
 fn restarts<'t>(rows: impl Iterator<Item = &'t str>, plan: &RowPlan<'_>) -> Option<Vec<usize>> {
     /// Share of the time before by which the second row of a test follows the first at most: a single stamp that is wrong is no test.
@@ -228,19 +190,18 @@ fn restarts<'t>(rows: impl Iterator<Item = &'t str>, plan: &RowPlan<'_>) -> Opti
     Some(starts)
 }
 
-/// What tests are called: by the column that tells them apart, or by their number.
-fn titles(all: &[Line<'_>], bounds: &[usize], layout: &Layout, named: Option<usize>) -> Vec<String> {
+/// What tests between these lines are called: by a column that has one value for each, or by their number.
+fn titles(all: &[Line<'_>], bounds: &[usize], layout: &Layout) -> Vec<String> {
     let of = |column: usize| -> Option<Vec<String>> {
         let name = layout.columns[column].name.as_deref()?;
         let mut known = HashSet::new();
         let title = |pair: &[usize]| {
             let [first, last] = [pair[0], pair[1] - 1].map(|line| cell(all[line].1, layout, column));
             let is_own = !first.is_empty() && (first == last || last.is_empty()) && known.insert(first.to_owned());
-            let is_number = first.bytes().all(|byte| byte.is_ascii_digit());
-            is_own.then(|| if is_number { format!("{name} {first}") } else { first.to_owned() })
+            is_own.then(|| titled(name, first))
         };
         bounds.windows(2).map(title).collect()
     };
-    let by_column = named.into_iter().chain(0..layout.columns.len()).find_map(of);
+    let by_column = (0..layout.columns.len()).find_map(of);
     by_column.unwrap_or_else(|| (1..bounds.len()).map(|number| format!("run {number}")).collect())
 }

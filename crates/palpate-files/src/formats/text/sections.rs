@@ -14,7 +14,11 @@ use std::{collections::HashMap, ops::Range};
 
 use palpate::{number::counted, record::LabelledSegment};
 
-use super::{columns::read_columns, continued, detect, section::Section};
+use super::{
+    columns::read_columns,
+    continued, detect,
+    section::{Section, Stretch},
+};
 use crate::{
     cell::{Cell, Delimiter, Fields, cells, number},
     error::{FileError, FileProblem},
@@ -84,7 +88,7 @@ pub(super) fn look_into(
     check_number(input, &places)?;
     let (sections, skipped) = laid_out(&all, places, (encoding, &fixed));
     let sections = continued::joined(&text, &input.name, sections);
-    let is_joined = sections.iter().any(|section| !section.repeated.is_empty());
+    let is_joined = sections.iter().any(|section| section.repeated > 0);
     let titled = sections.len() > 1 && sections.iter().any(|section| section.title.is_some());
     if timed(&sections) < if titled || is_joined { 1 } else { 2 } {
         return Ok(None);
@@ -178,13 +182,13 @@ fn first(line: &str, delimiter: Delimiter) -> &str {
     std::str::from_utf8(cell).unwrap_or_default()
 }
 
-/// A test by the indices of its lines: those of its names, where these stand elsewhere, and its own.
+/// A test by the indices of its lines: those of its names, where these stand elsewhere, and its own, stretch by stretch.
 pub(super) struct Place {
     pub(super) title: Option<String>,
     /// Whether the title is that of these rows alone, and not of a result of several intervals.
     pub(super) is_step: bool,
     pub(super) names: Range<usize>,
-    pub(super) lines: Range<usize>,
+    pub(super) lines: Vec<Range<usize>>,
 }
 
 /// The tables of a text that stand one below the other.
@@ -203,7 +207,7 @@ fn stacked(all: &[Line<'_>], skip: usize, delimiter: Delimiter) -> Vec<Place> {
             title,
             is_step,
             names: 0..0,
-            lines,
+            lines: vec![lines],
         }
     };
     bounds.windows(2).map(place).collect()
@@ -251,12 +255,14 @@ fn by_action(all: &[Line<'_>], delimiter: Delimiter) -> Vec<Place> {
     for (index, (_, line)) in all.iter().enumerate().skip(names + 1).filter(|(_, (_, line))| !line.trim().is_empty()) {
         let action = first(line, delimiter);
         match places.last_mut() {
-            Some(place) if action.is_empty() || place.title.as_deref() == Some(action) => place.lines.end = index + 1,
+            Some(place) if action.is_empty() || place.title.as_deref() == Some(action) => {
+                place.lines.iter_mut().for_each(|lines| lines.end = index + 1);
+            }
             _ => places.push(Place {
                 title: Some(action.to_owned()),
                 is_step: true,
                 names: names..names + 1,
-                lines: index..index + 1,
+                lines: std::iter::once(index..index + 1).collect(),
             }),
         }
     }
@@ -271,21 +277,20 @@ pub(super) fn laid_out(
 ) -> (Vec<Section>, Vec<SkippedPart>) {
     let (mut sections, mut skipped) = (Vec::new(), Vec::new());
     for (place, number) in places.into_iter().zip(1..) {
-        let own = &all[place.lines.clone()];
-        let head = &all[place.names.clone()];
-        let lines: Vec<&str> = head.iter().chain(own).map(|(_, line)| *line).take(LAYOUT_LINES).collect();
+        let ranges = || [place.names.clone()].into_iter().chain(place.lines.iter().cloned());
+        let own = || ranges().flat_map(|range| &all[range]).map(|(_, line)| *line);
+        let lines: Vec<&str> = own().take(LAYOUT_LINES).collect();
         let layout = detect::rows(&lines, options);
         match layout.and_then(|block| detect::of_rows(&lines, block, encoding, options)) {
             Ok(layout) => sections.push(Section {
-                held: place.title.as_deref().filter(|title| place.is_step && is_held(title)).map(|_| {
-                    let rows = own.iter().skip((layout.first_data_line - 1).saturating_sub(head.len()));
-                    rows.filter(|(_, line)| !line.trim().is_empty()).count()
-                }),
+                held: place
+                    .title
+                    .as_deref()
+                    .filter(|title| place.is_step && is_held(title))
+                    .map(|_| own().skip(layout.first_data_line - 1).filter(|line| !line.trim().is_empty()).count()),
                 title: place.title,
-                head: bytes(head),
-                body: bytes(own),
-                repeated: Vec::new(),
-                before: place.lines.start - head.len(),
+                stretches: ranges().filter_map(|range| stretch(all, range)).collect(),
+                repeated: 0,
                 layout,
             }),
             Err(_) => {
@@ -302,12 +307,15 @@ fn is_held(title: &str) -> bool {
     LabelledSegment::new(title, 0.0, 0.0).is_some_and(|label| label.holds)
 }
 
-/// The bytes of successive lines.
-fn bytes(lines: &[Line<'_>]) -> Range<usize> {
-    match (lines.first(), lines.last()) {
-        (Some((begin, _)), Some((last, line))) => *begin..last + line.len(),
-        _ => 0..0,
-    }
+/// Successive lines by their indices; `None` where there are none.
+fn stretch(all: &[Line<'_>], range: Range<usize>) -> Option<Stretch> {
+    let (begin, _) = all.get(range.start).filter(|_| !range.is_empty())?;
+    let (last, line) = all.get(range.end - 1)?;
+    Some(Stretch {
+        first: range.start + 1,
+        lines: range.len(),
+        bytes: *begin..last + line.len(),
+    })
 }
 
 /// The tests as parts of the file. What the lines above the first name, such as the geometry of a rheometer, belongs to all.
@@ -335,13 +343,13 @@ fn parts(sections: &[Section], encoding: Encoding) -> Vec<Part> {
             None if sections.len() == 1 => None,
             None => Some(format!("table {number}")),
         };
-        let again = match section.repeated.len() {
+        let again = match section.repeated {
             0 => String::new(),
             count => format!(", names repeated {}", counted(count, "time")),
         };
         let layout = Layout {
             encoding,
-            first_data_line: section.layout.first_data_line + section.before,
+            first_data_line: section.excerpt().line(section.layout.first_data_line).0,
             ..section.layout.clone()
         };
         Part {
@@ -361,14 +369,14 @@ impl ReadPart for Sections {
         let Some(section) = self.sections.get(part) else {
             return Ok(Columns::of(columns.len()));
         };
-        let (head, body) = (&self.text[section.head.clone()], section.rows(&self.text));
-        let text = if head.is_empty() { body } else { format!("{head}\n{body}") };
-        let input = Input::from_bytes(&self.input.name, text.into_bytes())?;
+        let input = Input::from_bytes(&self.input.name, section.text(&self.text).into_bytes())?;
         let layout = Layout {
             encoding: Encoding::Utf8,
             ..section.layout.clone()
         };
         let read = read_columns(&input, &layout, columns, progress);
-        read.map(|read| read.moved_down(section.before)).map_err(|error| error.moved_down(section.before))
+        let excerpt = section.excerpt();
+        read.map(|read| read.of_excerpt(&excerpt))
+            .map_err(|error| error.on_lines(&|line| excerpt.line(line).0))
     }
 }

@@ -200,6 +200,41 @@ fn tables_one_below_the_other_are_tests_of_their_own() {
     assert_eq!((second.values[0][0], second.values[0][9], second.line_of(0)), (0.0, 13.5, Some(first as usize + 6)));
 }
 
+/// Rows of several tests in one table were read as one test.
+#[test]
+fn rows_of_a_table_are_tests_by_the_column_that_names_them() {
+    let names = || vec![vec![T("Specimen"), T("Time (s)"), T("Force (N)")]];
+    let row = |test: usize, at: usize| {
+        let force = (10 * test + at) as f64;
+        vec![T(["K1", "K2"][test]), N(at as f64), N(force)]
+    };
+    let (mut mixed, mut apart) = (names(), names());
+    mixed.extend((0..10).flat_map(|at| [0, 1].map(|test| row(test, at))));
+    apart.extend((0..2).flat_map(|test| (0..10).map(move |at| (test, at))).map(|(test, at)| row(test, at)));
+    for table in [&mixed, &apart] {
+        table_of_two(table);
+    }
+    let mut one = names();
+    one.extend((0..10).map(|at| row(0, at)));
+    let contents = open(&Book::of(&[("Messung", &one)]).bytes()).expect("a workbook");
+    assert_eq!(contents.parts.iter().map(Part::title).collect::<Vec<_>>(), ["Messung"]);
+}
+
+fn table_of_two(table: &[Vec<C>]) {
+    let mut table = table.to_vec();
+    table.push(vec![T("a remark"), E, E]);
+    let contents = open(&Book::of(&[("Messung", &table)]).bytes()).expect("a workbook");
+    let found: Vec<(&str, Option<u64>)> = contents.parts.iter().map(|part| (part.title(), part.rows)).collect();
+    assert_eq!(found.iter().map(|(title, _)| *title).collect::<Vec<_>>(), ["Messung, K1", "Messung, K2"]);
+    for part in [1, 0] {
+        let columns = read(&contents, part, &[2, 3]).expect("columns");
+        assert_eq!(columns.values[0], (0..10).map(f64::from).collect::<Vec<_>>());
+        assert_eq!((columns.values[1][3], columns.ignored.blank), (10.0 * part as f64 + 3.0, 0));
+        let line = table.iter().position(|row| row.get(2) == Some(&N(10.0 * part as f64 + 3.0))).expect("a row") + 1;
+        assert_eq!(columns.line_of(3), Some(line));
+    }
+}
+
 #[test]
 fn tables_below_a_long_one_are_found() {
     let mut sheet: Vec<Vec<C>> = vec![vec![T("t"), T("F")], vec![T("s"), T("N")]];

@@ -19,7 +19,7 @@ pub(crate) struct Book {
 }
 
 /// What a cell holds: nothing, a number, a text, or XML as it is.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum C {
     E,
     N(f64),

@@ -93,6 +93,51 @@ fn what_is_one_test_stays_one() {
     one(format!("Specimen;Time (s);Force (N)\n{}", rows(1, |_| "K".to_owned(), |_| 0)));
 }
 
+/// Rows sorted by time, or of tests that come back, were read as one test with a clock that stands or steps back.
+#[test]
+fn rows_of_several_tests_may_be_mixed_in_a_text() {
+    let rows = |order: &mut dyn Iterator<Item = (usize, usize)>| -> String {
+        order.map(|(test, at)| format!("{at},T{test},{}.{at}\n", test + 1)).collect()
+    };
+    let by_time = rows(&mut (0..10).flat_map(|at| [2, 0, 1].map(|test| (test, at))));
+    let revisited = rows(
+        &mut [0, 5]
+            .into_iter()
+            .flat_map(|from| [2, 0, 1].map(|test| (test, from)))
+            .flat_map(|(test, from)| (from..from + 5).map(move |at| (test, at))),
+    );
+    for rows in [by_time, revisited] {
+        let text = format!("Radius,10,mm\nTime (s),test_id,Force (N)\n{rows}Remark,,\n");
+        let contents = open(&text);
+        assert_eq!(titles(&contents), ["T2", "T0", "T1"], "{text}");
+        assert_eq!(contents.parts.iter().map(|part| part.metadata.len()).collect::<Vec<_>>(), [1, 1, 1]);
+        for (part, load) in [(0, 3.0), (1, 1.0), (2, 2.0)] {
+            assert_eq!(forces(&contents, part)[4], load + 0.4);
+        }
+        // Lines are those of the file.
+        let line = text.lines().position(|line| line == "7,T0,1.7").expect("a row") + 1;
+        let read = contents.read(1, &[1, 3], &mut |_, _| Ok(())).expect("columns");
+        assert_eq!(read.line_of(7), Some(line));
+        let error: FileError =
+            open(&text.replace("7,T0,1.7", "7,T0,x")).read(1, &[1, 3], &mut |_, _| Ok(())).unwrap_err();
+        assert!(error.to_string().contains(&format!("line {line}, column 3")), "{error}");
+        // A row without a name belongs to none of the tests between which it stands.
+        let lacking = open(&text.replace("7,T0,1.7", "7,,1.7"));
+        assert_eq!(lacking.read(1, &[1], &mut |_, _| Ok(())).expect("columns").rows(), 9);
+        assert!(
+            lacking.skipped.iter().any(|rows| rows.reason == "nothing in column test_id"),
+            "{:?}",
+            lacking.skipped
+        );
+    }
+    // An identity cuts where a mere word does not: the clock goes on.
+    let goes_on = |name: &str| {
+        let row = |at: usize| format!("{at};{};{at}.5\n", ["a", "b"][at / 10]);
+        titles(&open(&format!("Time (s);{name};Force (N)\n{}", (0..20).map(row).collect::<String>()))).len()
+    };
+    assert_eq!((goes_on("specimen_id"), goes_on("Specimen")), (2, 1));
+}
+
 /// Of a text of several specimens whose first has more lines than a layout is found out from, all was one test.
 #[test]
 fn a_clock_that_begins_again_far_below_begins_a_test() {
