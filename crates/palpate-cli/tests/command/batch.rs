@@ -1,6 +1,7 @@
 //! `palpate batch`: many records to one table, whatever some of them are like, and however often it is stopped.
 #![expect(clippy::unwrap_used, reason = "a test that cannot run has failed")]
 
+use std::collections::BTreeSet;
 use std::fs;
 use std::path::Path;
 use std::process::{Command, Stdio};
@@ -275,6 +276,34 @@ fn parquet_holds_what_csv_holds() {
     }
     let others = rows.iter().filter(|row| row.iter().any(|cell| cell == "standard-linear-solid")).count();
     assert_eq!(others, 3);
+}
+
+/// Only the laws of `--laws` were compared, each table had two zeros of the criterion and two denominators of the residuals, and the
+/// residuals of other laws than the latency law were left out.
+#[test]
+fn the_latency_law_takes_part_in_a_comparison_on_one_scale() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    records(folder, 1);
+    done(folder, &["batch", "curves", "--out", "holds.csv", "--laws", "standard-linear-solid,stretched"]);
+    let table = lines(folder, "holds.csv");
+    let numbers =
+        |name: &str| -> Vec<Option<f64>> { column(&table, name).iter().map(|cell| cell.parse().ok()).collect() };
+    let (laws, criteria, errors) = (column(&table, "law"), numbers("delta_bic"), numbers("holdout_error"));
+    assert_eq!(laws[0], "latency");
+    let compared: BTreeSet<&str> =
+        laws.iter().zip(&errors).filter(|(_, error)| error.is_some()).map(|(law, _)| law.as_str()).collect();
+    assert_eq!(compared, BTreeSet::from(["latency", "standard-linear-solid", "stretched"]));
+    assert_eq!(
+        criteria.iter().map(Option::is_some).collect::<Vec<_>>(),
+        errors.iter().map(Option::is_some).collect::<Vec<_>>()
+    );
+    assert_eq!(criteria.iter().filter(|value| **value == Some(0.0)).count(), 1);
+    let (rmse, shares) = (numbers("rmse"), numbers("relative_rmse"));
+    let change = rmse[0].unwrap() / shares[0].unwrap();
+    for (rmse, share) in rmse.iter().zip(&shares) {
+        assert!((rmse.unwrap() / share.unwrap() / change - 1.0).abs() < 1e-9, "{rmse:?} {share:?}");
+    }
 }
 
 /// A link to a file that is no longer there was passed over without a word.

@@ -30,7 +30,7 @@ use std::time::Instant;
 use palpate::analysis::{AnalysisOptions, examine};
 use palpate::fit::IntervalMethod;
 use palpate::forecast::CompareOptions;
-use palpate::laws::Law;
+use palpate::laws::{ExponentChoice, Law};
 use palpate::number::counted;
 use palpate::segment::HoldStart;
 use palpate::watch::{Progress, Watch};
@@ -63,7 +63,7 @@ use table::{Format, Out};
 #[cfg_attr(feature = "clap", derive(clap::Args))]
 #[serde(default, deny_unknown_fields)]
 pub struct Batch {
-    /// Laws to fit in addition to the latency law.
+    /// Laws to fit and compare in addition to the latency law, whose exponent is estimated in the comparison.
     #[schemars(with = "Option<Vec<String>>")]
     #[cfg_attr(feature = "clap", arg(
         long, value_name = "LAW,…", value_delimiter = ',', value_parser = crate::typed::law,
@@ -290,7 +290,12 @@ impl Batch {
         options.fit.intervals = self.intervals.unwrap_or(options.fit.intervals);
         options.segment.hold_start = self.hold_start.unwrap_or(options.segment.hold_start);
         options.compare = self.laws.as_ref().map(|laws| {
-            let laws = laws.clone();
+            let latency = Law::Latency {
+                exponent: ExponentChoice::Free,
+            };
+            // None are all, the latency law among them.
+            let added = (!laws.is_empty() && !laws.contains(&latency)).then_some(latency);
+            let laws = added.into_iter().chain(laws.iter().copied()).collect();
             let mut compare = CompareOptions {
                 laws,
                 ..CompareOptions::default()

@@ -75,9 +75,9 @@ const ANSWER: [Column; 9] = [
 
 /// Columns of the fit, of whichever law it is.
 const FIT: [Column; 5] = [
-    (Number, "rmse", |line| line.of_law(|fit| fit.rmse.into(), |_| Value::Null)),
+    (Number, "rmse", |line| line.rmse().into()),
     (Number, "relative_rmse", |line| line.of_law(|fit| fit.relative_rmse.into(), |law| law.rmse.into())),
-    (Number, "delta_bic", |line| line.of_law(|fit| fit.delta_bic.into(), |law| law.delta_bic.into())),
+    (Number, "delta_bic", |line| line.delta_bic().into()),
     (Text, "termination", |line| match line.hold {
         Some(_) => line.of_law(|fit| fit.termination.clone().into(), ending),
         None => line
@@ -216,6 +216,24 @@ impl Line<'_> {
     fn compared(&self) -> Option<&LawDocument> {
         let name = self.name()?;
         self.hold?.comparison.as_ref()?.laws.iter().find(|law| law.law == name)
+    }
+
+    /// The root mean square residual in the unit of the signal.
+    fn rmse(&self) -> Option<f64> {
+        match &self.law {
+            LawRow::Latency(fit) => Some(fit.rmse),
+            LawRow::Other(law) => Some(law.rmse? * self.hold?.comparison.as_ref()?.change),
+            LawRow::None => None,
+        }
+    }
+
+    /// The criterion less the lowest of all laws that it is compared with: of the comparison, or of the exponents where there is none. The two
+    /// count independent samples by different residuals, so that one hold has one of them.
+    fn delta_bic(&self) -> Option<f64> {
+        match (&self.hold?.comparison, &self.law) {
+            (None, LawRow::Latency(fit)) => fit.delta_bic,
+            _ => self.compared()?.delta_bic,
+        }
     }
 
     /// What is judged of the hold, in the row of the recommended law.

@@ -10,6 +10,7 @@ documents! {
     FitDocument(fit: &LatencyFit, hold: &HoldAnalysis, delta_bic: Option<f64>, prediction: Option<HoldoutError>) with {
         let is_good = fit.termination.is_good() || fit.equilibrium().standard_error.is_some();
         let newtons = |value: f64| Some(value * hold.force_per_signal).filter(|_| is_good);
+        let relative_rmse = hold.relative_rmse(fit).filter(|share| share.is_finite());
         let pascals = |value: f64| newtons(value).zip(hold.force_per_modulus).map(|(force, per_modulus)| force / per_modulus);
     } {
         /// `latency:N` with the exponent given, `latency` with the exponent estimated.
@@ -30,8 +31,8 @@ documents! {
         equilibrium_modulus_standard_error_pa?: Option<f64> = fit.equilibrium().standard_error.and_then(pascals),
         /// Root mean square residual in the unit of the fitted quantity: strain, N, or 1/s in the rate domain.
         rmse: f64 = fit.rmse,
-        /// The same as a share of the excess at the start of the fit.
-        relative_rmse: Option<f64> = Some(fit.rmse / fit.amplitude().value.abs()).filter(|share| share.is_finite()),
+        /// The same as a share of the change of the signal over the fitted samples; `null` in the rate domain.
+        relative_rmse: Option<f64> = relative_rmse,
         /// Correlation of neighbouring residuals.
         residual_correlation: f64 = fit.residual_correlation,
         /// The noise that the residuals show: `white`, `AR(1)`, `white and AR(1)`, `1/f^1.0`, …, with `, uneven` where its size follows the

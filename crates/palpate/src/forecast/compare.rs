@@ -180,7 +180,7 @@ fn row(
 }
 
 /// Change of the signal over the hold: first sample to the mean of the last hundredth.
-fn change(values: &[f64]) -> f64 {
+pub(crate) fn change(values: &[f64]) -> f64 {
     let tail = (values.len() / 100).max(1);
     (values[0] - mean(&values[values.len() - tail..])).abs()
 }

@@ -23,6 +23,7 @@ mod sentence;
 mod stacked;
 mod verdict;
 
+pub(crate) use compare::change;
 pub use compare::{KnownFit, compare_laws, compare_laws_watched};
 pub use criteria::{Criteria, ForwardScore, criteria};
 pub use options::{CompareOptions, RampChoice};

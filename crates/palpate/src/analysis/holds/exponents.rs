@@ -3,7 +3,7 @@
 use super::hold::{HoldAnalysis, HoldoutError};
 use crate::analysis::{AnalysisOptions, Finding};
 use crate::fit::{ExponentChoice, FitError, LatencyFit, fit_hold_watched, fit_rates_watched, fitted, select_order};
-use crate::statistics::mean;
+use crate::forecast::change;
 use crate::watch::{Cancelled, Progress, Watch};
 
 /// What a list is extended by: steps of about 1.4 up to the largest exponent of a free fit.
@@ -125,12 +125,10 @@ fn forecast(fit: &LatencyFit, times: &[f64], values: &[f64], fitted: usize) -> O
         return None;
     }
     let square: f64 = beyond.map(|(t, y)| (y - fit.predict(*t)).powi(2)).sum();
-    let tail = (values.len() / 100).max(1);
-    let drop = (values[0] - mean(&values[values.len() - tail..])).abs();
     let rmse = (square / samples as f64).sqrt();
     Some(HoldoutError {
         rmse,
-        relative: rmse / drop,
+        relative: rmse / change(values),
         samples,
     })
 }

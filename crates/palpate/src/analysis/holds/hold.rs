@@ -8,8 +8,10 @@ use super::jump::force_step;
 use super::rate_bias::{RateBias, rate_bias};
 use crate::analysis::{AnalysisOptions, Finding};
 use crate::contact::{Shape, Specimen};
-use crate::fit::{ExponentChoice, LatencyFit, LawOptions, OrderSelection, Samples, Termination, fitted, select_order};
-use crate::forecast::{CompareOptions, Comparison, KnownFit, compare_laws_watched};
+use crate::fit::{
+    Domain, ExponentChoice, LatencyFit, LawOptions, OrderSelection, Samples, Termination, fitted, select_order,
+};
+use crate::forecast::{CompareOptions, Comparison, KnownFit, change, compare_laws_watched};
 use crate::laws::Loading;
 use crate::record::Record;
 use crate::segment::{After, FitStartRule, HoldMode, Relaxation, RelaxationType, Segment, classify_relaxation};
@@ -86,6 +88,13 @@ impl HoldAnalysis {
     /// Times and values that were fitted.
     pub(in crate::analysis) fn samples(&self) -> Samples<'_> {
         Samples::new(&self.times[..self.fitted], &self.values[..self.fitted])
+    }
+
+    /// Root mean square residual of a fit to the signal as a share of the change of the signal over the fitted samples: from the first to the
+    /// mean of the last hundredth. `None` of a fit to rates.
+    #[must_use]
+    pub fn relative_rmse(&self, fit: &LatencyFit) -> Option<f64> {
+        (fit.domain == Domain::Time).then(|| fit.rmse / change(self.samples().values))
     }
 
     /// Whether the hold has a signal that relaxes, so that laws are fitted to it.
