@@ -241,11 +241,15 @@ impl Line<'_> {
         self.hold?.comparison.as_ref()?.verdict.as_ref().filter(|_| self.is_recommended)
     }
 
-    /// Of the recommended law: the other laws that the data do not distinguish from the best.
+    /// Of the recommended law: the other laws, or exponents where no laws were compared, that the data do not distinguish from the best.
     fn indistinguishable(&self) -> Option<String> {
-        let verdict = self.verdict()?;
-        let others: Vec<&str> =
-            verdict.indistinguishable.iter().filter(|law| **law != verdict.law).map(String::as_str).collect();
+        let hold = self.hold.filter(|_| self.is_recommended)?;
+        let alike = match &hold.comparison {
+            Some(_) => &self.verdict()?.indistinguishable,
+            None => &hold.indistinguishable,
+        };
+        let own = self.name()?;
+        let others: Vec<&str> = alike.iter().filter(|law| **law != own).map(String::as_str).collect();
         Some(others.join(" "))
     }
 

@@ -1,7 +1,7 @@
 //! `palpate.analysis/1`: one analysed record.
 
 use palpate::analysis::{Analysis, HoldAnalysis, JointAnalysis, LoadingModulus, Overlay, RateBias, Signal};
-use palpate::fit::{Estimate, ExponentChoice, LatencyFit};
+use palpate::fit::{Estimate, ExponentChoice, LatencyFit, OrderSelection};
 use palpate::segment::{After, Segment};
 
 use super::budget::BudgetDocument;
@@ -38,6 +38,9 @@ documents! {
         let time = fits.map(|(i, fit)| FitDocument::new(fit, hold, delta(i), hold.predictions[i]));
         let rate = hold.rate_fits.iter().flatten().map(|fit| FitDocument::new(fit, hold, None, None));
         let comparison = hold.comparison.as_ref();
+        let candidates = hold.order.iter().flat_map(|order| &order.candidates).zip(&hold.fits);
+        let alike = candidates.filter(|(candidate, _)| !candidate.free && candidate.indistinguishable);
+        let indistinguishable = alike.map(|(_, fit)| fit.law.to_string()).collect();
     } {
         /// Number of the hold, from 1.
         index: usize = hold.number,
@@ -81,6 +84,10 @@ documents! {
         preferred: Option<usize> = hold.order.as_ref().and_then(|order| order.preferred),
         /// Index into `fits` of the lowest listed exponent that is not distinguishable from the best one.
         lowest_order: Option<usize> = hold.order.as_ref().and_then(|order| order.lowest_order),
+        /// Index into `fits` of the one to use where no other laws are compared: `lowest_order`, unless `preferred` is distinguishable from it.
+        recommended: Option<usize> = hold.order.as_ref().and_then(OrderSelection::recommended),
+        /// Laws of the listed exponents that are not distinguishable from the best of them.
+        indistinguishable: Vec<String> = indistinguishable,
         /// Laws compared on this hold; `null` where the comparison was omitted or failed.
         comparison: Option<HoldComparisonDocument> =
             comparison.map(|found| HoldComparisonDocument::new(found, hold.signal.into())),
@@ -256,11 +263,11 @@ pub(super) fn tables(analysis: &Analysis) -> Option<TablesDocument> {
 }
 
 impl HoldDocument {
-    /// The law to use: the verdict of the comparison, or the exponent that the data prefer where no other laws were compared.
+    /// The law to use: the verdict of the comparison, or the recommended exponent where no other laws were compared.
     #[must_use]
     pub fn recommended_law(&self) -> Option<&str> {
         let verdict = self.comparison.as_ref().and_then(|found| found.verdict.as_ref()).map(|verdict| &verdict.law);
-        verdict.or_else(|| self.fits.get(self.preferred?).map(|fit| &fit.law)).map(String::as_str)
+        verdict.or_else(|| self.fits.get(self.recommended?).map(|fit| &fit.law)).map(String::as_str)
     }
 }
 

@@ -181,6 +181,19 @@ pub struct OrderSelection {
     pub effective_samples: f64,
 }
 
+impl OrderSelection {
+    /// Index of the candidate to use: the lowest order, unless the preferred one is better than it by more than counts as evidence.
+    #[must_use]
+    pub fn recommended(&self) -> Option<usize> {
+        let criterion =
+            |index: usize| self.candidates.get(index).map_or(f64::INFINITY, |candidate| candidate.delta_bic);
+        match (self.lowest_order, self.preferred) {
+            (Some(lowest), Some(best)) if criterion(lowest) - criterion(best) > EVIDENCE => Some(best),
+            (lowest, best) => lowest.or(best),
+        }
+    }
+}
+
 /// A difference of the criterion that counts as evidence ("positive" in the scale of Kass and Raftery).
 const EVIDENCE: f64 = 2.0;
 
