@@ -306,6 +306,46 @@ fn the_latency_law_takes_part_in_a_comparison_on_one_scale() {
     }
 }
 
+/// Of exponents that all fit a short hold the largest was recommended, with an equilibrium of −19 N where it is 1 N.
+#[test]
+fn the_lowest_of_exponents_that_are_not_distinguishable_is_recommended() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    fs::create_dir(folder.join("curves")).unwrap();
+    let mut state = 1u64;
+    let mut noise = || {
+        let mut uniform = || {
+            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            (state >> 11) as f64 / (1u64 << 53) as f64
+        };
+        0.02 * ((0..12).map(|_| uniform()).sum::<f64>() - 6.0)
+    };
+    for record in 0..6 {
+        let mut text = String::from("time_s,displacement_mm,force_n\n");
+        for i in 0..620 {
+            let t = 0.05 * f64::from(i);
+            let (d, f) = if t < 1.0 { (t, 2.0 * t.powf(1.5)) } else { (1.0, 1.0 + (-0.02 * (t - 1.0)).exp()) };
+            text.push_str(&format!("{t:.2},{d:.5},{:.6}\n", f + noise()));
+        }
+        file(folder, &format!("curves/{record}.csv"), text);
+    }
+    fs::copy(folder.join("curves/0.csv"), folder.join("curves/copy.csv")).unwrap();
+    let text = done(folder, &["batch", "curves", "--out", "holds.csv"]);
+    let table = lines(folder, "holds.csv");
+    let recommended: Vec<String> = (column(&table, "law").into_iter())
+        .zip(column(&table, "recommended"))
+        .filter(|(_, recommended)| recommended == "1")
+        .map(|(law, _)| law)
+        .collect();
+    assert!(recommended.iter().all(|law| ["latency:1", "latency:2"].contains(&law.as_str())), "{recommended:?}");
+    let text = text.split_whitespace().collect::<Vec<_>>().join(" ");
+    assert!(text.contains("other exponents are not distinguishable from it"), "{text}");
+    assert!(text.contains("curves/copy.csv has the same bytes as curves/0.csv"), "{text}");
+    let others = column(&table, "indistinguishable");
+    let others: Vec<&str> = others[0].split(' ').collect();
+    assert!(others.len() > 1 && !others.contains(&recommended[0].as_str()), "{others:?}");
+}
+
 /// A link to a file that is no longer there was passed over without a word.
 #[test]
 #[cfg(unix)]

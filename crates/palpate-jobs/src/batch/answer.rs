@@ -1,11 +1,12 @@
 //! What a batch found, over all holds: which laws, their parameters, the findings.
 
-use std::collections::{BTreeMap, HashMap};
+use std::collections::{BTreeMap, BTreeSet, HashMap};
 
+use palpate::laws::{ExponentChoice, Law};
 use palpate::number::{counted, significant};
 use palpate_files::parquet_table::Field;
 use palpate_report::page::Block;
-use palpate_report::result::parameter_title;
+use palpate_report::result::{MIXED_EXPONENTS, depends_on_exponent, parameter_title};
 use palpate_report::spelling::flag;
 use palpate_report::table::{Cell, Table};
 use palpate_report::wrapped;
@@ -14,8 +15,14 @@ use serde_json::Value;
 
 use super::{Entry, parameters, rows};
 
-/// Findings that the answer states.
-const MOST_FINDINGS: usize = 2;
+/// Findings that the answer states besides warnings, and the most of them where more are on as many holds as the last.
+const MOST_FINDINGS: (usize, usize) = (2, 6);
+
+/// The finding of a hold whose exponents were tried up to the largest of all.
+const EXTENDED: &str = "exponent_list_extended";
+
+/// Records with the bytes of another that the answer names.
+const MOST_REPEATED: usize = 3;
 
 /// The finding of a hold in which the machine held the force.
 const FORCE_HELD: &str = "feedback_controlled";
@@ -35,9 +42,16 @@ pub(super) struct Tally {
     laws: HashMap<String, usize>,
     /// Values of each parameter of each recommended law, by law, name and unit.
     values: HashMap<(String, String, String), Vec<f64>>,
+    /// On how many of those others are not distinguishable from it, and on how many it is the largest exponent that was tried.
+    doubts: HashMap<String, [usize; 2]>,
     /// How many holds have each finding.
     findings: HashMap<String, usize>,
-    hold: [usize; 7],
+    /// The codes of those that are warnings.
+    warnings: BTreeSet<String>,
+    /// The first record of every digest, and those that have one of an earlier record.
+    records: HashMap<String, String>,
+    repeated: Vec<[String; 2]>,
+    hold: [usize; 10],
     parameter: [usize; 6],
 }
 
@@ -61,8 +75,17 @@ pub struct BatchAnswer {
     pub laws: Vec<(String, usize)>,
     /// Parameters of the first of these laws over the holds that it is recommended for.
     pub parameters: Vec<Spread>,
-    /// The codes of the findings on the most holds, with their number.
+    /// On how many holds of the first of these laws others are not distinguishable from it.
+    #[serde(default)]
+    pub undecided: usize,
+    /// On how many of them it is the largest exponent that was tried.
+    #[serde(default)]
+    pub at_end: usize,
+    /// The codes of all warnings, then those of the findings on the most holds, with their number.
     pub findings: Vec<(String, usize)>,
+    /// Records with the same bytes as an earlier one, which count twice, each with that.
+    #[serde(default)]
+    pub repeated: Vec<[String; 2]>,
 }
 
 /// A parameter over many holds.
@@ -92,7 +115,18 @@ fn is_set(row: &[Value], column: usize) -> bool {
 
 impl Tally {
     pub(super) fn new() -> Self {
-        let hold = ["record", "part", "hold", "law", "recommended", "findings", "loading_modulus_pa"];
+        let hold = [
+            "record",
+            "part",
+            "hold",
+            "law",
+            "recommended",
+            "findings",
+            "warnings",
+            "indistinguishable",
+            "record_sha256",
+            "loading_modulus_pa",
+        ];
         let parameter = ["law", "parameter", "unit", "value", "recommended", "role"];
         Self {
             holds: 0,
@@ -102,7 +136,11 @@ impl Tally {
             moduli: Vec::new(),
             laws: HashMap::new(),
             values: HashMap::new(),
+            doubts: HashMap::new(),
             findings: HashMap::new(),
+            warnings: BTreeSet::new(),
+            records: HashMap::new(),
+            repeated: Vec::new(),
             hold: columns(&rows::fields(), hold),
             parameter: columns(&parameters::fields(), parameter),
         }
@@ -110,12 +148,20 @@ impl Tally {
 
     /// Counts the holds of a file.
     pub(super) fn add(&mut self, entry: &Entry) {
-        let [record, part, hold, law, recommended, findings, modulus] = self.hold;
+        let [record, part, hold, law, recommended, findings, warnings, alike, digest, modulus] = self.hold;
         let key = |row: &[Value]| (text(row, record).to_owned(), text(row, part).to_owned(), row[hold].as_i64());
         let mut last = None;
-        for row in &entry.rows {
+        for (index, row) in entry.rows.iter().enumerate() {
             if is_set(row, recommended) {
                 *self.laws.entry(text(row, law).to_owned()).or_default() += 1;
+                let is_undecided = !text(row, alike).is_empty();
+                let was_extended = text(row, findings).split_whitespace().any(|code| code == EXTENDED);
+                // The recommended law is in the first row of its hold.
+                let of_hold = entry.rows[index..].iter().take_while(|other| was_extended && key(other) == key(row));
+                let largest = of_hold.filter_map(|other| exponent(text(other, law))).reduce(f64::max);
+                let is_last = largest.is_some() && largest == exponent(text(row, law));
+                let doubts = self.doubts.entry(text(row, law).to_owned()).or_default();
+                doubts.iter_mut().zip([is_undecided, is_last]).for_each(|(count, is)| *count += usize::from(is));
             }
             let of = Some(key(row));
             if last != of {
@@ -133,6 +179,8 @@ impl Tally {
                     self.unfitted += usize::from(is_unfitted);
                     self.creeping += usize::from(is_unfitted && creeps);
                 }
+                self.warnings.extend(text(row, warnings).split_whitespace().map(str::to_owned));
+                self.count_record(text(row, digest), text(row, record));
                 for code in text(row, findings).split_whitespace() {
                     *self.findings.entry(code.to_owned()).or_default() += 1;
                 }
@@ -147,12 +195,30 @@ impl Tally {
         }
     }
 
+    /// Notes a record whose digest an earlier one has.
+    fn count_record(&mut self, digest: &str, record: &str) {
+        match self.records.get(digest) {
+            Some(first) => {
+                let pair = [record, first].map(str::to_owned);
+                if first != record && self.repeated.last() != Some(&pair) {
+                    self.repeated.push(pair);
+                }
+            }
+            None => drop(self.records.insert(digest.to_owned(), record.to_owned())),
+        }
+    }
+
     pub(super) fn answer(self, compared: bool) -> BatchAnswer {
-        let laws = most(self.laws, usize::MAX);
+        let laws = most(self.laws);
+        let doubts = laws.first().and_then(|(law, _)| self.doubts.get(law)).copied().unwrap_or_default();
         let first = laws.first().map(|(law, _)| law.clone());
         let of_first = self.values.into_iter().filter(|((law, ..), _)| Some(law) == first.as_ref());
-        let parameters: BTreeMap<(String, String), Vec<f64>> =
+        let mut parameters: BTreeMap<(String, String), Vec<f64>> =
             of_first.map(|((_, name, unit), values)| ((name, unit), values)).collect();
+        // Given exponents are those of the law's name.
+        let estimated = parameters.iter().filter(|((name, _), _)| name == "exponent").flat_map(|(_, values)| values);
+        let is_mixed = estimated.clone().any(|n| estimated.clone().next() != Some(n));
+        parameters.retain(|(name, _), _| !(is_mixed && depends_on_exponent(name)));
         let modulus = (!self.moduli.is_empty()).then(|| Spread::of("loading_modulus_pa", "Pa", self.moduli));
         BatchAnswer {
             compared,
@@ -163,7 +229,10 @@ impl Tally {
             parameters: parameters.into_iter().map(|((name, unit), values)| Spread::of(&name, &unit, values)).collect(),
             without_hold: self.without_hold,
             loading_modulus: modulus,
-            findings: most(self.findings, MOST_FINDINGS),
+            undecided: doubts[0],
+            at_end: doubts[1],
+            findings: stated(most(self.findings), &self.warnings),
+            repeated: self.repeated,
         }
     }
 }
@@ -188,11 +257,29 @@ impl Spread {
 }
 
 /// The most frequent first, of equals by name.
-fn most(counts: HashMap<String, usize>, count: usize) -> Vec<(String, usize)> {
+fn most(counts: HashMap<String, usize>) -> Vec<(String, usize)> {
     let mut counts: Vec<(String, usize)> = counts.into_iter().collect();
     counts.sort_by(|a, b| b.1.cmp(&a.1).then_with(|| a.0.cmp(&b.0)));
-    counts.truncate(count);
     counts
+}
+
+/// All warnings, then the other findings on the most holds with those that are on as many as the last.
+fn stated(counts: Vec<(String, usize)>, warnings: &BTreeSet<String>) -> Vec<(String, usize)> {
+    let (few, most) = MOST_FINDINGS;
+    let (mut stated, others): (Vec<_>, Vec<_>) = counts.into_iter().partition(|(code, _)| warnings.contains(code));
+    let least = others.get(few - 1).map_or(0, |(_, count)| *count);
+    stated.extend(others.into_iter().take_while(|(_, count)| *count >= least).take(most));
+    stated
+}
+
+/// The given exponent of the latency law of this name.
+fn exponent(law: &str) -> Option<f64> {
+    match law.parse() {
+        Ok(Law::Latency {
+            exponent: ExponentChoice::Fixed(n),
+        }) => Some(n),
+        _ => None,
+    }
 }
 
 impl BatchAnswer {
@@ -243,6 +330,13 @@ impl BatchAnswer {
             });
         };
         let mut text = format!("Law recommended most often: {law}, on {count} of {}.", counted(self.holds, "hold"));
+        if self.undecided > 0 {
+            let others = if self.compared { "laws" } else { "exponents" };
+            text.push_str(&format!(" On {} of these other {others} are not distinguishable from it.", self.undecided));
+        }
+        if self.at_end > 0 {
+            text.push_str(&format!(" On {} of these it is the largest exponent that was tried.", self.at_end));
+        }
         if !self.compared {
             text.push_str(" Only exponents of the latency law were compared, by BIC, without held-out samples.");
         }
@@ -268,7 +362,10 @@ impl BatchAnswer {
     /// The parameters of the law that was recommended most often.
     fn table(&self) -> Option<Table> {
         let (law, _) = self.laws.first()?;
-        let caption = format!("Parameters of {law} over the holds that it is recommended for.");
+        let is_latency = matches!(law.parse(), Ok(Law::Latency { .. }));
+        let is_mixed = is_latency && !self.parameters.iter().any(|spread| depends_on_exponent(&spread.name));
+        let mixed = if is_mixed { format!(" {MIXED_EXPONENTS}") } else { String::new() };
+        let caption = format!("Parameters of {law} over the holds that it is recommended for.{mixed}");
         let quartile = |index: usize| {
             move |spread: &Spread| match spread.holds {
                 1 if index != 1 => Cell::missing("one hold has no quartiles"),
@@ -290,6 +387,31 @@ impl BatchAnswer {
         self.laws.first()?;
         let found: Vec<String> =
             self.findings.iter().map(|(code, count)| format!("{code} on {}", counted(*count, "hold"))).collect();
-        (!found.is_empty()).then(|| format!("Findings on the most holds: {}.", found.join(", ")))
+        let found =
+            (!found.is_empty()).then(|| format!("Findings on the most holds, warnings first: {}.", found.join(", ")));
+        let twice = self
+            .repeated
+            .iter()
+            .take(MOST_REPEATED)
+            .map(|[record, first]| format!("{record} has the same bytes as {first}, and its holds count again."));
+        let more = self.repeated.len().saturating_sub(MOST_REPEATED);
+        let more = (more > 0).then(|| format!("So do {} more.", counted(more, "record")));
+        let sentences: Vec<String> = found.into_iter().chain(twice).chain(more).collect();
+        (!sentences.is_empty()).then(|| sentences.join(" "))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Of four findings on two holds each the first two by their names were stated, and `saturated` was not.
+    #[test]
+    fn warnings_and_findings_on_as_many_holds_as_the_last_are_stated() {
+        let counts = [("a", 2), ("b", 2), ("c", 2), ("d", 1), ("saturated", 1)];
+        let counts = most(counts.map(|(code, count)| (code.to_owned(), count)).into());
+        let found = stated(counts, &BTreeSet::from(["saturated".to_owned()]));
+        let codes: Vec<&str> = found.iter().map(|(code, _)| code.as_str()).collect();
+        assert_eq!(codes, ["saturated", "a", "b", "c"]);
     }
 }

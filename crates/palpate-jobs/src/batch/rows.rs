@@ -1,6 +1,7 @@
 //! An analysed record as rows of the table: one a hold and law, one for a hold to which no law was fitted, and one for a record without a
 //! hold.
 
+use palpate::analysis::Severity;
 use palpate_files::parquet_table::Kind::{self, Count, Number, OptionalCount, Text};
 use palpate_files::parquet_table::{Field, Rows, Values};
 use palpate_report::document::{
@@ -36,7 +37,7 @@ enum LawRow<'a> {
 type Column = (Kind, &'static str, fn(&Line<'_>) -> Value);
 
 /// Columns of the record and the hold, and how the force changed.
-const HOLD: [Column; 19] = [
+const HOLD: [Column; 20] = [
     (Text, "record_sha256", |line| line.document.input.sha256.clone().into()),
     (Count, "rows", |line| line.document.input.rows.into()),
     (Count, "rows_averaged", |line| line.document.input.rows_averaged.into()),
@@ -55,7 +56,8 @@ const HOLD: [Column; 19] = [
     (Number, "force_end_n", |line| line.of_hold(|hold| hold.force_end_n.into())),
     (Number, "force_change_n", |line| line.of_hold(|hold| hold.force_change_n.into())),
     (Text, "signal", |line| line.of_hold(|hold| hold.signal.clone().into())),
-    (Text, "findings", |line| codes(line).into()),
+    (Text, "findings", |line| codes(line, Severity::Info).into()),
+    (Text, "warnings", |line| codes(line, Severity::Warning).into()),
 ];
 
 /// The answer: which hold of which record, its law with the values put in, and how well that predicts.
@@ -263,11 +265,11 @@ impl Line<'_> {
     }
 }
 
-/// Codes of the findings about the record and the hold.
-fn codes(line: &Line<'_>) -> String {
+/// Codes of the findings about the record and the hold, of this severity or a higher one.
+fn codes(line: &Line<'_>, least: Severity) -> String {
     let all = line.document.findings.iter().chain(line.hold.iter().flat_map(|hold| &hold.findings));
     let mut codes: Vec<&str> = Vec::new();
-    for finding in all {
+    for finding in all.filter(|finding| finding.severity >= least) {
         // Of both columns, say.
         if !codes.contains(&finding.code.as_str()) {
             codes.push(&finding.code);

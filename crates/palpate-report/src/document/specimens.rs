@@ -1,5 +1,7 @@
 //! `palpate.specimens/1`: the records of several specimens, and the parameters of one law between them.
 
+use std::collections::BTreeMap;
+
 use super::software::Software;
 use crate::result::{BetweenSpecimens, Input, LeftOut, SpecimenResult, SpecimenResults};
 
@@ -55,6 +57,11 @@ documents! {
         /// The parameters of that law between specimens.
         between_specimens: Vec<BetweenSpecimensDocument> =
             results.between().iter().map(BetweenSpecimensDocument::new).collect(),
+        /// Records with the same samples as an earlier one, which count again, each with that.
+        repeated: Vec<[String; 2]> = results.repeated().into_iter().map(|pair| pair.map(Input::called)).collect(),
+        /// Codes of findings that need care, with the number of records that have them and count all the same.
+        findings: BTreeMap<String, usize> =
+            results.severe().into_iter().map(|(code, count)| (code.to_owned(), count)).collect(),
         /// The records that could not be analysed.
         left_out: Vec<LeftOut> = results.left_out.clone(),
     }

@@ -41,8 +41,8 @@ pub(crate) use grip_sentences::{chance, lasted};
 pub use gripped::GrippedBody;
 pub use input::Input;
 pub use parameters::{
-    PARAMETER_COLUMNS, ParameterColumn, ParameterDocument, ParameterRow, Parameters, parameter_title, parameters_of,
-    parameters_of_material, parameters_table, si_unit,
+    MIXED_EXPONENTS, PARAMETER_COLUMNS, ParameterColumn, ParameterDocument, ParameterRow, Parameters,
+    depends_on_exponent, parameter_title, parameters_of, parameters_of_material, parameters_table, si_unit,
 };
 pub use specimens::{BetweenSpecimens, SpecimenHold, SpecimenResult, SpecimenResults};
 pub(crate) use specimens::{is_of_interest, is_scale};

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use palpate::calibrate::{Material, MaterialParameter, MaterialUnit};
-use palpate::fit::{Estimate, Fit, Parameter, ParameterRole, ParameterUnit};
+use palpate::fit::{Estimate, Fit, Parameter, ParameterKind, ParameterName, ParameterRole, ParameterUnit};
 use palpate::units::{suited, without_unit};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -34,6 +34,17 @@ pub struct ParameterDocument {
 pub fn parameter_title(name: &str) -> String {
     without_unit(name).replace('_', " ")
 }
+
+/// Whether values of a parameter are of one quantity for one exponent alone, as its unit is: N^(1-n)/s of a rate coefficient.
+#[must_use]
+pub fn depends_on_exponent(name: &str) -> bool {
+    let kind = name.parse().map(|name: ParameterName| name.kind);
+    matches!(kind, Ok(ParameterKind::RateCoefficient | ParameterKind::Coefficient))
+}
+
+/// What is to be known where those parameters are left out.
+pub const MIXED_EXPONENTS: &str =
+    "The rate coefficient is left out where exponents differ: it is of another quantity for each.";
 
 /// Parameters by their names.
 pub type Parameters = BTreeMap<String, ParameterDocument>;

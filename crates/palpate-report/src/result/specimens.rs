@@ -1,14 +1,20 @@
 //! Records of several specimens beside one another: one law for all, and its parameters between specimens.
 
+use std::cmp::Reverse;
+use std::collections::hash_map::DefaultHasher;
+use std::collections::{BTreeMap, BTreeSet, HashMap};
+use std::hash::{Hash, Hasher};
+
 use palpate::analysis::{Analysis, Severity};
 use palpate::fit::ParameterRole;
+use palpate::record::Record;
 use palpate::statistics::SampleMean;
 use palpate::units::quantity;
 
 use super::answer::Answer;
 use super::compared::{ComparedHold, ComparedRecord, LeftOut};
 use super::input::Input;
-use super::parameters::{ParameterDocument, Parameters, parameters_of};
+use super::parameters::{ParameterDocument, Parameters, depends_on_exponent, parameters_of};
 use super::words::condition;
 use crate::word::word;
 
@@ -27,8 +33,10 @@ pub struct SpecimenResult {
     pub holds: Vec<SpecimenHold>,
     /// The modulus of its first loading ramp, where a body is described, Pa.
     pub loading_modulus: Option<f64>,
-    /// How severe its findings are.
-    pub findings: Vec<Severity>,
+    /// Its findings by code, and how severe they are.
+    pub findings: Vec<(&'static str, Severity)>,
+    /// Equal of records with the same samples.
+    samples: u64,
 }
 
 /// One hold of a specimen with every law that was fitted to it.
@@ -98,7 +106,8 @@ impl SpecimenResult {
                 .collect(),
             law,
             loading_modulus: analysis.loading_modulus.as_ref().map(|found| found.value),
-            findings: all.map(palpate::analysis::Finding::severity).collect(),
+            findings: all.map(|finding| (finding.code(), finding.severity())).collect(),
+            samples: digest(&analysis.record),
         }
     }
 }
@@ -133,6 +142,46 @@ impl SpecimenResults {
         laws().reduce(|best, other| if count(other) > count(best) { other } else { best })
     }
 
+    /// Records with the samples of an earlier one, each with that.
+    #[must_use]
+    pub fn repeated(&self) -> Vec<[&Input; 2]> {
+        let mut known: HashMap<u64, &Input> = HashMap::new();
+        let mut pairs = Vec::new();
+        for specimen in &self.specimens {
+            match known.get(&specimen.samples) {
+                Some(first) => pairs.push([&specimen.input, *first]),
+                None => drop(known.insert(specimen.samples, &specimen.input)),
+            }
+        }
+        pairs
+    }
+
+    /// The codes of findings that need care, the severest first, and how many records have each.
+    #[must_use]
+    pub fn severe(&self) -> Vec<(&'static str, usize)> {
+        let mut counts: BTreeMap<(Reverse<Severity>, &'static str), usize> = BTreeMap::new();
+        for specimen in &self.specimens {
+            let severe = specimen.findings.iter().filter(|(_, severity)| *severity > Severity::Info);
+            let codes: BTreeSet<_> = severe.map(|(code, severity)| (Reverse(*severity), *code)).collect();
+            codes.into_iter().for_each(|code| *counts.entry(code).or_default() += 1);
+        }
+        counts.into_iter().map(|((_, code), count)| (code, count)).collect()
+    }
+
+    fn most_holds(&self) -> usize {
+        self.specimens.iter().map(|specimen| specimen.holds.len()).max().unwrap_or(0)
+    }
+
+    /// Whether the exponent of that law differs between records on some hold: parameters [whose unit depends on it](depends_on_exponent) are
+    /// then left out between specimens.
+    #[must_use]
+    pub fn mixes_exponents(&self) -> bool {
+        let holds = || self.specimens.iter().flat_map(|specimen| &specimen.holds);
+        let of_number = |number| holds().filter(move |hold| hold.number == number);
+        let exponents = |number| of_number(number).filter_map(|hold| Some(exponent(hold.parameters(self.law()?)?)));
+        (1..=self.most_holds()).any(|number| !all_equal(exponents(number)))
+    }
+
     /// The parameters of that law between specimens, hold by hold, and the moduli of their first ramps.
     #[must_use]
     pub fn between(&self) -> Vec<BetweenSpecimens> {
@@ -146,17 +195,18 @@ impl SpecimenResults {
             sample,
         }));
         let Some(law) = self.law() else { return found };
-        let most = self.specimens.iter().map(|specimen| specimen.holds.len()).max().unwrap_or(0);
-        for number in 1..=most {
+        for number in 1..=self.most_holds() {
             let holds = self.specimens.iter().flat_map(|specimen| &specimen.holds).filter(|hold| hold.number == number);
             let fitted: Vec<(&SpecimenHold, &Parameters)> =
                 holds.filter_map(|hold| Some((hold, hold.parameters(law)?))).collect();
+            let exponents = fitted.iter().map(|(_, parameters)| exponent(parameters));
+            let is_one_exponent = all_equal(exponents);
             for (name, parameter) in fitted.iter().take(1).flat_map(|(_, parameters)| parameters.iter()) {
                 let values = fitted.iter().filter_map(|(_, parameters)| parameters.get(name)?.value);
                 let values: Vec<f64> = values.collect();
                 let geometric = SampleMean::geometric(&values, self.confidence).filter(|_| is_scale(&parameter.unit));
                 let sample = geometric.or_else(|| SampleMean::of(&values, self.confidence));
-                let of_interest = is_of_interest(name, parameter);
+                let of_interest = is_of_interest(name, parameter) && (is_one_exponent || !depends_on_exponent(name));
                 found.extend(sample.filter(|_| of_interest).map(|sample| BetweenSpecimens {
                     hold: Some(number),
                     condition: common_condition(&fitted),
@@ -168,6 +218,27 @@ impl SpecimenResults {
         }
         found
     }
+}
+
+/// A number that is equal for equal samples.
+fn digest(record: &Record) -> u64 {
+    let mut hasher = DefaultHasher::new();
+    let columns = [record.time(), record.force(), record.displacement().unwrap_or_default()];
+    columns.into_iter().flatten().for_each(|value| value.to_bits().hash(&mut hasher));
+    hasher.finish()
+}
+
+/// The exponent of a law with parameters that depend on it.
+fn exponent(parameters: &Parameters) -> Option<f64> {
+    parameters
+        .get("exponent")
+        .filter(|_| parameters.keys().any(|name| depends_on_exponent(name)))?
+        .value
+}
+
+fn all_equal(mut values: impl Iterator<Item = Option<f64>>) -> bool {
+    let first = values.next();
+    values.all(|value| Some(value) == first)
 }
 
 /// Whether a parameter is estimated, or the rate coefficient, which follows from those.
@@ -200,4 +271,90 @@ fn common_condition(holds: &[(&SpecimenHold, &Parameters)]) -> String {
         (low, high) => Some(format!("{} to {}", quantity(low, "m", 3), quantity(high, "m", 3))),
     };
     condition(after.as_deref(), level)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn specimen(path: &str, law: &str, exponent: f64, findings: &[(&'static str, Severity)]) -> SpecimenResult {
+        let parameter = |value: f64, unit: &str, role: &str| ParameterDocument {
+            value: Some(value),
+            unit: unit.to_owned(),
+            role: role.to_owned(),
+            standard_error: None,
+            white_standard_error: None,
+            interval: None,
+        };
+        let parameters = [
+            ("equilibrium", parameter(1.0, "N", "estimated")),
+            ("exponent", parameter(exponent, "1", "estimated")),
+            ("rate_coefficient_per_s", parameter(0.5, "N^(1-n)/s", "derived")),
+        ];
+        SpecimenResult {
+            input: Input {
+                path: path.to_owned(),
+                part: None,
+                sha256: String::new(),
+                rows: 2,
+                rows_averaged: 1,
+                x_m: None,
+                y_m: None,
+                map_index: None,
+                test: None,
+                test_sha256: None,
+                air_run_sha256: None,
+                then_sha256: None,
+                depends_on_sha256: None,
+                title: path.to_owned(),
+            },
+            report: Vec::new(),
+            sentence: String::new(),
+            law: Some(law.to_owned()),
+            holds: vec![SpecimenHold {
+                number: 1,
+                after: None,
+                level: None,
+                laws: vec![(law.to_owned(), parameters.map(|(name, one)| (name.to_owned(), one)).into())],
+            }],
+            loading_modulus: None,
+            findings: findings.to_vec(),
+            samples: exponent.to_bits(),
+        }
+    }
+
+    fn results(specimens: Vec<SpecimenResult>) -> SpecimenResults {
+        SpecimenResults {
+            specimens,
+            left_out: Vec::new(),
+            confidence: 0.95,
+        }
+    }
+
+    /// The coefficient of variation of v over several exponents depended on the unit of the force.
+    #[test]
+    fn rate_coefficients_of_different_exponents_have_no_mean() {
+        let names = |exponents: [f64; 2]| {
+            let found = results(exponents.map(|n| specimen("a.csv", "latency", n, &[])).into());
+            let names: Vec<String> = found.between().into_iter().map(|row| row.name).collect();
+            (names, found.mixes_exponents())
+        };
+        let all = ["equilibrium", "exponent", "rate_coefficient_per_s"].map(str::to_owned);
+        assert_eq!(names([2.0, 3.0]), (all[..2].to_vec(), true));
+        assert_eq!(names([3.0, 3.0]), (all.to_vec(), false));
+    }
+
+    /// A copy of a record, and saturated ones, counted as others without a word.
+    #[test]
+    fn copies_and_severe_findings_are_stated() {
+        let saturated = [("saturated", Severity::Warning), ("gaps", Severity::Caution), ("drift", Severity::Info)];
+        let found = results(vec![
+            specimen("a.csv", "latency", 2.0, &[("gaps", Severity::Caution)]),
+            specimen("b.csv", "latency", 3.0, &saturated),
+            specimen("copy.csv", "latency", 2.0, &[]),
+        ]);
+        let pairs: Vec<[&str; 2]> = found.repeated().iter().map(|pair| pair.map(|input| input.path.as_str())).collect();
+        assert_eq!(pairs, [["copy.csv", "a.csv"]]);
+        assert_eq!(found.severe(), [("saturated", 1), ("gaps", 2)]);
+    }
 }

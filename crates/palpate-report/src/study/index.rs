@@ -11,8 +11,8 @@ use crate::figure::{Axis, Figure, Layer, Panel, Role, View};
 use crate::number::counted;
 use crate::page::{Block, Card, Page, Section};
 use crate::result::{
-    BetweenSpecimens, Input, LeftOut, SpecimenHold, SpecimenResult, SpecimenResults, is_of_interest, is_scale,
-    parameter_title, percent,
+    BetweenSpecimens, Input, LeftOut, MIXED_EXPONENTS, SpecimenHold, SpecimenResult, SpecimenResults,
+    depends_on_exponent, is_of_interest, is_scale, parameter_title, percent,
 };
 use crate::table::{Cell, Table};
 use crate::word::capitalised;
@@ -93,8 +93,9 @@ impl SpecimenIndex {
 }
 
 fn card(specimen: &SpecimenResult, picture: &View) -> Card {
-    let severest = specimen.findings.iter().max().copied();
-    let count = specimen.findings.iter().filter(|severity| Some(**severity) == severest).count();
+    let severities = || specimen.findings.iter().map(|(_, severity)| *severity);
+    let severest = severities().max();
+    let count = severities().filter(|severity| Some(*severity) == severest).count();
     let law = specimen.law.as_ref().map_or_else(|| "No law fitted".to_owned(), |law| format!("Law: {law}"));
     // Records of one description share its title: the file, or the part of it, tells them apart.
     let file = specimen.input.path.rsplit(['/', '\\']).next().unwrap_or_default();
@@ -112,8 +113,19 @@ fn card(specimen: &SpecimenResult, picture: &View) -> Card {
 fn between_table(results: &SpecimenResults) -> Option<Table> {
     let share = percent(results.confidence);
     let law = results.law().map_or_else(String::new, |law| format!(" of {law}"));
+    let mixed = results.mixes_exponents().then(|| MIXED_EXPONENTS.to_owned());
+    let twice = results.repeated().into_iter().map(|[record, first]| {
+        format!("{} has the same samples as {}, and counts again.", record.called(), first.called())
+    });
+    let found: Vec<String> = results
+        .severe()
+        .iter()
+        .map(|(code, count)| format!("{code} in {}", counted(*count, "record")))
+        .collect();
+    let severe = (!found.is_empty()).then(|| format!("Records with findings count as others: {}.", found.join(", ")));
+    let notes: String = mixed.into_iter().chain(twice).chain(severe).map(|note| format!(" {note}")).collect();
     let caption = format!(
-        "Parameters{law} between specimens: mean, standard deviation, coefficient of variation, and {share} interval of the mean by Student\u{2019}s distribution; of rates and times by their logarithms (geometric)."
+        "Parameters{law} between specimens: mean, standard deviation, coefficient of variation, and {share} interval of the mean by Student\u{2019}s distribution; of rates and times by their logarithms (geometric).{notes}"
     );
     const ONE: &str = "one specimen";
     let number = |value: Option<f64>| Cell::number_or(value, 4, ONE);
@@ -155,7 +167,11 @@ fn by_specimen(results: &SpecimenResults) -> Vec<Figure> {
     let fitted = law.and_then(|law| {
         results.specimens.iter().flat_map(|specimen| &specimen.holds).find_map(|hold| hold.parameters(law))
     });
-    let named = fitted.into_iter().flatten().filter(|(name, parameter)| is_of_interest(name, parameter));
+    let is_mixed = results.mixes_exponents();
+    let named = fitted
+        .into_iter()
+        .flatten()
+        .filter(|(name, parameter)| is_of_interest(name, parameter) && !(is_mixed && depends_on_exponent(name)));
     let parameters: Vec<(&String, String)> = named.map(|(name, parameter)| (name, parameter.unit.clone())).collect();
     let most = results.specimens.iter().map(|specimen| specimen.holds.len()).max().unwrap_or(0).min(MOST_SERIES);
     let panel = |(name, unit): &(&String, String)| {
