@@ -100,8 +100,12 @@ impl CalibrateSeveral {
             input.depends_on_sha256 =
                 Some(Dependencies::new("calibrate-several", &(self, &options)).record(&input).sha256()?);
             let name = name(&input, &records);
-            let data = CalibrationData::of_record(&record, &options)
-                .map_err(|error| JobError::new(kind_of(&error), &error, error.hint()).of(&name))?;
+            let data = CalibrationData::of_record(&record, &options).map_err(|error| {
+                uncalibrated(&SeveralError::Record {
+                    record: name.clone(),
+                    error,
+                })
+            })?;
             notes.extend(data.findings().iter().filter_map(|found| Measurement::sign_note(&turned, found)));
             inputs.push(input);
             records.push(BatchRecord { name, data });

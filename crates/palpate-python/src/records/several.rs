@@ -1,6 +1,6 @@
 //! One calibration of several records.
 
-use palpate::calibrate::{CalibrationData, Sharing};
+use palpate::calibrate::Sharing;
 use palpate_files::description::MaterialFile;
 use palpate_jobs::input::Measurement;
 use palpate_jobs::{CalibrateSeveral, Results};
@@ -9,7 +9,7 @@ use palpate_report::study::batch_page;
 use pyo3::prelude::*;
 use serde::{Deserialize, Serialize};
 
-use crate::errors::{OptionError, PalpateError, choice, refused_plainly, warn_of};
+use crate::errors::{OptionError, PalpateError, choice, refused_plainly, warn};
 use crate::files::law;
 use crate::html::framed;
 use crate::listed::Listed;
@@ -90,7 +90,7 @@ pub(crate) fn calibrate(
     };
     let measured = records.iter().map(|record| record.measured(test)).collect::<PyResult<Vec<Measurement>>>()?;
     let done = job(py, move |watch| options.run(measured, watch))?.result;
-    warn_of(py, done.batch.data.iter().flat_map(CalibrationData::findings))?;
+    done.batch.warnings().iter().try_for_each(|text| warn(py, text))?;
     Ok(SeveralCalibrations {
         document: done.document(),
         text: done.text(),

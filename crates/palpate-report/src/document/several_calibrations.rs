@@ -1,6 +1,6 @@
 //! `palpate.several-calibrations/1`: one calibration of several records.
 
-use palpate::calibrate::{BatchParameter, Between, CalibratedSpecimen, CalibrationData, Spread};
+use palpate::calibrate::{BatchParameter, Between, CalibratedSpecimen, Spread};
 use palpate::fit::{Estimate, ParameterRole};
 
 use super::software::Software;
@@ -54,7 +54,7 @@ documents! {
     }
 
     /// A record of the batch.
-    SpecimenDocument(input: &Input, specimen: &CalibratedSpecimen, data: &CalibrationData) {
+    SpecimenDocument(input: &Input, specimen: &CalibratedSpecimen) {
         /// The record.
         input: Input = input.clone(),
         /// Root mean square residual over the fitted samples, N.
@@ -67,7 +67,7 @@ documents! {
         parameters: Vec<SpecimenParameterDocument> =
             parameters_of_material(&specimen.material, true).into_iter().map(SpecimenParameterDocument::new).collect(),
         /// Its findings.
-        findings: Vec<Finding> = data.findings().iter().map(Finding::from).collect(),
+        findings: Vec<Finding> = specimen.findings.iter().map(Finding::from).collect(),
     }
 
     /// The material of another specimen of the batch, or of the one body where all parameters are shared.
@@ -109,8 +109,7 @@ documents! {
             .inputs
             .iter()
             .zip(&batch.found.specimens)
-            .zip(&batch.data)
-            .map(|((input, specimen), data)| SpecimenDocument::new(input, specimen, data))
+            .map(|(input, specimen)| SpecimenDocument::new(input, specimen))
             .collect(),
         /// Another specimen; `null` for own parameters of two records.
         new_specimen: Option<NewSpecimenDocument> = batch.found.specimen.as_ref().map(NewSpecimenDocument::new),

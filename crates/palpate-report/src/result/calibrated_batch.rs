@@ -1,5 +1,6 @@
 //! What a calibration of several records is shown with.
 
+use palpate::analysis::{Finding, Severity};
 use palpate::calibrate::{BatchParameter, Between, CalibratedSpecimen, CalibrationData, SeveralCalibration};
 use palpate::number::{counted, significant};
 
@@ -71,9 +72,28 @@ impl CalibratedBatch {
         lines
     }
 
-    /// What the parameters alone do not tell.
+    /// The findings of records because of which numbers must not be used, in sentences that name the record.
+    #[must_use]
+    pub fn warnings(&self) -> Vec<String> {
+        let of = |specimen: &CalibratedSpecimen| {
+            let severe = specimen.findings.iter().filter(|finding| finding.severity() == Severity::Warning);
+            let sentence = |finding: &Finding| {
+                format!("{}: {}: {}; {}.", specimen.name, finding.code(), finding.observation(), finding.meaning())
+            };
+            severe.map(sentence).collect::<Vec<String>>()
+        };
+        self.found.specimens.iter().flat_map(of).collect()
+    }
+
+    /// All remarks: the warnings, and what the parameters alone do not tell.
     #[must_use]
     pub fn remarks(&self) -> Vec<String> {
+        [self.warnings(), self.notes()].concat()
+    }
+
+    /// What the parameters alone do not tell.
+    #[must_use]
+    pub fn notes(&self) -> Vec<String> {
         let found = &self.found;
         let mut remarks: Vec<String> = found.parameters.iter().filter_map(contradicted).collect();
         let count = found.specimens.len();

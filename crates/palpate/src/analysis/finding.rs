@@ -406,6 +406,13 @@ pub enum Finding {
         /// Root mean square of the difference as a share of the largest force.
         relative: f64,
     },
+    /// A record of several that are calibrated together, of which the law leaves far more than of the others.
+    RecordApart {
+        /// Root mean square residual of the record, calibrated alone, as a share of its largest force.
+        share: f64,
+        /// The median of that of the other records.
+        others: f64,
+    },
     /// The overlay could not be simulated.
     NoOverlay {
         /// Why.

@@ -8,6 +8,7 @@ use crate::instrument::Instrument;
 use crate::record::Record;
 use crate::segment::HoldMode;
 use crate::simulate::{MeasuredMotion, Motion, Separation};
+use crate::statistics::median;
 
 /// Samples of force along a motion of the jaw that starts at first touch, ready to be fitted; SI units, loading positive.
 #[derive(Debug, Clone, PartialEq)]
@@ -139,10 +140,8 @@ impl CalibrationData {
             .ok_or(CalibrateError::NoDisplacement)??;
         let displacement = record.displacement().unwrap_or_default();
         never_pressed(displacement)?;
-        let held: Vec<f64> = segmentation
-            .holds()
-            .map(|hold| crate::statistics::median(&mut displacement[hold.start..hold.end].to_vec()))
-            .collect();
+        let held: Vec<f64> =
+            segmentation.holds().map(|hold| median(&mut displacement[hold.start..hold.end].to_vec())).collect();
         let (times, forces) = (record.time().to_vec(), record.force().to_vec());
         let pressed = segmentation.holds().filter(|hold| hold.mode == Some(HoldMode::ForceHeld));
         let force_held = pressed.map(|hold| (times[hold.start], times[hold.end - 1])).collect();

@@ -137,6 +137,12 @@ pub enum CalibrateError {
         /// Parameters.
         parameters: usize,
     },
+    /// A force of one value while the jaw moves.
+    #[error("the force is {} N throughout, while the jaw moves", significant(*force, 4))]
+    ConstantForce {
+        /// The force, N.
+        force: f64,
+    },
     /// A body that never pushes back.
     #[error("the force does not rise with the displacement: no positive stiffness fits the record")]
     NoStiffness,
@@ -177,11 +183,26 @@ impl CalibrateError {
             Self::RateOf { .. } => "omit the dependence of v, or use the law latency".to_owned(),
             Self::FactorUnseen { .. } => "use a constant rate coefficient, or calibrate on a longer record".to_owned(),
             Self::Split { .. } => "choose a time within the record".to_owned(),
+            Self::ConstantForce { .. } => "check the force column and that the load cell was connected".to_owned(),
             Self::NoStiffness => "check the signs of force and displacement".to_owned(),
             Self::Specimen(_) => "check the geometry in the test description and its units".to_owned(),
             Self::Equilibrium(_) => "use another equilibrium law: uniform-strain, hertz or table".to_owned(),
             Self::Analysis(error) => error.hint(),
             _ => String::new(),
         }
+    }
+
+    /// Whether another record could be calibrated: what is wrong is a record, not what all are calibrated with.
+    pub(super) fn is_of_record(&self) -> bool {
+        matches!(
+            self,
+            Self::NeverPressed { .. }
+                | Self::NoDisplacement
+                | Self::FactorUnseen { .. }
+                | Self::TooFewSamples { .. }
+                | Self::ConstantForce { .. }
+                | Self::NoStiffness
+                | Self::Analysis(_)
+        )
     }
 }

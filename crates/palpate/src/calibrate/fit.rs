@@ -8,7 +8,7 @@ use crate::analysis::HoldoutError;
 use crate::fit::{NoiseModel, Termination};
 use crate::forecast::{Criteria, criteria};
 use crate::simulate::simulate_force;
-use crate::statistics::rms;
+use crate::statistics::{range, rms};
 use crate::watch::{Stages, Watch};
 
 /// A candidate fitted to the whole of a record, ramps and holds alike.
@@ -85,6 +85,12 @@ pub fn calibrate(
             parameters: free,
         });
     }
+    // A force that no machine held is of a load cell that was not read.
+    if data.force_held().is_empty() && range(data.forces()) == 0.0 {
+        return Err(CalibrateError::ConstantForce {
+            force: data.forces()[0],
+        });
+    }
     let mut stages = Stages::new(format!("calibrating {candidate}"), watch);
     let found = search(&prepared, data, &mut stages)?;
     let assessed = AssessedMaterial::new(&prepared, data, &found, confidence, &mut stages)?;
@@ -99,7 +105,7 @@ pub fn calibrate(
             parameters: assessed.parameters(),
             uncertainty: assessed.uncertainty(),
             noise: (found.square / (data.fitted() - free) as f64).sqrt(),
-            range: range(data),
+            range: shown(data),
         })?,
         free_parameters: free,
         rmse,
@@ -132,7 +138,7 @@ fn largest(forces: &[f64]) -> f64 {
 }
 
 /// What the fitted part of the record has shown.
-fn range(data: &CalibrationData) -> CalibrationRange {
+fn shown(data: &CalibrationData) -> CalibrationRange {
     let until = data.times()[data.fitted() - 1];
     CalibrationRange::of(data.motion(), data.force_held(), until, largest(&data.forces()[..data.fitted()]))
 }

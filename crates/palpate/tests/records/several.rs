@@ -1,13 +1,14 @@
 //! Several records in one calibration: recovery, coverage, the material of another specimen, refusals.
 #![expect(clippy::unwrap_used, reason = "a test that cannot run has failed")]
 
-use palpate::analysis::Geometry;
+use palpate::analysis::{AnalysisOptions, Geometry};
 use palpate::calibrate::{
     BatchRecord, Between, CalibrationData, Candidate, EquilibriumLaw, MaterialParameter, SeveralCalibration,
     SeveralError, Spread, calibrate, calibrate_several,
 };
 use palpate::contact::{Layers, Shape, Specimen};
 use palpate::fit::Estimate;
+use palpate::record::Record;
 use palpate::simulate::{ContactModel, Motion, ProtocolStep, Sampling, Separation, protocol, simulate_force};
 use palpate::test_problems::{Rng, paper_ball};
 use palpate::watch::{Cancelled, Progress, Unwatched};
@@ -257,9 +258,56 @@ fn what_is_no_batch_is_refused() {
     let pulled = BatchRecord { data, ..b.clone() };
     let error = refused(&[a.clone(), pulled], "latency", "none");
     assert!(error.to_string().starts_with("b.csv: the force does not rise"), "{error}");
-    assert_eq!(error.hint(), "check the signs of force and displacement");
+    assert_eq!(error.hint(), "check the signs of force and displacement, or leave the record out");
     let mut ended = |_: Progress<'_>| Err(Cancelled);
     let candidate = Candidate::new("latency".parse().unwrap(), EquilibriumLaw::UniformStrain);
     let cancelled = calibrate_several(&[a, b], candidate, &Default::default(), 0.95, &mut ended);
     assert!(matches!(cancelled, Err(SeveralError::Cancelled(_))));
+}
+
+/// A ball squeezed as the others, of which the record has these forces (N).
+fn recorded(name: &str, force: impl Fn(f64) -> f64) -> BatchRecord {
+    let (motion, model) = (squeezes(), specimen(0.035, 28e3, 0.035 / 8.0));
+    let times: Vec<f64> = (0..).map(|i| 0.1 * f64::from(i)).take_while(|t| *t <= motion.end()).collect();
+    let forces = simulate_force(&motion, &model, &times).unwrap().into_iter().map(force).collect();
+    let displacement = times.iter().map(|t| motion.displacement_at(*t)).collect();
+    let options = AnalysisOptions {
+        geometry: Some(Geometry {
+            shape: model.specimen.shape().clone(),
+            sides: model.specimen.sides(),
+            modulus: None,
+            equilibrium: palpate::contact::Equilibrium::default(),
+        }),
+        ..AnalysisOptions::default()
+    };
+    let record = Record::new(times, Some(displacement), forces).unwrap();
+    BatchRecord {
+        name: name.to_owned(),
+        data: CalibrationData::of_record(&record, &options).unwrap(),
+    }
+}
+
+/// A load cell that was not connected gave 1 N throughout, and the mean modulus of the batch half of what it is.
+#[test]
+fn a_broken_record_of_several_is_named() {
+    let mut random = Rng::new(7);
+    let mut records: Vec<BatchRecord> = ["a.csv", "b.csv", "c.csv"]
+        .into_iter()
+        .map(|name| record(name, &specimen(0.035, 28e3, 0.035 / 8.0), 10.0, 0.02, &mut random))
+        .collect();
+    let dead = records.iter().cloned().chain([recorded("dead.csv", |_| 1.0)]).collect::<Vec<_>>();
+    let refused = together(&dead, "latency:5", "layer_thickness").unwrap_err();
+    assert_eq!(refused.to_string(), "dead.csv: the force is 1.000 N throughout, while the jaw moves");
+    assert!(refused.hint().ends_with("or leave the record out"), "{}", refused.hint());
+    // One that follows no law stays, with a finding that the others do not have.
+    let noise = std::cell::RefCell::new(Rng::new(9));
+    records.push(recorded("stuck.csv", |force| force.min(2.0) + 0.02 * noise.borrow_mut().normal()));
+    let found = together(&records, "latency:5", "layer_thickness").unwrap();
+    let apart: Vec<&str> = found
+        .specimens
+        .iter()
+        .filter(|specimen| specimen.findings.iter().any(|finding| finding.code() == "record_apart"))
+        .map(|specimen| specimen.name.as_str())
+        .collect();
+    assert_eq!(apart, ["stuck.csv"], "{:?}", found.specimens.iter().map(|s| s.relative).collect::<Vec<_>>());
 }

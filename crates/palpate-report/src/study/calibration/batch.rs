@@ -76,14 +76,14 @@ pub fn batch_text(batch: &CalibratedBatch) -> String {
     let mut text: String = batch.answer().iter().map(|line| wrapped(line)).collect();
     text.push_str(&format!("\n{}\n{}\n", batch_table(batch).to_plain_text(), records_table(batch).to_plain_text()));
     text.push_str(&plain(&findings(batch)));
-    batch.remarks().iter().for_each(|remark| text.push_str(&wrapped(remark)));
+    batch.notes().iter().for_each(|remark| text.push_str(&wrapped(remark)));
     text
 }
 
 /// The findings of each record, named by it.
 fn findings(batch: &CalibratedBatch) -> Vec<Gathered> {
-    let records = batch.found.specimens.iter().zip(&batch.data);
-    records.flat_map(|(specimen, data)| gathered_at(&specimen.name, data.findings())).collect()
+    let records = batch.found.specimens.iter();
+    records.flat_map(|specimen| gathered_at(&specimen.name, &specimen.findings)).collect()
 }
 
 /// The same with the figure as a page.
@@ -96,7 +96,7 @@ pub fn batch_page(batch: &CalibratedBatch) -> Result<Page, StudyError> {
         .block(Block::Table(batch_table(batch)))
         .block(Block::Table(records_table(batch)))
         .block(Block::Findings(findings(batch).iter().map(Gathered::reported).collect()))
-        .block(Block::List(batch.remarks()));
+        .block(Block::List(batch.notes()));
     let records = panels(batch);
     for figure in by_hold("calibration", CAPTION, (80.0, 54.0), (&records, "records"), Panel::clone) {
         section = section.block(Block::figure(&figure)?);

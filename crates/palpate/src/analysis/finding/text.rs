@@ -489,6 +489,16 @@ impl Finding {
                 "the labels of the file apply; a hold that is not found drifts, is short, or is mislabelled",
                 "inspect the phases; give the limits of holds by hand ([[phases.hold]] in the test description) if the labels are wrong",
             ),
+            Self::RecordApart { share, others } => warning(
+                "record_apart",
+                format!(
+                    "the law leaves {} % of the peak force of this record, and {} % of that of the others",
+                    significant(100.0 * share, 2),
+                    significant(100.0 * others, 2)
+                ),
+                "the record is broken, or of another body: it shifts the means of the batch and widens the spread",
+                "look at the record; leave it out",
+            ),
             Self::JawHunts(ripple) => caution(
                 "jaw_hunts",
                 format!(

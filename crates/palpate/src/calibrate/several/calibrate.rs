@@ -8,6 +8,7 @@ use super::specimen::{Another, range_of};
 use super::spread::{Spread, one_value_p};
 use super::start::{is_determined, log_of, log_variance, start};
 use super::{SeveralError, Sharing};
+use crate::analysis::Finding;
 use crate::calibrate::prepared::Prepared;
 use crate::calibrate::problem::sum_of_squares;
 use crate::calibrate::uncertainty::FARTHEST;
@@ -17,7 +18,7 @@ use crate::calibrate::{
 };
 use crate::fit::Estimate;
 use crate::simulate::simulate_force;
-use crate::statistics::{coverage_factor, normal_factor};
+use crate::statistics::{coverage_factor, median, normal_factor};
 use crate::watch::{Stages, Watch};
 
 /// Share of the work that the calibrations of the single records are.
@@ -264,7 +265,19 @@ impl Batch<'_> {
             relative: rmse / alone.material.range().largest_force,
             rmse_alone: alone.rmse,
             noise: self.covariance.noises[record],
+            findings: data.findings().iter().cloned().chain(self.apart(record)).collect(),
         })
+    }
+
+    /// A finding where the law leaves far more of a record than of the others.
+    fn apart(&self, record: usize) -> Option<Finding> {
+        /// How many times as much, and as a share of the peak force of the record.
+        const APART: f64 = 10.0;
+        const LEAST: f64 = 0.02;
+        let share = self.alone[record].relative;
+        let others = self.alone.iter().enumerate().filter(|(other, _)| *other != record);
+        let others = median(&mut others.map(|(_, made)| made.relative).collect::<Vec<f64>>());
+        (share > LEAST.max(APART * others)).then_some(Finding::RecordApart { share, others })
     }
 
     /// The material of another specimen.

@@ -89,6 +89,14 @@ impl SeveralError {
             Self::TooFew { .. } => "give two or more records, or share nothing".to_owned(),
             Self::Repeated { .. } => "give each record once".to_owned(),
             Self::Table => "use another equilibrium law: uniform-strain or hertz".to_owned(),
+            Self::Record { error, .. } if error.is_of_record() => {
+                let hint = error.hint();
+                if hint.is_empty() {
+                    "leave the record out".to_owned()
+                } else {
+                    format!("{hint}, or leave the record out")
+                }
+            }
             Self::Record { error, .. } => error.hint(),
             Self::Undetermined { .. } | Self::NoOptimum { .. } => {
                 "share more parameters, leave the record out, or use a law with fewer parameters".to_owned()

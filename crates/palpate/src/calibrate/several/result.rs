@@ -3,6 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::{Sharing, Spread};
+use crate::analysis::Finding;
 use crate::calibrate::{CalibrationData, Candidate, Material, MaterialUnit};
 use crate::fit::{Estimate, NoiseModel};
 
@@ -98,6 +99,8 @@ pub struct CalibratedSpecimen {
     pub rmse_alone: f64,
     /// Correlation of its residuals.
     pub noise: NoiseModel,
+    /// Its findings: those of its columns, and whether it is apart from the other records.
+    pub findings: Vec<Finding>,
 }
 
 impl SeveralCalibration {
