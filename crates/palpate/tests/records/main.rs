@@ -4,6 +4,7 @@
 mod any_state;
 mod calibrate;
 mod corrections;
+mod curve_modulus;
 mod damage;
 mod exponents;
 mod grip;

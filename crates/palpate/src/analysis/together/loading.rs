@@ -25,7 +25,7 @@ const FEWEST: usize = 8;
 /// How many times its standard error by the residuals a modulus must be: the force of a ramp that loads nothing drifts.
 const OBSERVED: f64 = 3.0;
 
-/// E from the first loading ramp by least squares of F = E g(u₁), with g the equilibrium force of the body at 1 Pa and first touch where it was
+/// E from the first loading ramp, up to the sample at which the jaw arrives, by least squares of F = E g(u₁), with g the equilibrium force of the body at 1 Pa and first touch where it was
 /// found: E = Σ g F/Σ g². `None` without a body or such a ramp, and where the force does not rise beyond its scatter.
 pub(in crate::analysis) fn loading_modulus(
     record: &Record,
@@ -40,7 +40,9 @@ pub(in crate::analysis) fn loading_modulus(
         .segments
         .iter()
         .find(|segment| segment.phase == Phase::Loading && segment.end > touch)?;
-    let samples = ramp.start.max(touch)..ramp.end;
+    // The jaw still moves up to the sample at which it arrives, the first of the hold.
+    let arrives = displacement.get(ramp.end).is_some_and(|there| *there > displacement[ramp.end - 1]);
+    let samples = ramp.start.max(touch)..ramp.end + usize::from(arrives);
     let (displacement, force) = (&displacement[samples.clone()], &record.force()[samples]);
     // Displacements are counted from a touch that may lie by `off` (m) elsewhere.
     let units = |off: f64| {

@@ -1,0 +1,66 @@
+//! The modulus of a force curve: of its ramp, and of the force that its hold tends to.
+#![expect(clippy::unwrap_used, reason = "a test that cannot run has failed")]
+
+use std::f64::consts::PI;
+
+use palpate::analysis::{Analysis, AnalysisOptions, Geometry, analyze};
+use palpate::contact::{Equilibrium, Shape, Sides};
+use palpate::record::Record;
+use palpate::segment::ContactChoice;
+use palpate::simulate::{ProtocolStep, Separation, protocol, simulate_force};
+use palpate::test_problems::{Rng, paper_ball};
+
+const RADIUS: f64 = 0.035;
+
+/// The paper's ball, squeezed from both sides by 4 mm in 0.5 s after a way through air (m), and held; with noise of the force (N).
+fn squeezed(air: f64, rate_hz: f64, noise: f64, touch: ContactChoice) -> Analysis {
+    let motion = protocol(&[ProtocolStep {
+        to: 0.004,
+        rate: 0.008,
+        hold: 20.0,
+    }])
+    .unwrap();
+    let before = air / 0.008;
+    let times: Vec<f64> = (0..).map(|i| f64::from(i) / rate_hz).take_while(|t| *t <= before + motion.end()).collect();
+    let inside: Vec<f64> = times.iter().map(|t| (t - before).max(0.0)).collect();
+    let displacement = times.iter().map(|t| (0.008 * t).min(air + motion.displacement_at((t - before).max(0.0))));
+    let (distinct, first) = (inside.iter().filter(|t| **t > 0.0).count(), inside.len());
+    let start = first - distinct;
+    let mut random = Rng::new(5);
+    let pressed = simulate_force(&motion, &paper_ball(Separation::Unilateral), &inside[start..]).unwrap();
+    let force = std::iter::repeat_n(0.0, start).chain(pressed).map(|force| force + noise * random.normal());
+    let record = Record::new(times.clone(), Some(displacement.collect()), force.collect()).unwrap();
+    let options = AnalysisOptions {
+        geometry: Some(Geometry {
+            shape: Shape::Ball { radius: RADIUS },
+            sides: Sides::Two,
+            modulus: None,
+            equilibrium: Equilibrium::UniformStrain,
+        }),
+        touch,
+        ..AnalysisOptions::default()
+    };
+    analyze(&record, &options).unwrap()
+}
+
+/// Equilibrium force of the ball at 1 Pa and a displacement of the jaw (m): A(u) u/r with A = π (2 r u − u²), u half of it.
+fn unit(displacement: f64) -> f64 {
+    let u = 0.5 * displacement.max(0.0);
+    PI * (2.0 * RADIUS * u - u * u) * u / RADIUS
+}
+
+/// The ramp was cut one sample before the jaw arrives: of 11 samples that changed the modulus by 6 %.
+#[test]
+fn the_modulus_of_a_ramp_reaches_to_where_the_jaw_arrives() {
+    let analysis = squeezed(0.0, 20.0, 0.0, ContactChoice::AsRecorded);
+    let record = &analysis.record;
+    let rows = record.time().iter().zip(record.displacement().unwrap()).zip(record.force());
+    let ramp: Vec<(f64, f64)> = rows
+        .filter(|((time, _), _)| **time < 0.5 + 1e-9)
+        .map(|((_, d), force)| (unit(*d), *force))
+        .collect();
+    assert_eq!(ramp.len(), 11);
+    let expected = ramp.iter().map(|(g, f)| g * f).sum::<f64>() / ramp.iter().map(|(g, _)| g * g).sum::<f64>();
+    let found = analysis.loading_modulus.unwrap().value;
+    assert!((found / expected - 1.0).abs() < 1e-9, "{found} {expected}");
+}
