@@ -1,7 +1,7 @@
 //! One fit.
 
 use palpate::analysis::{HoldAnalysis, HoldoutError};
-use palpate::fit::LatencyFit;
+use palpate::fit::{LatencyFit, ParameterKind};
 
 use crate::result::{Parameters, formula, parameters_of, word};
 
@@ -11,6 +11,8 @@ documents! {
         let is_good = fit.termination.is_good() || fit.equilibrium().standard_error.is_some();
         let newtons = |value: f64| Some(value * hold.force_per_signal).filter(|_| is_good);
         let relative_rmse = hold.relative_rmse(fit).filter(|share| share.is_finite());
+        let equilibrium = fit.parameters.iter().find(|parameter| parameter.name.kind == ParameterKind::Equilibrium);
+        let scatter = equilibrium.and_then(|found| found.parts.as_ref().map_or(found.estimate.standard_error, |parts| parts.scatter));
         let pascals = |value: f64| newtons(value).zip(hold.force_per_modulus).map(|(force, per_modulus)| force / per_modulus);
     } {
         /// `latency:N` with the exponent given, `latency` with the exponent estimated.
@@ -27,8 +29,10 @@ documents! {
         excess_force_n: Option<f64> = newtons(fit.amplitude().value),
         /// Young's modulus that the equilibrium force implies, Pa.
         equilibrium_modulus_pa?: Option<f64> = pascals(fit.equilibrium().value),
-        /// Its standard error, Pa.
-        equilibrium_modulus_standard_error_pa?: Option<f64> = fit.equilibrium().standard_error.and_then(pascals),
+        /// Its standard error, Pa: of the equilibrium force, of first touch where that was found, and of the instrument.
+        equilibrium_modulus_standard_error_pa?: Option<f64> = scatter.and_then(pascals).zip(pascals(fit.equilibrium().value)).map(
+            |(scatter, modulus)| scatter.hypot(modulus * hold.modulus_error.unwrap_or(0.0))
+        ),
         /// Root mean square residual in the unit of the fitted quantity: strain, N, or 1/s in the rate domain.
         rmse: f64 = fit.rmse,
         /// The same as a share of the change of the signal over the fitted samples; `null` in the rate domain.

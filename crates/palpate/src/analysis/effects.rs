@@ -184,6 +184,30 @@ fn sides<T>(input: &InputQuantity, result: impl Fn(f64) -> Option<T>) -> Option<
     Some([result(-by)?, result(by)?])
 }
 
+/// Share by which first touch, with its standard error (m), and the stated quantities leave a modulus F/g(u₁) of a hold uncertain; `None`
+/// without a body.
+pub(in crate::analysis) fn error_of_modulus(
+    hold: &HoldAnalysis,
+    options: &AnalysisOptions,
+    touch: Option<f64>,
+) -> Option<f64> {
+    let (geometry, level) = (options.geometry.as_ref()?, hold.displacement?);
+    let modulus = |quantity, by| {
+        let deviation = Deviation::of(quantity, by);
+        let body = geometry.with_shape(deviation.shape(&geometry.shape)).specimen(1.0).ok()?;
+        let place = body.contact_displacement(deviation.displacement(level, hold.force_end));
+        Some(deviation.force(hold.force_end) / body.equilibrium_force(place)).filter(|modulus| modulus.is_finite())
+    };
+    let stated = options.instrument.inputs.iter();
+    let stated = stated.map(|input| (input.quantity, input.uncertainty.standard_uncertainty));
+    let touch = touch.map(|error| (InstrumentQuantity::Touch, error));
+    let square = stated.chain(touch).try_fold(0.0, |sum, (quantity, by)| {
+        let half = 0.5 * (modulus(quantity, by)? - modulus(quantity, -by)?);
+        Some(sum + half * half)
+    })?;
+    Some(square.sqrt() / modulus(InstrumentQuantity::Force, 0.0)?.abs())
+}
+
 impl Changed {
     /// The value of a parameter of a law whose signal changes like this.
     fn parameter(self, parameter: &Parameter, exponent: f64, end: f64) -> f64 {

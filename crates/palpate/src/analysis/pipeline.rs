@@ -1,6 +1,6 @@
 //! The order of the steps.
 
-use super::effects::Causes;
+use super::effects::{Causes, error_of_modulus};
 use super::holds::{HoldAnalysis, complete_hold, fit_exponents, forecast_holds, imposed, prepare_hold};
 use super::prepare::{ClockSkew, Prepared, corrected_watched, signal_findings};
 use super::together::{
@@ -192,6 +192,9 @@ fn examined(
     });
     if let Some(relative) = overlay.as_ref().map(|overlay| overlay.relative).filter(|relative| *relative > POOR) {
         findings.push(Finding::OverlayPoor { relative });
+    }
+    for hold in &mut holds {
+        hold.modulus_error = error_of_modulus(hold, options, contact.displacement_error);
     }
     // What holds have in common is no difference between them: all comparisons come first.
     if let Some(causes) = &causes {

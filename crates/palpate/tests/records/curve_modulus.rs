@@ -64,3 +64,17 @@ fn the_modulus_of_a_ramp_reaches_to_where_the_jaw_arrives() {
     let found = analysis.loading_modulus.unwrap().value;
     assert!((found / expected - 1.0).abs() < 1e-9, "{found} {expected}");
 }
+
+/// The error of first touch was part of the modulus of the ramp and not of that of the equilibrium force.
+#[test]
+fn the_equilibrium_modulus_is_as_uncertain_as_first_touch() {
+    let analysis = squeezed(1e-3, 200.0, 0.02, ContactChoice::Auto);
+    let (error, hold) = (analysis.contact.displacement_error.unwrap(), &analysis.holds[0]);
+    let level = hold.displacement.unwrap();
+    let expected = (unit(level + error) - unit(level - error)) / (2.0 * unit(level));
+    let found = hold.modulus_error.unwrap();
+    assert!((found / expected - 1.0).abs() < 0.05 && expected > 1e-4, "{found} {expected}");
+    // A touch that is given is exact.
+    let given = squeezed(1e-3, 200.0, 0.02, ContactChoice::Displacement(1e-3));
+    assert_eq!(given.holds[0].modulus_error, Some(0.0));
+}

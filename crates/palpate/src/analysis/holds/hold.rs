@@ -60,6 +60,8 @@ pub struct HoldAnalysis {
     pub force_per_signal: f64,
     /// Equilibrium force per modulus at this hold, N/Pa: the modulus that an equilibrium force F_e implies is F_e over it.
     pub force_per_modulus: Option<f64>,
+    /// Share by which first touch and the instrument leave that modulus uncertain.
+    pub modulus_error: Option<f64>,
     /// Times since the start of the fit, s.
     pub times: Vec<f64>,
     /// The signal at those times.
@@ -152,6 +154,7 @@ pub(in crate::analysis) fn prepare_hold(
         signal: if specimen.is_some() { Signal::Strain } else { Signal::Force },
         force_per_signal: 1.0,
         force_per_modulus: None,
+        modulus_error: None,
         times: Vec::new(),
         values: Vec::new(),
         fitted: 0,
