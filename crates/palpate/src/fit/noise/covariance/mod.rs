@@ -21,5 +21,6 @@ mod uneven;
 pub(crate) use assessed::{Assessed, Trust};
 #[cfg(test)]
 pub(crate) use columns::Columns;
-pub use uncertainty::{ModelCovariance, Uncertainty};
+pub use sandwich::ModelCovariance;
+pub use uncertainty::Uncertainty;
 pub(crate) use uncertainty::{Scale, variance_of};

@@ -1,12 +1,22 @@
 //! From the covariance of a noise to that of the parameters of a fit.
 
+use serde::{Deserialize, Serialize};
+
 use super::blocks::by_blocks;
 use super::columns::Columns;
-use super::uncertainty::ModelCovariance;
 use super::uneven::by_residuals;
 use crate::fit::NoiseModel;
 use crate::fit::noise::model::Likely;
 use crate::vector::cross_products;
+
+/// What follows from one model of the noise.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct ModelCovariance {
+    /// w_m.
+    pub probability: f64,
+    /// Covariance of the parameters if this is the noise.
+    pub covariance: Vec<Vec<f64>>,
+}
 
 /// A fit by least squares, ready for the covariances (JᵀJ)⁻¹ JᵀVJ (JᵀJ)⁻¹ of its parameters in the caller's units.
 pub(super) struct Sandwich<'a> {

@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::sandwich::Sandwich;
+use super::sandwich::{ModelCovariance, Sandwich};
 use crate::fit::noise::model::Noise;
 use crate::optimise::Effort;
 use crate::statistics::mean;
@@ -46,15 +46,6 @@ pub struct Uncertainty {
     pub covariance: Vec<Vec<f64>>,
     /// Models of the noise, if there are several.
     pub models: Vec<ModelCovariance>,
-}
-
-/// What follows from one model of the noise.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct ModelCovariance {
-    /// w_m.
-    pub probability: f64,
-    /// Covariance of the parameters if this is the noise.
-    pub covariance: Vec<Vec<f64>>,
 }
 
 impl Uncertainty {
