@@ -1697,7 +1697,7 @@ class Fit(_Series):
 
         The distribution of the intervals of curvature: one of the models of the noise, each by its probability, and from it Student's t of
         N - p degrees of freedom with its covariance, in the scales of `searched`: rates and times, whose logarithms were searched, are
-        log-t. The covariance of many sets is `covariance`, the mean over the models, times (N - p)/(N - p - 2). Where `interval_method` is
+        log-t. The covariance of many sets is the mean over the models times (N - p)/(N - p - 2). Where `interval_method` is
         another one than "curvature", the true distribution has other tails, which are those of the intervals. Where the fit had `bounds`,
         sets outside of them are drawn again.
 
