@@ -94,8 +94,8 @@ fn of_force(error: SegmentError) -> CreepError {
     })
 }
 
-/// Holds of constant force: of given ones all but those in which the displacement is held; else those over which the jaw is
-/// observed to creep, or else all in which the force stays. All phases, and which of them.
+/// Holds of constant force: of given ones all but those in which the displacement is held; else, where the force is held in one, the same of those
+/// that are found; or else all in which the force stays, or at last both move. All phases, and which of them.
 fn force_held(
     record: &Record,
     exchanged: &Record,
@@ -158,8 +158,8 @@ fn creeping(
 
 /// Finds the holds of constant force in a record and compares laws of creep on the displacement of each.
 ///
-/// Where holds are `given` they are those, less any whose mode is [`HoldMode::DisplacementHeld`]. Else they are those whose mode
-/// is [`HoldMode::ForceHeld`]. Where there is none, phases are found as for a squeeze, with force and displacement exchanged: the
+/// Where holds are `given` they are those, less any whose mode is [`HoldMode::DisplacementHeld`]. Else, where one is found whose mode
+/// is [`HoldMode::ForceHeld`], they are those found, less the same. Where there is none, phases are found as for a squeeze, with force and displacement exchanged: the
 /// force is what the machine holds, to a fiftieth of its range, whatever tolerance `segment` has. `until` (s) limits how much of
 /// each hold is fitted.
 ///

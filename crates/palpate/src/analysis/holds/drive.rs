@@ -8,8 +8,8 @@ use crate::statistics::{mean, median, noise};
 /// Share of the answer that the drive makes, from which on it is stated: of a creep, whose laws have a time more for it; and of a relaxation.
 const MATTERS: [f64; 2] = [0.01, 0.05];
 
-/// How far what is held, by its `mode`, goes over the fitted part of segment `index`, in samples up to `end`; `None` where it stays, or where the body's answer hardly
-/// shows it.
+/// How far what is held, by its `mode`, goes over the fitted part of segment `index`, in samples up to `end`; `None` where it stays, or where
+/// the body's answer hardly shows it.
 ///
 /// Half of the samples, a quarter and so on to a few at the start are held against the last tenth, so that a quick controller shows as well
 /// as a slow one. What a body answers is taken to be in proportion to what it is driven by, from before the ramp on.

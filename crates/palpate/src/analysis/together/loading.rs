@@ -25,8 +25,8 @@ const FEWEST: usize = 8;
 /// How many times its standard error by the residuals a modulus must be: the force of a ramp that loads nothing drifts.
 const OBSERVED: f64 = 3.0;
 
-/// E from the first loading ramp, up to the sample at which the jaw arrives, by least squares of F = E g(u₁), with g the equilibrium force of the body at 1 Pa and first touch where it was
-/// found: E = Σ g F/Σ g². `None` without a body or such a ramp, and where the force does not rise beyond its scatter.
+/// E from the first loading ramp, up to the sample at which the jaw arrives, by least squares of F = E g(u₁), with g the equilibrium force of the
+/// body at 1 Pa and first touch where it was found: E = Σ g F/Σ g². `None` without a body or such a ramp, and where the force does not rise beyond its scatter.
 pub(in crate::analysis) fn loading_modulus(
     record: &Record,
     segmentation: &Segmentation,
