@@ -20,8 +20,9 @@ def test_the_lab_is_in_the_package(tmp_path: Path) -> None:
         address = lab.stdout.readline().strip()
         with urllib.request.urlopen(address + "api/folder") as answer:
             assert b'"name":"press.csv"' in answer.read()
-        with pytest.raises(urllib.error.HTTPError, match="404"):
+        with pytest.raises(urllib.error.HTTPError, match="404") as refused:
             urllib.request.urlopen("/".join(address.split("/")[:3]))
+        refused.value.close()
         lab.send_signal(signal.SIGINT)
         assert lab.wait(10) != 0
     assert [entry.name for entry in tmp_path.iterdir()] == ["press.csv"]

@@ -23,6 +23,12 @@ const FAR: f64 = 5.0;
 const MOST: usize = 16;
 /// Share of a surprise in that mean.
 const MEMORY: f64 = 0.02;
+/// Standard deviations beyond which a surprise counts as one of so many: what a cable or a converter puts into one reading is not of the body.
+const STRANGE: f64 = 4.0;
+/// A way is stepped in parts until twice as many change the force by less than this share of its noise, or of itself where it has next to none.
+const EXACT: (f64, f64) = (0.05, 1e-5);
+/// Most parts of a way.
+const PARTS: u32 = 64;
 
 /// A model and its state.
 #[derive(Debug, Clone)]
@@ -60,6 +66,17 @@ impl Member {
                 self.rate.law(self.law, self.excess(&self.state, displacement), place / self.model.specimen.depth());
         }
         self.state.step(&self.model, dt, there)
+    }
+
+    /// Brings the jaw along a line from one displacement (m) to another within `dt` (s), in equal parts; the force, N.
+    fn go(&mut self, dt: f64, (from, to): (f64, f64), parts: u32) -> f64 {
+        let count = f64::from(parts);
+        for part in 1..parts {
+            // All displacements on the way lie between two that were taken.
+            let _ = self.step(dt / count, from + (to - from) * f64::from(part) / count);
+        }
+        let _ = self.step(dt / count, to);
+        self.state.force(&self.model)
     }
 
     /// Strain in excess of equilibrium; none while the jaw is off.
@@ -232,20 +249,17 @@ impl ModelFilter {
     /// of one reading of the displacement (m) and of the force (N). A force whose noise is not known yet corrects nothing.
     pub(super) fn feed(&mut self, time: f64, displacement: Normal, force: f64, noise: Option<(f64, f64)>) {
         let dt = self.last.map_or(0.0, |last| time - last);
+        let way = (self.displacement.mean, displacement.mean);
         self.last = Some(time);
         self.displacement = displacement;
-        let step = |member: &mut Member| {
-            // Checked before: it is taken.
-            let _ = member.step(dt, displacement.mean);
-        };
-        step(&mut self.best);
+        let parts = self.parts(dt, way);
+        let expected = self.best.go(dt, way, parts);
         for (high, low, _) in &mut self.pairs {
-            step(high);
-            step(low);
+            high.go(dt, way, parts);
+            low.go(dt, way, parts);
         }
         let Some(noise) = noise else { return };
         let of = |member: &Member| member.state.force(&member.model);
-        let expected = of(&self.best);
         let mut surprise = force - expected;
         for ((slope, pair), standing) in self.slope.iter_mut().zip(&self.pairs).zip(&self.standing) {
             *slope = half(pair, of);
@@ -262,6 +276,8 @@ impl ModelFilter {
             *gain = row.iter().zip(&self.slope).map(|(entry, slope)| entry * slope).sum();
         }
         variance += self.gain.iter().zip(&self.slope).map(|(gain, slope)| gain * slope).sum::<f64>();
+        let most = STRANGE * variance.sqrt();
+        let surprise = surprise.clamp(-most, most);
         self.surprise += MEMORY * (surprise * surprise / variance - self.surprise);
         // What one of several readings within that time tells, or of several that share their noise.
         self.correlation.feed(surprise / variance.sqrt());
@@ -277,6 +293,29 @@ impl ModelFilter {
                 *entry -= gain * other / variance;
             }
         }
+    }
+
+    /// How many parts of a way the best model needs: a step is of second order, and its error in a ramp is no noise.
+    fn parts(&mut self, dt: f64, way: (f64, f64)) -> u32 {
+        if dt <= 0.0 || way.0 == way.1 {
+            return 1;
+        }
+        let (state, law) = (self.best.state, self.best.model.law);
+        let mut after = |parts: u32| {
+            let force = self.best.go(dt, way, parts);
+            (self.best.state, self.best.model.law) = (state, law);
+            force
+        };
+        let (mut parts, mut force) = (1, after(1));
+        while parts < PARTS {
+            let finer = after(2 * parts);
+            let off = (finer - force).abs();
+            if off < (EXACT.0 * self.noise).max(EXACT.1 * finer.abs()) {
+                break;
+            }
+            (parts, force) = (2 * parts, finer);
+        }
+        parts
     }
 
     /// Exponent of the law of a hold, and what the calibration leaves open of it.

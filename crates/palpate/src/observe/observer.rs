@@ -25,7 +25,7 @@ const AGAIN: f64 = 0.04;
 const READINGS: u32 = 8;
 
 /// What the bytes of an observer begin with.
-const FORMAT: [u8; 8] = *b"observe5";
+const FORMAT: [u8; 8] = *b"observe6";
 
 /// A hold that goes on.
 #[derive(Debug, Clone, Copy, Default)]
@@ -73,8 +73,10 @@ pub(super) struct Observed {
     pub(super) smooth: Smooth,
     pub(super) jaw: Stand,
     pub(super) grip: Stand,
-    /// Least and largest displacement and force, m and N.
+    /// Least and largest displacement and force that two readings one after the other have reached, m and N: one alone may be none.
     pub(super) reached: [(f64, f64); 2],
+    /// The last of each.
+    before: [Option<f64>; 2],
     /// The force since the jaw stands, from `relaxes_from` (s) on, and the filtered force by then, N.
     pub(super) relaxation: Bins,
     pub(super) relaxes_from: f64,
@@ -93,7 +95,7 @@ pub(super) struct Observed {
     pub(super) doubted: Option<(f64, (f64, f64))>,
 }
 kept!(
-    Observed: last, displacement_noise, force_noise, smooth, jaw, grip, reached, relaxation, relaxes_from, relaxes_at,
+    Observed: last, displacement_noise, force_noise, smooth, jaw, grip, reached, before, relaxation, relaxes_from, relaxes_at,
     creep, creeps_at, displacement_observed, alone, hold, is_gripped, slip, doubted
 );
 
@@ -134,10 +136,10 @@ impl Observer {
         self.observed.last = Some(time);
         self.observed.force_noise.feed(time, force);
         self.observed.smooth.feed(dt, force, self.observed.force_noise.deviation());
-        reach(&mut self.observed.reached[1], force);
+        self.observed.reach(1, force);
         if let Some(displacement) = displacement {
             self.observed.displacement_noise.feed(time, displacement);
-            reach(&mut self.observed.reached[0], displacement);
+            self.observed.reach(0, displacement);
             self.observed.displacement_observed = true;
         }
         let began = self.follow(time, displacement, force);
@@ -253,22 +255,29 @@ impl Observer {
             Some(displacement) => self.observed.jaw.feed(time, displacement, jaw_tolerance, PATIENCE.0),
             None if self.observed.displacement_observed => Change::Same,
             None => {
-                let tolerance = self.observed.force_noise.deviation().map(|noise| NOISE * noise * Smooth::kept());
-                let predicted = self
-                    .observed
-                    .hold
-                    .and_then(|hold| hold.fit)
-                    .map(|fit| fit.force(time - self.observed.relaxes_from));
-                self.observed.alone.feed(time, self.observed.smooth.level, tolerance, predicted)
+                let tolerance = self.observed.force_noise.deviation().map(|noise| NOISE * noise);
+                let off = tolerance.zip(self.observed.hold.and_then(|hold| hold.fit)).map(|(tolerance, fit)| {
+                    let elapsed = time - self.observed.relaxes_from;
+                    if (force - fit.force(elapsed)).abs() <= tolerance {
+                        return 0.0;
+                    }
+                    let (low, high) = fit.interval(elapsed);
+                    (force - force.clamp(low, high)) / tolerance
+                });
+                let tolerance = tolerance.map(|tolerance| tolerance * Smooth::kept());
+                self.observed.alone.feed(time, self.observed.smooth.level, tolerance, off)
             }
         };
-        if matches!(jaw, Change::Moved | Change::Left | Change::Crept) || self.is_open() {
-            // The first reading at a place may still belong to the way there.
+        let arrives = jaw_tolerance.is_some_and(|tolerance| self.observed.jaw.arrives(time, tolerance));
+        if matches!(jaw, Change::Moved | Change::Left | Change::Crept) || arrives || self.is_open() {
+            // The first readings at a place may still belong to the way there.
             self.observed.relaxation.clear();
             (self.observed.relaxes_from, self.observed.relaxes_at) = (time, self.observed.smooth.level);
         } else if !self.observed.jaw.is_doubtful() {
             let elapsed = time - self.observed.relaxes_from;
-            self.observed.relaxation.push(elapsed, force);
+            if !self.observed.smooth.is_doubtful {
+                self.observed.relaxation.push(elapsed, force);
+            }
             if let Some(hold) = &mut self.observed.hold
                 && let Some(fit) = &hold.fit
             {
@@ -391,6 +400,10 @@ impl Observer {
     }
 }
 
-fn reach(reached: &mut (f64, f64), value: f64) {
-    *reached = (reached.0.min(value), reached.1.max(value));
+impl Observed {
+    fn reach(&mut self, column: usize, value: f64) {
+        let before = self.before[column].replace(value).unwrap_or(value);
+        let (least, most) = self.reached[column];
+        self.reached[column] = (least.min(before.max(value)), most.max(before.min(value)));
+    }
 }

@@ -7,7 +7,10 @@ use crate::grip::TimeToSlip;
 
 /// Slip that cannot be excluded is no warning where the best value is so many times farther than the warning is wanted: in the first moments
 /// of a hold nothing can be excluded.
-const FALSE_ALARM: f64 = 4.0;
+const FALSE_ALARM: f64 = 2.0;
+
+/// Nor where it is so many times farther than the hold has lasted: the best value of the first moments changes by as much with every few readings.
+const REACHES: f64 = 10.0;
 
 /// How many times longer the time to slip has to be for a warning to be taken back.
 const STAYS: f64 = 2.0;
@@ -129,6 +132,7 @@ impl Observer {
         // A warning stays until there is clearly no cause for it any more.
         let early = if before == Slip::None { 1.0 } else { STAYS };
         let margin = if before == Slip::Slipping { self.margin() } else { 0.0 };
+        let near = (FALSE_ALARM * self.options.warn_before).min(REACHES * (stated.time - self.observed.relaxes_from));
         match stated.time_to_slip {
             _ if stated.force <= slip + margin => Slip::Slipping,
             // Any other is of a hold.
@@ -137,11 +141,7 @@ impl Observer {
                 best: TimeToSlip::After(value),
                 low: TimeToSlip::After(low),
                 ..
-            }) if low <= early * self.options.warn_before
-                && value <= early * FALSE_ALARM * self.options.warn_before =>
-            {
-                Slip::Soon
-            }
+            }) if low <= early * self.options.warn_before && value <= early * near => Slip::Soon,
             // Before the first fit there is the margin alone.
             Some(SlipForecast::Unknown) if stated.force - 3.0 * early * noise <= slip => Slip::Soon,
             _ => Slip::None,

@@ -53,7 +53,7 @@ pub enum CreepError {
     #[error("the displacement cannot creep: {0}")]
     Still(RecordError),
     /// Where the force stays, the displacement stays, too.
-    #[error("the displacement changes by no more than its noise wherever the force is constant: there is no creep")]
+    #[error("no hold found in which the force is constant and the displacement changes by more than its noise")]
     DisplacementHeld,
     /// No hold of constant force.
     #[error("of the force: {0}")]
@@ -72,7 +72,8 @@ impl CreepError {
             Self::Cancelled(_) => "",
             Self::Given(error) => error.hint(),
             Self::DisplacementHeld | Self::Segment(_) => {
-                "creep needs a hold of constant force; without ⟨creep⟩ palpate fits holds of constant displacement"
+                "where the force drifts, give the hold (phases.hold in the test description); without ⟨creep⟩ palpate fits holds of constant \
+                 displacement"
             }
         }
     }

@@ -27,12 +27,14 @@ pub(in crate::observe) struct Alone {
 kept!(Alone: foot, peak, since, stands, falls, least, off, observed);
 
 impl Alone {
+    /// Takes the filtered force; `off` is how far the reading itself is beyond what the fitted curve allows, in tolerances, where there is a curve: a
+    /// filter lags behind the first moments of a relaxation.
     pub(in crate::observe) fn feed(
         &mut self,
         time: f64,
         level: f64,
         tolerance: Option<f64>,
-        predicted: Option<f64>,
+        off: Option<f64>,
     ) -> Change {
         let Some(tolerance) = tolerance else {
             return self.moved(time, level);
@@ -45,9 +47,9 @@ impl Alone {
             self.foot.0 = time;
         }
         if self.stands {
-            let off = predicted.map_or(0.0, |predicted| (level - predicted) / tolerance);
+            let lost = off.is_none() && level < 0.5 * self.peak;
+            let off = off.unwrap_or(0.0);
             self.off = if off.abs() > 1.0 { self.off + 1 } else { 0 };
-            let lost = predicted.is_none() && level < 0.5 * self.peak;
             if self.off < OFF && !lost {
                 return Change::Same;
             }

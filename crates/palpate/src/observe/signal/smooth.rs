@@ -18,8 +18,12 @@ pub(in crate::observe) struct Smooth {
     rate: f64,
     usual: f64,
     observed: bool,
+    /// Whether the last reading was far from what was expected.
+    is_strange: bool,
+    /// Whether it was the first of such, which may be one that a cable or a converter made.
+    pub(in crate::observe) is_doubtful: bool,
 }
-kept!(Smooth: level, rate, usual, observed);
+kept!(Smooth: level, rate, usual, observed, is_strange, is_doubtful);
 
 impl Smooth {
     /// Takes a reading `dt` (s) after the last; `noise` is its standard deviation, if that is known.
@@ -27,10 +31,17 @@ impl Smooth {
         let gap = self.usual > 0.0 && dt > GAP * self.usual;
         if !self.observed || gap {
             (self.level, self.rate, self.observed) = (value, 0.0, true);
+            (self.is_strange, self.is_doubtful) = (false, false);
         } else {
             let expected = self.level + self.rate * dt;
             let surprise = value - expected;
-            if noise.is_some_and(|noise| surprise.abs() > CORNER * noise) {
+            let is_strange = noise.is_some_and(|noise| surprise.abs() > CORNER * noise);
+            self.is_doubtful = is_strange && !self.is_strange;
+            self.is_strange = is_strange;
+            if self.is_doubtful {
+                // The next reading tells.
+                self.level = expected;
+            } else if is_strange {
                 // A corner, or a motion in few readings: the reading knows more than the filter, which would swing past it.
                 (self.level, self.rate) = (value, 0.0);
             } else {
@@ -64,9 +75,10 @@ mod tests {
         assert!((smooth.level - 0.03 * 399.0).abs() < 1e-9);
         smooth.feed(5.0, 2.0, None);
         assert_eq!(smooth.level, 2.0);
-        for value in [3.0, 4.0, 5.0, 5.0, 5.0] {
+        // The first reading of a motion may be none.
+        for (value, level) in [(3.0, 2.0), (4.0, 4.0), (5.0, 5.0), (5.0, 5.0), (9.0, 5.0), (5.0, 5.0)] {
             smooth.feed(0.05, value, Some(0.05));
-            assert_eq!(smooth.level, value);
+            assert_eq!((smooth.level, smooth.is_doubtful), (level, level != value));
         }
     }
 }

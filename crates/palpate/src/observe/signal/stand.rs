@@ -137,6 +137,11 @@ impl Stand {
         Normal::new(self.mean, noise / count.sqrt())
     }
 
+    /// Whether a signal that came to a place may still be on the last tolerance of its way.
+    pub(in crate::observe) fn arrives(&self, time: f64, tolerance: f64) -> bool {
+        !self.stands && self.speed.is_some_and(|speed| (time - self.start) * speed < tolerance)
+    }
+
     /// Whether the stand was reported, and the last reading is off its place: a dropout, or the first of a motion.
     pub(in crate::observe) fn is_doubtful(&self) -> bool {
         self.stands && self.outside > 0

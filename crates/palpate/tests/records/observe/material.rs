@@ -116,6 +116,79 @@ fn a_material_tells_the_excess_at_once_and_the_time_to_slip_early() {
     }
 }
 
+/// A squeeze of 5 mm at a speed (m/s), the body stepped a thousand times a reading, read at a rate (1/s) for `hold` s after the jaw stops, which it
+/// does between two readings.
+fn read_at(speed: f64, rate: f64, hold: f64) -> Vec<(f64, f64, f64)> {
+    const FINE: usize = 1000;
+    let (model, mut contact, mut force) = (model(), ContactState::default(), 0.0);
+    let begins = 1.37 / rate;
+    (1..=((begins + 5e-3 / speed + hold) * rate) as usize)
+        .map(|i| {
+            let at = |k: usize| {
+                (5e-3f64).min(speed * ((i - 1) as f64 / rate + k as f64 / (FINE as f64 * rate) - begins).max(0.0))
+            };
+            for k in 1..=FINE {
+                force = contact.step(&model, 1.0 / (FINE as f64 * rate), at(k)).unwrap();
+            }
+            (i as f64 / rate, at(FINE), force)
+        })
+        .collect()
+}
+
+/// The error of one step a reading, 2 to 7 % of the force of a ramp, was taken for the body: 0 of 40 equilibria were within their intervals.
+#[test]
+fn intervals_contain_the_truth_however_seldom_a_ramp_is_read() {
+    let body = model().specimen;
+    let place = body.contact_displacement(5e-3);
+    let equilibrium = body.force(body.equilibrium_strain(place), place);
+    for (speed, rate) in [(0.0083, 10.0), (0.0083, 20.0), (0.0083, 50.0), (0.05, 100.0), (0.1, 100.0), (0.1, 1000.0)] {
+        for after in [0.5, 5.0] {
+            let course = read_at(speed, rate, after);
+            let (mut inside, mut known, mut away, seeds) = (0, 0, 0.0, repeats(40, 200));
+            for seed in 0..seeds {
+                let options = ObserverOptions {
+                    material: Some(material(1.0)),
+                    noise: Some((1e-6, 0.02)),
+                    ..slipping_at(1.0)
+                };
+                let found = watched_with_drift(&course, 0.0, seed, &options).equilibrium_force;
+                if let Some(found) = found {
+                    known += 1;
+                    inside += u64::from((found.value - equilibrium).abs() < 2.0 * error(found));
+                    away += (found.value - equilibrium) / error(found) / seeds as f64;
+                }
+            }
+            println!("{speed} m/s, {rate} Hz, {after} s: {inside} of {known}, mean {away:.2}");
+            assert!(inside >= least_inside(seeds), "{speed} {rate} {after}: {inside} of {known}");
+            assert!(away.abs() < 1.0, "{speed} {rate} {after}: {away}");
+        }
+    }
+}
+
+/// One reading of 50 N moved the equilibrium by six standard errors for the rest of the hold.
+#[test]
+fn a_reading_that_is_none_of_the_body_moves_nothing() {
+    let course = squeeze(15.0);
+    let options = ObserverOptions {
+        material: Some(material(1.0)),
+        noise: Some((1e-6, 0.05)),
+        ..ObserverOptions::default()
+    };
+    for strange in [50.0, 200.0, 0.0] {
+        for seed in 0..10 {
+            let [plain, found] = [false, true].map(|is_strange| {
+                let mut course = course.clone();
+                if is_strange {
+                    course[((STOP + 3.0) * RATE) as usize].2 = strange;
+                }
+                watched_with_drift(&course, 0.0, seed, &options).equilibrium_force.unwrap()
+            });
+            let moved = (found.value - plain.value) / error(plain);
+            assert!(moved.abs() < 0.5, "{strange} N, {seed}: {moved} standard errors");
+        }
+    }
+}
+
 /// Readings that share their noise were counted as independent: 44 to 75 of 100 equilibria and 47 to 72 of 100 times were within their intervals.
 #[test]
 fn intervals_contain_the_truth_under_noise_that_correlates() {
