@@ -89,6 +89,11 @@ impl Answer {
 }
 
 impl HoldAnswer {
+    /// What stands against every law, which goes before how this one compares with the others, or else that, in words.
+    pub(crate) fn standing(&self) -> String {
+        self.reservation.as_ref().unwrap_or(&self.certainty).replace('_', " ")
+    }
+
     fn new(hold: &ComparedHold, comparison: &Comparison) -> Option<Self> {
         let verdict = comparison.verdict.as_ref()?;
         let row = comparison.rows.iter().find(|row| row.law == verdict.law)?;

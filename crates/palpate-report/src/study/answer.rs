@@ -33,8 +33,7 @@ pub(super) fn answer_text(record: &ComparedRecord, findings: &[Gathered], in_bri
             "{}: {} ({}, {:.0} %)",
             hold.title,
             hold.law,
-            // What stands against every law goes before how this one compares with the others.
-            hold.reservation.as_ref().unwrap_or(&hold.certainty),
+            hold.standing(),
             100.0 * hold.probability
         )));
         for line in formula_line(hold).into_iter().chain([hold.statement()]) {
@@ -114,10 +113,7 @@ fn verdicts_in_brief(record: &ComparedRecord, answer: &Answer) -> Option<Table> 
         let compared = record.holds.iter().find(|compared| compared.number == hold.hold);
         Cell::text(compared.map(ComparedHold::condition).unwrap_or_default())
     };
-    let certainty = |hold: &HoldAnswer| {
-        let certainty = hold.reservation.as_ref().unwrap_or(&hold.certainty);
-        Cell::text(format!("{certainty}, {:.0} %", 100.0 * hold.probability))
-    };
+    let certainty = |hold: &HoldAnswer| Cell::text(format!("{}, {:.0} %", hold.standing(), 100.0 * hold.probability));
     Table::of("answer_in_brief", CAPTION, &answer.holds)
         .column("Hold", "hold", "", |hold| Cell::Integer(hold.hold as i64))
         .column("Held", "condition", "", condition)

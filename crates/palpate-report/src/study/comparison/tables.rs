@@ -266,7 +266,7 @@ fn overview(comparison: &Comparison, law: Law, written: fn(String) -> String) ->
 fn sure(verdict: &Verdict) -> String {
     // What stands against every law goes before how this one compares with the others.
     let reserved = verdict.reservation.map_or_else(|| word(verdict.certainty), word);
-    let sure = format!("{reserved}, {:.0} %", 100.0 * verdict.probability);
+    let sure = format!("{}, {:.0} %", reserved.replace('_', " "), 100.0 * verdict.probability);
     match verdict.indistinguishable.len() {
         1 => sure,
         alike => format!("{sure}, {} not distinguishable", alike - 1),
