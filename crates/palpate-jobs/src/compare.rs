@@ -120,12 +120,6 @@ impl Compare {
                 &format!("omit it, or compare {other} ⟨creep⟩"),
             ));
         }
-        if self.creep && self.ramps == RampChoice::Measured {
-            return Err(JobError::option(
-                "⟨ramps⟩ measured is of use to relaxation, found it with ⟨creep⟩".to_owned(),
-                "omit it: creep is fitted as after a step of the force",
-            ));
-        }
         if let Some(cuts) = &self.cuts {
             if let Some(cut) = no_share(cuts) {
                 let message = format!("⟨cuts⟩ are shares of the hold between 0 and 1, found {cut}");

@@ -13,7 +13,8 @@ pub enum RampChoice {
     /// A step at the start of the fit, as is usual: right where the ramp is short beside all times of the law.
     #[default]
     Step,
-    /// What was measured, by the hereditary integral; of use to [`analyze`](crate::analysis::analyze), which knows the ramp.
+    /// What was measured, by the hereditary integral; of use to [`analyze`](crate::analysis::analyze) and
+    /// [`creep_holds`](crate::analysis::creep_holds), which know the ramp.
     Measured,
 }
 

@@ -2,14 +2,16 @@
 
 use super::compared::{add_forecasts, comparison_findings};
 use super::drive::drive_changes;
+use super::imposed::imposed_force;
 use crate::analysis::finding::Finding;
-use crate::fit::{Samples, fitted};
-use crate::forecast::{CompareOptions, Comparison, Reservation, compare_laws_watched};
+use crate::fit::{LawOptions, Samples, fitted};
+use crate::forecast::{CompareOptions, Comparison, RampChoice, Reservation, compare_laws_watched};
 use crate::laws::Response;
 use crate::record::{Record, RecordError};
 use crate::segment::{
     After, GivenHold, HoldMode, Phase, Segment, SegmentError, SegmentOptions, Segmentation, creeps, phases_watched,
 };
+use crate::simulate::Separation;
 use crate::statistics::{median, noise, range};
 use crate::watch::{Cancelled, Watch};
 
@@ -201,6 +203,17 @@ pub fn creep_holds(
     each.forecast = false;
     let time = exchanged.time();
     let until = |times: &[f64]| until.map_or(times.len(), |until| times.partition_point(|t| *t <= until));
+    let is_measured = compare.ramps == RampChoice::Measured;
+    let fits: Vec<LawOptions> = held
+        .iter()
+        .map(|place| {
+            let loading = is_measured.then(|| imposed_force(&record, &segments, *place, Separation::Unilateral));
+            LawOptions {
+                loading: loading.flatten().or(each.fit.loading.clone()),
+                ..each.fit.clone()
+            }
+        })
+        .collect();
     let holds = held.iter().enumerate().map(|(index, place)| {
         let hold = &segments[*place];
         let from = hold.fit_start;
@@ -208,7 +221,11 @@ pub fn creep_holds(
         let displacement = exchanged.force()[from..hold.end].to_vec();
         let last = until(&times);
         let samples = Samples::new(&times[..last], &displacement[..last]);
-        let mut comparison = fitted(compare_laws_watched(&samples, &each, &[], watch))?;
+        let compare = CompareOptions {
+            fit: fits[index].clone(),
+            ..each.clone()
+        };
+        let mut comparison = fitted(compare_laws_watched(&samples, &compare, &[], watch))?;
         let mut findings = comparison.as_ref().map_or_else(Vec::new, |found| comparison_findings(found, times[1]));
         if let Some(changes) = drive_changes(&record, (&segments, *place), HoldMode::ForceHeld, from + last) {
             // No law of a constant force is the law of a body under this one.
@@ -231,10 +248,10 @@ pub fn creep_holds(
         })
     });
     let mut holds: Vec<CreepHold> = holds.collect::<Result<_, CreepError>>()?;
-    let compared = holds.iter_mut().filter_map(|hold| {
+    let compared = holds.iter_mut().zip(fits).filter_map(|(hold, fit)| {
         let last = until(&hold.times);
         let samples = Samples::new(&hold.times[..last], &hold.displacement[..last]);
-        Some((samples, each.fit.clone(), hold.comparison.as_mut()?))
+        Some((samples, fit, hold.comparison.as_mut()?))
     });
     if compare.forecast {
         add_forecasts(compared.collect(), &each.laws(), watch)?;
@@ -318,6 +335,37 @@ mod tests {
             assert_eq!(stated(&under(|t| lag(t, share, time))), [(true, true)], "{share} {time}");
         }
         assert_eq!(stated(&under(ramp)), [(false, false)]);
+    }
+
+    /// It was refused: a creep after a ramp of 4 s had 79 % of its amplitude.
+    #[test]
+    fn a_creep_knows_the_ramp_of_its_force() {
+        let mut random = Rng::new(8);
+        for (ramp, noise) in [(4.0, 0.0), (4.0, 1e-3), (12.0, 1e-3)] {
+            let force = |t: f64| 5.0 * (t - 2.0).clamp(0.0, ramp) / ramp;
+            // J(t) = 1 + 1.5 (1 − exp(−t/8)) mm for 5 N, after a ramp.
+            let slow = |t: f64| {
+                let (since, on) = ((t - 2.0).max(0.0), (t - 2.0).clamp(0.0, ramp));
+                on / ramp - 8.0 / ramp * ((-(since - on) / 8.0).exp() - (-since / 8.0).exp())
+            };
+            let time: Vec<f64> = (0..1600).map(|i| 0.05 * f64::from(i)).collect();
+            let jaw = time.iter().map(|t| 2e-4 * force(*t) + 1.5e-3 * slow(*t)).collect();
+            let forces = time.iter().map(|t| force(*t) + noise * random.normal()).collect();
+            let record = Record::new(time, Some(jaw), forces).unwrap();
+            let laws = CompareOptions {
+                laws: vec![Law::StandardLinearSolid],
+                ramps: RampChoice::Measured,
+                forecast: false,
+                ..CompareOptions::default()
+            };
+            let holds = creep_holds(&record, (&SegmentOptions::default(), &[]), &laws, None, &mut Unwatched).unwrap();
+            let fit = holds[0].comparison.as_ref().unwrap().rows[0].fit.as_ref().unwrap();
+            let [amplitude, time] = ["amplitude", "time_constant_s"].map(|name| fit.value(name).unwrap());
+            let within = if noise > 0.0 { 2e-3 } else { 1e-5 };
+            println!("{ramp} s, {noise} N: {amplitude} m, {time} s");
+            assert!((amplitude / 1.5e-3 - 1.0).abs() < within, "{ramp} {noise}: {amplitude}");
+            assert!((time / 8.0 - 1.0).abs() < within, "{ramp} {noise}: {time}");
+        }
     }
 
     /// It was "no creep", though a hundred times the noise.

@@ -4,6 +4,7 @@ use crate::laws::Loading;
 use crate::record::Record;
 use crate::segment::{HoldMode, Phase, Segment, ramps_before};
 use crate::simulate::Separation;
+use crate::statistics::mean;
 
 /// Share of the way of the jaw below which a hold lies too near to where the body was untouched to be what its history is measured by.
 const NEAR: f64 = 0.1;
@@ -18,18 +19,40 @@ pub(in crate::analysis) fn imposed(
     index: usize,
     separation: Separation,
 ) -> Option<Loading> {
-    let displacement = record.displacement()?;
+    let held = |hold: &Segment| hold.mode != Some(HoldMode::ForceHeld);
+    before((record.time(), record.displacement()?), segments, index, (&held, separation))
+}
+
+/// The same of the force, which creeps answer; where it is held it is the mean of the hold.
+pub(in crate::analysis) fn imposed_force(
+    record: &Record,
+    segments: &[Segment],
+    index: usize,
+    separation: Separation,
+) -> Option<Loading> {
+    let hold = &segments[index];
+    let mut force = record.force().to_vec();
+    force[hold.fit_start] = mean(&force[hold.fit_start..hold.end]);
+    before((record.time(), &force), segments, index, (&|_| false, separation))
+}
+
+/// What a column shows of it; a hold of which `held` is true counts by its ends.
+fn before(
+    (time, column): (&[f64], &[f64]),
+    segments: &[Segment],
+    index: usize,
+    (held, separation): (&dyn Fn(&Segment) -> bool, Separation),
+) -> Option<Loading> {
     let end = segments[index].fit_start;
     let ramp = ramps_before(segments, index).last()?.start.saturating_sub(1)..end + 1;
     let begun = segments[..index]
         .iter()
         .rposition(|segment| segment.phase == Phase::Rest)
         .map_or(0, |rest| rest + 1);
-    let rows = if segments[begun].is_ramp() { rows(&segments[begun..index], end) } else { Vec::new() };
-    let time = record.time();
+    let rows = if segments[begun].is_ramp() { rows(&segments[begun..index], end, held) } else { Vec::new() };
     let of = |rows: &[usize], inside: &dyn Fn(f64) -> f64| {
         let times: Vec<f64> = rows.iter().map(|row| time[*row]).collect();
-        let values: Vec<f64> = rows.iter().map(|row| inside(displacement[*row])).collect();
+        let values: Vec<f64> = rows.iter().map(|row| inside(column[*row])).collect();
         let way = values.iter().fold(0.0, |most: f64, value| most.max((value - values[0]).abs()));
         let change = (values.last()? - values.first()?).abs();
         Loading::new(&times, &values).ok().filter(|_| change > NEAR * way)
@@ -40,11 +63,11 @@ pub(in crate::analysis) fn imposed(
     of(&rows, &pressed).or_else(|| of(&last, &pressed)).or_else(|| of(&last, &|value| value))
 }
 
-/// Samples of some phases up to `end`: all of ramps and held forces, the first and the last of held displacements.
-fn rows(phases: &[Segment], end: usize) -> Vec<usize> {
+/// Samples of some phases up to `end`: all, but for holds that count by the first and the last.
+fn rows(phases: &[Segment], end: usize, held: &dyn Fn(&Segment) -> bool) -> Vec<usize> {
     let mut rows: Vec<usize> = phases.first().map(|first| first.start.saturating_sub(1)).into_iter().collect();
     for phase in phases {
-        match phase.phase == Phase::Hold && phase.mode != Some(HoldMode::ForceHeld) {
+        match phase.phase == Phase::Hold && held(phase) {
             true => rows.extend([phase.start, phase.end - 1]),
             false => rows.extend(phase.start..phase.end),
         }
