@@ -66,7 +66,7 @@ class SoftGripTask:
     #: Resistance of the finger to motion, N s/m, with a force or an impedance; stiffness of its spring, N/m, with an impedance.
     damping_n_s_per_m: float = 50.0
     stiffness_n_per_m: float = 1000.0
-    #: Time of a step, s, and equal parts that the contact takes it in.
+    #: Time of a step, s, and equal parts that contact and finger take it in.
     period_s: float = 0.02
     substeps: int = 4
     #: Slip at which the body is lost, m.

@@ -69,8 +69,12 @@ class SoftGripVectorEnv(VectorEnv[_Floats, _Floats, NDArray[Any]]):
 
     An **action** in [-1, 1] is a share a' = (a + 1)/2 of the most that can be commanded. With ``control="position"`` the jaw goes to
     a' ``travel_m``; with "force" the finger pushes with f = a' ``force_n`` and moves by c dd/dt = f - F(d); with "impedance" a spring pulls it to
-    a' ``travel_m``, c dd/dt = k (a' travel - d) - F(d). Both are solved implicitly with the stiffness of the contact. The jaw is never faster than
+    a' ``travel_m``, c dd/dt = k (a' travel - d) - F(d). The jaw is never faster than
     ``speed_m_per_s``. An action of NaN leaves the command as it was. A jaw that would go beyond the body crushes it, and stays where it was.
+
+    Both equations are integrated in the ``substeps`` of a step by a method of order 2 that is stable at any stiffness: the contact relaxes at rest,
+    and the jaw moves by the slope dF/dd before and after. With the default of 4 the force of the default task is within 1 % of the equation from the
+    first step on; twice as many substeps have a quarter of the error.
 
     An **observation** is [d/travel_m, F/force_n, load/(2 mu_0 force_n), t/episode] with the displacement d of the jaw, the force F of a finger,
     the load that the fingers carry, the coefficient of friction mu_0 of the task, and the time t; in [0, 1], force and load up to 2.
@@ -138,6 +142,7 @@ class SoftGripVectorEnv(VectorEnv[_Floats, _Floats, NDArray[Any]]):
         self.contacts = ContactStates(self.task.model, self.num_envs)
         zeros = [np.zeros(self.num_envs) for _ in range(8)]
         self._command, self._jaw, self._next, self._force, self._load, self._pull, self._speed, self._slip = zeros
+        self._stiff, self._failed = np.zeros(self.num_envs), np.zeros(self.num_envs, np.bool_)
         self._steps = np.zeros(self.num_envs, np.int64)
         self._observed = np.zeros((self.num_envs, 4), np.float32)
         self._ended = np.zeros(self.num_envs, np.bool_)
@@ -167,7 +172,7 @@ class SoftGripVectorEnv(VectorEnv[_Floats, _Floats, NDArray[Any]]):
         self._bear()
         rewards = 1.0 - task.force_cost / task.force_n * self._force
         rewards -= task.slip_cost / _FAST_M_PER_S * np.minimum(self._speed, _FAST_M_PER_S)
-        lost, crushed = self._slip > task.slip_limit_m, (self._force > task.crush_force_n) | self.contacts.failed
+        lost, crushed = self._slip > task.slip_limit_m, (self._force > task.crush_force_n) | self._failed
         terminations = lost | crushed
         truncations = np.zeros(self.num_envs, np.bool_) if self._episode is None else self._steps >= self._episode
         rewards -= task.loss_cost * terminations
@@ -228,23 +233,55 @@ class SoftGripVectorEnv(VectorEnv[_Floats, _Floats, NDArray[Any]]):
 
     def _move(self, fresh: _Marks | None) -> None:
         """Fingers and contacts over a period; those whose episode has just begun stay where they are."""
-        task, dt, going = self.task, self.task.period_s, self._next
+        task = self.task
+        self._failed[:] = False
         if task.control == "position":
-            np.copyto(going, self._command)
+            np.copyto(self._next, self._command)
+            self._go(task.period_s, task.period_s, task.substeps, fresh)
+            return
+        # Strang's splitting: the motion of the jaw, half before and half after the relaxation of a part; halves that meet are one.
+        part = task.period_s / task.substeps
+        self._push(0.5 * part, fresh)
+        for left in reversed(range(task.substeps)):
+            self.contacts.step(part, self._jaw, out=self._force, errors="mask")
+            self._push(part if left else 0.5 * part, fresh)
+
+    def _push(self, dt: float, fresh: _Marks | None) -> None:
+        """Motion of the jaws within a time by c dd/dt = f - F(d), while the contacts do not relax.
+
+        With z = (k + dF/dd) dt/c the way is (f - F) dt/c (1 + z/2)/(1 + z + z^2/2): of order 2, and all the way to f = F where z is large.
+        """
+        task, going, stiff = self.task, self._next, self._stiff
+        np.copyto(stiff, self.contacts.stiffness_n_per_m)
+        if task.control == "impedance":
+            stiff += task.stiffness_n_per_m
+            np.subtract(self._command, self._jaw, out=going)
+            going *= task.stiffness_n_per_m
+            going -= self._force
         else:
-            spring = task.stiffness_n_per_m if task.control == "impedance" else 0.0
-            push = self._command - self._force if task.control == "force" else spring * (self._command - self._jaw) - self._force
-            push *= dt
-            push /= task.damping_n_s_per_m + dt * (spring + self.contacts.stiffness_n_per_m)
-            np.add(self._jaw, push, out=going)
-        reach = task.speed_m_per_s * dt
+            np.subtract(self._command, self._force, out=going)
+        stiff *= 0.5 * dt / task.damping_n_s_per_m
+        going *= dt / task.damping_n_s_per_m
+        # With y = z/2 the factor is 1/(1 + y + y^2/(1 + y)), which stays finite for any y.
+        grown = stiff + 1.0
+        stiff *= stiff / grown
+        stiff += grown
+        going /= stiff
+        going += self._jaw
+        self._go(0.0, dt, 1, fresh)
+
+    def _go(self, relaxes_s: float, dt: float, substeps: int, fresh: _Marks | None) -> None:
+        """Jaws towards `_next` as far as their speed lets them within a time, and the forces there."""
+        going, reach = self._next, self.task.speed_m_per_s * dt
         np.clip(going, self._jaw - reach, self._jaw + reach, out=going)
-        np.clip(going, 0.0, task.travel_m, out=going)
+        np.clip(going, 0.0, self.task.travel_m, out=going)
         if fresh is not None:
             going[fresh] = 0.0
-        self.contacts.step(dt, going, out=self._force, substeps=task.substeps, errors="mask")
+        self.contacts.step(relaxes_s, going, out=self._force, substeps=substeps, errors="mask")
+        failed = self.contacts.failed
+        self._failed |= failed
         # A jaw that would go beyond its body stays where it was.
-        np.copyto(self._jaw, going, where=~self.contacts.failed)
+        np.copyto(self._jaw, going, where=~failed)
 
     def _bear(self) -> None:
         """Load and slip at the end of a period."""

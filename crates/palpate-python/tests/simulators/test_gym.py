@@ -100,6 +100,55 @@ def test_the_force_that_is_needed_holds_and_less_does_not(mass_kg: float) -> Non
             assert observations[0, 2] == pytest.approx(task.needed_force_n() / task.force_n, rel=1e-6)
 
 
+def stated(task: SoftGripTask, share: float, time_s: float, step_s: float) -> np.ndarray[Any, Any]:
+    """Forces at the end of every period by the equation of the finger as the class states it, in Euler steps of a contact by itself."""
+    contact, place, force, forces = palpate.ContactState(task.model), 0.0, 0.0, []
+    each = round(task.period_s / step_s)
+    for k in range(1, round(time_s / step_s) + 1):
+        spring = task.stiffness_n_per_m * (share * task.travel_m - place)
+        speed = ((share * task.force_n if task.control == "force" else spring) - force) / task.damping_n_s_per_m
+        speed = min(max(speed, -task.speed_m_per_s), task.speed_m_per_s)
+        place = min(max(place + step_s * speed, 0.0), task.travel_m)
+        force = contact.step(step_s, place)
+        if k % each == 0:
+            forces.append(force)
+    return np.array(forces)
+
+
+BLOCK = {
+    "specimen": {"shape": "block", "area": "10 cm^2", "length": "50 mm", "modulus": "30 kPa"},
+    "law": {"name": "latency", "exponent": 3, "rate_coefficient": "200 /s"},
+}
+
+
+@pytest.mark.parametrize(
+    ("settings", "share"),
+    [({"control": "force"}, 0.3), ({"control": "impedance"}, 0.5), ({"control": "force", "damping_n_s_per_m": 2.0, "model": BLOCK}, 0.3)],
+)
+def test_a_finger_moves_by_the_equation_that_is_stated(settings: dict[str, Any], share: float) -> None:
+    """One linear step a period was taken: 13 % less force than by the equation after 0.1 s, whatever the substeps."""
+    task = SoftGripTask(mass_kg=0.05, **settings)
+    exact = 2.0 * stated(task, share, 0.2, 2e-5) - stated(task, share, 0.2, 4e-5)
+
+    def errors(substeps: int) -> np.ndarray[Any, Any]:
+        envs = SoftGripVectorEnv(1, substeps=substeps, mass_kg=0.05, **settings)
+        envs.reset(seed=0)
+        forces = [float(envs.step(pushed(envs, share))[4]["force_n"][0]) for _ in exact]
+        return np.abs(np.array(forces) / exact - 1.0)
+
+    usual, finer, finest = errors(SoftGripTask.substeps), errors(32), errors(128)
+    assert usual.max() < 1e-2 and usual[4] < 5e-3
+    # Of order 2: 8 and 32 times the substeps.
+    assert finer.max() < usual.max() / 16 and finest.max() < max(usual.max() / 200, 1e-4)
+
+
+def test_a_finger_without_much_resistance_goes_to_its_force_at_once() -> None:
+    envs = SoftGripVectorEnv(1, control="force", damping_n_s_per_m=1e-6, mass_kg=0.05, speed_m_per_s=10.0)
+    envs.reset(seed=0)
+    forces = [float(envs.step(pushed(envs, 0.3))[4]["force_n"][0]) for _ in range(10)]
+    assert forces[3:] == pytest.approx([3.0] * 7, rel=1e-3)
+
+
 def test_a_squeeze_relaxes_until_it_lets_go() -> None:
     squeeze_m = 5.5e-3
     envs = SoftGripVectorEnv(1, max_episode_steps=None, mass_kg=0.2, lift_s=0.3, lift_takes_s=0.01)
