@@ -94,7 +94,8 @@ def test_the_factor_for_light_jaws_gives_the_force_of_heavy_ones(jaw_kg: float, 
     mass_kg = 0.25
     card = palpate.export(BALL, "mujoco", mass_kg=mass_kg)
     words = " ".join(card.text.split())
-    assert "1 + 0.250/(3 M) where one slide joint moves them" in words and "1 + 0.250/M where they are free" in words
+    assert "multiply both numbers of solref by 0.250 (w1 + w2), with w from model.body_invweight0[id][0]" in words
+    assert "it is 1/M where the joint lies along an axis of the body and the centre of mass at its origin, and 1/(3 M) where not, as here" in words
     factor = 1 + mass_kg / (jaw_kg if is_free else 3 * jaw_kg)
 
     def scaled(by: float) -> str:
@@ -124,6 +125,56 @@ def test_the_factor_for_light_jaws_gives_the_force_of_heavy_ones(jaw_kg: float, 
     assert corrected == pytest.approx(heavy, rel=0.03)
     # Without it the force is too small, by more than that tolerance.
     assert (mujoco_forces(card, places, speed, xml=scaled(1.0)) < 0.97 * heavy).all()
+
+
+@pytest.mark.parametrize(("axis", "w_of_m"), [("1 0 0", 1.0), ("0.6 0.8 0", 1 / 3)], ids=["along an axis", "oblique"])
+def test_the_factor_is_that_of_the_compiled_model_and_not_of_the_masses(axis: str, w_of_m: float) -> None:
+    """Cards stated 1 + m/(3 M) for any jaw on one slide joint; with its centre of mass at its origin a third of the force was missing."""
+    mass_kg = jaw_kg = 0.25
+    card = palpate.export(BALL, "mujoco", mass_kg=mass_kg)
+    found = ET.fromstring(card.text).find("default/default/pair")
+    assert found is not None
+    solref = [float(number) for number in found.attrib["solref"].split()]
+    # The box is turned, so that its face is across the axis.
+    turned = "0" if axis == "1 0 0" else "53.13010235415598"
+
+    def model(factor: float) -> Any:
+        scaled = " ".join(repr(factor * number) for number in solref)
+        fingers = "".join(
+            f"""<body name="{name}" pos="{' '.join(str(sign * 0.045 * float(part)) for part in axis.split())}">
+            <joint name="{name}" type="slide" axis="{axis}" range="-1 1"/>
+            <geom name="{name}" type="box" size="0.01 0.06 0.06" euler="0 0 {turned}" mass="{jaw_kg}"/></body>"""
+            for name, sign in (("left", -1), ("right", 1))
+        )
+        pairs = "".join(
+            f'<pair geom1="ball" geom2="{name}" solref="{scaled}" solreffriction="{found.get("solreffriction")}" '
+            f'solimp="{found.get("solimp")}" condim="4"/>'
+            for name in ("left", "right")
+        )
+        drives = "".join(f'<position joint="{name}" kp="1e6" kv="{2 * (1e6 * jaw_kg) ** 0.5}"/>' for name in ("left", "right"))
+        return mujoco.MjModel.from_xml_string(
+            f"""<mujoco><option cone="elliptic" impratio="1000000" timestep="2e-4" gravity="0 0 0" integrator="implicitfast"/>
+            <compiler angle="degree"/><worldbody><body name="ball"><freejoint/><geom name="ball" type="sphere" size="0.035" mass="{mass_kg}"/></body>
+            {fingers}</worldbody><contact>{pairs}</contact><actuator>{drives}</actuator></mujoco>"""
+        )
+
+    def held(factor: float) -> float:
+        compiled = model(factor)
+        data, force = mujoco.MjData(compiled), np.zeros(6)
+        while data.time < 2.5:
+            push = min(0.005, 0.004 * data.time)
+            data.ctrl[:] = push, -push
+            mujoco.mj_step(compiled, data)
+        assert data.ncon == 2
+        mujoco.mj_contactForce(compiled, data, 0, force)
+        return float(force[0])
+
+    compiled = model(1.0)
+    w = [float(compiled.body_invweight0[compiled.body(name).id][0]) for name in ("ball", "left")]
+    assert w == pytest.approx([1 / mass_kg, w_of_m / jaw_kg])
+    heavy = mujoco_forces(card, np.array([0.005]), 0.0)[0]
+    assert held(mass_kg * sum(w)) == pytest.approx(heavy, rel=1e-2)
+    assert held(1.0) < 0.8 * heavy
 
 
 BALL_2 = ({"shape": "ball", "radius": "35 mm"}, "28 kPa", 2, "20 /s")
