@@ -272,7 +272,7 @@ def test_what_is_missing_or_bonded_is_refused(material: palpate.Material, tmp_pa
     with pytest.raises(TypeError, match="friction"):
         material.grip(mass_kg=0.25)  # type: ignore[call-arg] # pyright: ignore[reportCallIssue]
     (tmp_path / "bonded.toml").write_text(PATH.read_text().replace("separation = true", "separation = false"))
-    with pytest.raises(palpate.ModelError, match="the material was tested in grips that can pull"):
+    with pytest.raises(palpate.ModelError, match="separation = false in the material: its contacts can pull"):
         palpate.Material.read(tmp_path / "bonded.toml").grip(**LOAD)
 
 

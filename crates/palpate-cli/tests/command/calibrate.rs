@@ -182,6 +182,50 @@ fn what_cannot_be_calibrated_or_predicted_is_stated_and_nothing_is_written() {
     assert_eq!(std::fs::read_to_string(folder.join("ball.toml")).unwrap(), text);
 }
 
+/// A test of a block counts it as bonded where the description is silent. Nothing stated so, and `grip` reported grips that could pull,
+/// which no description had mentioned.
+#[test]
+fn that_jaws_may_pull_on_a_block_is_stated() {
+    let folder = tempdir().unwrap();
+    let folder = folder.path();
+    let body = "[specimen]\nshape = \"block\"\narea = \"10 cm^2\"\nlength = \"50 mm\"\nmodulus = \"30 kPa\"\n[contact]\nsqueezed_from = \"two sides\"\n";
+    let law = "[law]\nname = \"latency\"\nexponent = 3\nrate_coefficient = \"200 /s\"\n";
+    file(
+        folder,
+        "protocol.toml",
+        format!("{body}{law}[output]\nsample_rate = \"20 Hz\"\n{}", HOLD.replace("12 mm", "6 mm")),
+    );
+    done(folder, &["simulate", "protocol.toml", "--force-noise", "0.01 N", "--out", "block.csv"]);
+    let remark = "The jaws count as bonded to the body and can pull: separation = false in [contact]";
+    for (stated, pulls) in [("", true), ("separation = false\n", true), ("separation = true\n", false)] {
+        file(folder, "test.toml", format!("{body}{stated}"));
+        let calibrate = [
+            "calibrate",
+            "block.csv",
+            "--test",
+            "test.toml",
+            "--law",
+            "latency:3",
+            "--no-alternatives",
+            "--out",
+            "material.toml",
+        ];
+        let text = done(folder, &calibrate);
+        let words = text.split_whitespace().collect::<Vec<_>>().join(" ");
+        assert_eq!(words.contains(remark), pulls, "{stated}: {text}");
+        let card = done(folder, &["export", "mujoco", "material.toml", "--mass", "0.1 kg"]);
+        assert_eq!(card.contains("separation = false in the material: its jaws can pull"), pulls, "{stated}: {card}");
+        let grip = ["grip", "material.toml", "--mass", "0.1 kg", "--friction", "0.6"];
+        if pulls {
+            let reported = refused(folder, &grip);
+            assert!(reported.contains("separation = false in the material: its contacts can pull"), "{reported}");
+            assert!(reported.contains("set separation = true under [contact] of the test description"), "{reported}");
+        } else {
+            done(folder, &grip);
+        }
+    }
+}
+
 #[test]
 fn silicone_steps_are_predicted_from_their_first_part() {
     let Some(folder) = data("silicone-steps") else { return };

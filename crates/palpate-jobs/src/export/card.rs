@@ -2,6 +2,7 @@
 
 use palpate::contact::{Shape, Specimen};
 use palpate::export::{Conditions, Loading};
+use palpate::simulate::Separation;
 
 use super::model::Model;
 use super::options::{Engine, Export};
@@ -16,6 +17,8 @@ pub struct Card {
     /// Law and parameters, a sentence.
     pub(super) law: String,
     pub(super) body: Specimen,
+    /// Whether the jaws of the material can pull.
+    pub(super) is_bonded: bool,
     pub(super) conditions: Conditions,
     pub(super) loading: Loading,
     pub(super) model: Model,
@@ -42,6 +45,7 @@ impl Card {
             material: (source.name.clone(), source.sha256.clone()),
             law,
             body: material.contact().specimen().clone(),
+            is_bonded: material.body().separation == Separation::Bonded,
             conditions,
             loading,
             model,

@@ -134,10 +134,14 @@ impl Card {
         );
         let held = "Squeezed from one side: hold the back of the body, by a plate or the finger that it is on. Two jaws on a free body are \
                     two such contacts in series, with half of the force or less; a body between two jaws needs squeezed_from = 'two sides'";
-        match self.body.sides() {
-            Sides::One => vec![memory, held.to_owned()],
-            Sides::Two => vec![memory],
-        }
+        let pulls = format!(
+            "separation = false in the material: its jaws can pull on the body. The contact of {title} only presses, and its force ends at 0; \
+             a material of jaws that only press is calibrated with separation = true in [contact]"
+        );
+        let mut limits = vec![memory];
+        limits.extend(self.is_bonded.then_some(pulls));
+        limits.extend((self.body.sides() == Sides::One).then(|| held.to_owned()));
+        limits
     }
 }
 

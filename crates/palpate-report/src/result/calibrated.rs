@@ -3,8 +3,10 @@
 use palpate::calibrate::{
     CalibrateError, Calibration, CalibrationData, CalibrationRange, Candidate, Material, ParameterProfile, RateLaw,
 };
+use palpate::contact::Shape;
 use palpate::fit::{NoiseModel, Termination};
 use palpate::number::significant;
+use palpate::simulate::Separation;
 use palpate::units::quantity;
 
 use super::input::Input;
@@ -169,7 +171,17 @@ fn remarks_of(made: &Calibration) -> Vec<String> {
         ));
     }
     remarks.push(range_remark(made.material.range()));
+    remarks.extend(bonded_remark(&made.material));
     remarks
+}
+
+/// That jaws can pull on a body of constant section, which a description assumes where it is silent and a protocol does not.
+pub(super) fn bonded_remark(material: &Material) -> Option<String> {
+    let body = material.body();
+    let is_so = body.separation == Separation::Bonded && matches!(body.shape, Shape::Prism { .. });
+    is_so.then(|| {
+        "The jaws count as bonded to the body and can pull: separation = false in [contact], the default of a test of this shape. Where they only press, as in a grip, set separation = true.".to_owned()
+    })
 }
 
 /// The range of the tests, in a sentence.

@@ -4,7 +4,7 @@ use palpate::analysis::{Finding, Severity};
 use palpate::calibrate::{BatchParameter, Between, CalibratedSpecimen, CalibrationData, SeveralCalibration};
 use palpate::number::{counted, significant};
 
-use super::calibrated::{are_systematic, formula_of_material, range_remark};
+use super::calibrated::{are_systematic, bonded_remark, formula_of_material, range_remark};
 use super::input::Input;
 use super::parameters::parameter_title;
 use super::words::percent;
@@ -123,6 +123,7 @@ impl CalibratedBatch {
             ));
         }
         remarks.extend(found.specimen.as_ref().map(|material| range_remark(material.range())));
+        remarks.extend(found.specimen.as_ref().and_then(bonded_remark));
         remarks
     }
 }

@@ -20,10 +20,8 @@ pub enum GripError {
         /// Its unit, behind a blank.
         unit: &'static str,
     },
-    /// A body that was tested bonded to its grips.
-    #[error(
-        "the material was tested in grips that can pull; a grasp needs one that was squeezed by jaws that can leave it"
-    )]
+    /// A body that counts as bonded to its jaws.
+    #[error("separation = false in the material: its contacts can pull, those of a grasp can only press")]
     Bonded,
     /// A squeeze that is beyond what the gripper may do.
     #[error("a {name} of {found} is beyond the limit of {limit}", found = reported(*found, unit), limit = reported(*limit, unit))]
@@ -127,7 +125,9 @@ impl GripError {
             Self::NoIntervals => {
                 "leave the confidence out, so that the best estimate decides, or calibrate on a test that determines all parameters"
             }
-            Self::Bonded => "calibrate on a test with separation = true in [contact]",
+            Self::Bonded => {
+                "set separation = true under [contact] of the test description where the jaws only press, and calibrate again"
+            }
             Self::Number { .. } | Self::Simulate(_) | Self::Cancelled(_) => "",
         }
     }

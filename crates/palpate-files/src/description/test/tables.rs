@@ -58,7 +58,7 @@ pub(crate) struct TestTables {
 pub(crate) struct ContactTable {
     /// Default: two sides for a ball, one side for other shapes.
     pub(crate) squeezed_from: Option<SidesName>,
-    /// Whether the jaw can leave the body. Default: true for a ball, false for other shapes.
+    /// Whether the jaw can leave the body. Default: true for a body whose area grows (ball, pad, profile, indenter), else false.
     pub(crate) separation: Option<bool>,
     /// Number of layers for a simulation of the test, a real number of 1 or more.
     #[schemars(extend("minimum" = 1))]
