@@ -56,6 +56,19 @@ def test_the_state_is_an_array_in_place() -> None:
     assert np.array_equal(other.force_n, contacts.force_n[::-1])
 
 
+def test_a_jaw_written_beyond_the_body_has_no_force() -> None:
+    """The formulas went on: −6032 N at 0.1 m of a ball of 35 mm."""
+    contacts = palpate.ContactStates(MODEL, 3)
+    contacts.step(0.5, 5e-3)
+    contacts.state[0] = [0.1, 0.0]
+    assert np.isnan(contacts.force_n).tolist() == np.isnan(contacts.stiffness_n_per_m).tolist() == [True, False, False]
+    # It keeps its state in a step that fails, without a force, and goes on with one that it can take.
+    forces = contacts.step(0.1, [1.0, 5e-3, 5e-3], errors="mask")
+    assert forces[0] == 0.0 and contacts.failed.tolist() == [True, False, False] and contacts.state[0, 0] == 0.1
+    contacts.step(0.1, 5e-3)
+    assert np.isfinite(contacts.force_n).all()
+
+
 def test_one_contact_shows_what_contacts_show() -> None:
     one, many = palpate.ContactState(MODEL), palpate.ContactStates(MODEL, 9)
     one.step(0.0, 7e-3)

@@ -2078,7 +2078,7 @@ class ContactStates(_Moved):
         """Moves every jaw to its displacement within a time step.
 
         With ``errors="raise"`` all contacts are stepped, or none if one cannot be. With ``errors="mask"`` such a contact keeps its state,
-        `failed` marks it, and its force is that before the step, 0 where its state is not finite.
+        `failed` marks it, and its force is that before the step, 0 where its state is not finite or its jaw beyond the body.
 
         Parameters
         ----------
@@ -2166,15 +2166,15 @@ class ContactStates(_Moved):
         jaw, m, and, of the latency law, the displacement of the node behind the contact layer, m; of a linear law the excess of every
         term, by rising rate, in strain, or in N where its memory is of force. Zeros are an untouched contact.
 
-        Numbers written in place are not checked: until the next step ``force_n`` and ``stiffness_n_per_m`` are what their formulas give, which
-        may be NaN, or below 0 where the jaw is beyond the body. A step fails for a contact whose numbers are not finite or a million depths
+        Numbers written in place are not checked: until the next step ``force_n`` and ``stiffness_n_per_m`` are NaN where they are not finite or the jaw
+        is beyond the body. A step fails for a contact whose numbers are not finite or a million depths
         away, and goes on from any others. An assigned array is checked: finite numbers and forces, no jaw beyond its body.
         """
         ...
     @state.setter
     def state(self, state: ArrayLike, /) -> None: ...
     force_n: Final[_Doubles]
-    """Forces now, N."""
+    """Forces now, N; NaN where a state written in place has its jaw beyond the body."""
     stiffness_n_per_m: Final[_Doubles]
     """Tangent stiffnesses dF/dd against the displacements of the jaws, N/m: the slopes of a step within no time. 0 while a jaw is off."""
     surface_m: Final[_Doubles]

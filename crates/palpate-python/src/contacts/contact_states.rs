@@ -224,7 +224,7 @@ const STATES_PICKLE: u32 = 5;
 shown! {
     ContactStates: self
     getters {
-        /// Forces now, N.
+        /// Forces now, N; NaN where a state written in place has its jaw beyond the body.
         force_n<'py>(py): PyResult<Bound<'py, PyArray1<f64>>> = self.shown(py, ContactQuantity::Force),
         /// Tangent stiffnesses dF/dd against the displacements of the jaws, N/m: the slopes of a step within no time. 0 while a jaw is off.
         stiffness_n_per_m<'py>(py): PyResult<Bound<'py, PyArray1<f64>>> = self.shown(py, ContactQuantity::Stiffness),
@@ -270,8 +270,8 @@ shown! {
     /// jaw, m, and, of the latency law, the displacement of the node behind the contact layer, m; of a linear law the excess of every
     /// term, by rising rate, in strain, or in N where its memory is of force. Zeros are an untouched contact.
     ///
-    /// Numbers written in place are not checked: until the next step ``force_n`` and ``stiffness_n_per_m`` are what their formulas give, which
-    /// may be NaN, or below 0 where the jaw is beyond the body. A step fails for a contact whose numbers are not finite or a million depths
+    /// Numbers written in place are not checked: until the next step ``force_n`` and ``stiffness_n_per_m`` are NaN where they are not finite or the jaw
+    /// is beyond the body. A step fails for a contact whose numbers are not finite or a million depths
     /// away, and goes on from any others. An assigned array is checked: finite numbers and forces, no jaw beyond its body.
     #[getter]
     fn state<'py>(&mut self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
@@ -306,7 +306,7 @@ shown! {
     /// Moves every jaw to its displacement within a time step.
     ///
     /// With ``errors="raise"`` all contacts are stepped, or none if one cannot be. With ``errors="mask"`` such a contact keeps its state,
-    /// `failed` marks it, and its force is that before the step, 0 where its state is not finite.
+    /// `failed` marks it, and its force is that before the step, 0 where its state is not finite or its jaw beyond the body.
     ///
     /// Parameters
     /// ----------

@@ -1,12 +1,21 @@
 //! One of many contacts of the latency law, where it is not stepped in vectors; and what is checked of any contact.
 
 use super::block::{FARTHEST, between};
+use crate::contact::Specimen;
 use crate::simulate::step::check_step;
 use crate::simulate::{ContactModel, ContactState, Separation, StepError};
 
 /// A number, or 0 in the place of one that is none: what a contact shows whose state is none.
 pub(super) fn finite(number: f64) -> f64 {
     if number.is_finite() { number } else { 0.0 }
+}
+
+/// The force that a contact shows which keeps its state (N), of what its formula gives at its jaw (m): 0 where the state is none.
+pub(super) fn kept((specimen, separation): (&Specimen, Separation), jaw: f64, force: f64) -> f64 {
+    match specimen.check_contact_displacement(jaw, separation == Separation::Bonded) {
+        Ok(()) => finite(force),
+        Err(_) => 0.0,
+    }
 }
 
 /// Checks that a state is one: numbers near the body.

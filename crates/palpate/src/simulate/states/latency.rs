@@ -6,14 +6,14 @@ use std::mem;
 
 use fearless_simd::{Simd, dispatch};
 
-use super::alone::{check_move, finite, forced_alone, moved_alone};
+use super::alone::{check_move, finite, forced_alone, kept, moved_alone};
 use super::block::{Block, Bodies, MOST_LAYERS, Moved, is_extreme};
 use super::lanes::{Column, Lanes, lanes, store};
 use super::parameters::{ContactParameter, Parameters, Value, ValueProblem, of_model, own_model, renew};
 use super::part::{ContactsStep, Imposed, OneStepError, Part, Refusal};
 use super::row::is_root;
 use crate::latency::lanes::{Power, by_power};
-use crate::simulate::{ContactModel, ContactState};
+use crate::simulate::{ContactModel, ContactState, Separation};
 use crate::vector::{LANES, accelerated, level};
 
 /// Blocks from which on several of them are under way at a time.
@@ -266,7 +266,7 @@ impl LatencyModels {
                 Err(error) if step.refusal == Refusal::All => return Err(OneStepError { index, error }),
                 Err(_) => {
                     (failures, *failed) = (failures + 1, true);
-                    (before, finite(before.force(&model)))
+                    (before, kept((&model.specimen, model.separation), before.jaw, before.force(&model)))
                 }
             };
             (moved.jaw[lane], moved.behind[lane], moved.force[lane]) = (state.jaw, state.behind, force);
@@ -300,7 +300,7 @@ impl LatencyModels {
         Ok(failures)
     }
 
-    /// Forces (N) and stiffnesses (N/m) of the states of contacts from `from` on.
+    /// Forces (N) and stiffnesses (N/m) of the states of contacts from `from` on; not numbers where the jaw is beyond its body.
     pub(super) fn force_and_stiffness(
         &self,
         from: usize,
@@ -323,6 +323,13 @@ impl LatencyModels {
                             self.model(from + at + lane),
                         );
                         (force[lane], slope[lane]) = (state.force(&model), state.stiffness(&model));
+                    }
+                    for lane in (0..LANES.min(forces.len() - at)).filter(|lane| !block.bodies.fits(*lane, jaw[*lane])) {
+                        let model = self.model(from + at + lane);
+                        let bonded = model.separation == Separation::Bonded;
+                        if model.specimen.check_contact_displacement(jaw[lane], bonded).is_err() {
+                            (force[lane], slope[lane]) = (f64::NAN, f64::NAN);
+                        }
                     }
                     store(forces, at, &force);
                     store(slopes, at, &slope);

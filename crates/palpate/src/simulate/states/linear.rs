@@ -5,7 +5,7 @@ use std::mem;
 
 use smallvec::SmallVec;
 
-use super::alone::{check_result, check_state, finite};
+use super::alone::{check_result, check_state, finite, kept};
 use super::block::{Marks, between, is_extreme, is_step};
 use super::lanes::{Column, Lanes, lanes, store};
 use super::linear_block::{Fadings, LinearBlock, Moving};
@@ -209,10 +209,15 @@ impl LinearModels {
             Err(_) => {
                 let (_, memory) = state(&part.rows, at);
                 part.failed[at] = true;
-                part.results[at] = finite(match step.imposed {
-                    Imposed::Displacement => contact.force(jaw, own(&contact, &memory)),
-                    Imposed::Force => jaw / contact.contact().specimen.contact_displacement(1.0),
-                });
+                let LinearContact {
+                    specimen, separation, ..
+                } = contact.contact();
+                part.results[at] = match step.imposed {
+                    Imposed::Displacement => {
+                        kept((specimen, *separation), jaw, contact.force(jaw, own(&contact, &memory)))
+                    }
+                    Imposed::Force => finite(jaw / specimen.contact_displacement(1.0)),
+                };
                 Ok(1)
             }
         }

@@ -12,9 +12,9 @@ use crate::vector::LANES;
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum ContactQuantity {
-    /// Contact force, N; 0 while the jaw is off.
+    /// Contact force, N; 0 while the jaw is off, and not a number where it is beyond the body.
     Force,
-    /// Tangent stiffness dF/dd against the displacement of the jaw, N/m.
+    /// Tangent stiffness dF/dd against the displacement of the jaw, N/m; not a number where that is beyond the body.
     Stiffness,
     /// Displacement of the surface of the body at one contact, m.
     Surface,
@@ -43,7 +43,12 @@ impl ContactModels {
             return;
         }
         for (index, out) in out.iter_mut().enumerate() {
-            *out = self.shown(states, count, from + index, quantity);
+            let index = from + index;
+            let is_of_body = matches!(quantity, ContactQuantity::Force | ContactQuantity::Stiffness);
+            *out = match is_of_body && self.check_depth(index, states[index]).is_err() {
+                true => f64::NAN,
+                false => self.shown(states, count, index, quantity),
+            };
         }
     }
 

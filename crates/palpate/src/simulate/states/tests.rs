@@ -263,6 +263,42 @@ fn bodies_beyond_all_measure_are_refused_and_show_numbers() {
     }
 }
 
+/// The force of a ball of 35 mm with its jaw at 0.1 m was −6032 N: the formula of its area went on beyond the body.
+#[test]
+fn a_jaw_beyond_its_body_shows_no_number() {
+    const COUNT: usize = 13;
+    let linear = (0..COUNT).map(|index| Contact::from(linear(index))).collect();
+    for models in [ContactModels::of_each(models(&[5.0], COUNT)), ContactModels::new(linear).unwrap()] {
+        let (mut states, mut failed) = (vec![0.0; models.rows() * COUNT], [false; COUNT]);
+        let mut before = [0.0; COUNT];
+        models
+            .step(&mut states, &of_displacement(&[1e-3], &[2e-3], 1, Refusal::All), &mut before, &mut failed)
+            .unwrap();
+        let is_moved = |index: usize| !index.is_multiple_of(3);
+        (0..COUNT).filter(|index| is_moved(*index)).for_each(|index| states[index] = 0.1);
+        let (mut forces, mut slopes) = ([0.0; COUNT], [0.0; COUNT]);
+        models.show((&states, COUNT), ContactQuantity::Force, 0, &mut forces);
+        models.show((&states, COUNT), ContactQuantity::Stiffness, 0, &mut slopes);
+        // A masked contact that keeps such a state has no force either.
+        let (mut results, refused) = ([7.0; COUNT], of_displacement(&[1e-3], &[f64::NAN], 1, Refusal::Masked));
+        models.step(&mut states, &refused, &mut results, &mut failed).unwrap();
+        for index in 0..COUNT {
+            // A bonded body of constant section is a strip, which may be moved by any way.
+            let is_strip = specimen(index).has_constant_section() && separation(index) == Separation::Bonded;
+            let is_beyond = is_moved(index) && !is_strip;
+            assert_eq!((forces[index].is_nan(), slopes[index].is_nan()), (is_beyond, is_beyond), "{index}");
+            let kept = if is_beyond { 0.0 } else { forces[index] };
+            assert!(
+                failed[index] && (results[index] - kept).abs() <= 1e-12 * kept.abs(),
+                "{index}: {}",
+                results[index]
+            );
+            let same = (forces[index] - before[index]).abs() <= 1e-12 * before[index].abs();
+            assert!(is_moved(index) || same, "{index}: {} {}", forces[index], before[index]);
+        }
+    }
+}
+
 #[test]
 fn all_contacts_are_stepped_or_none() {
     let mut contacts = ContactStates::of_each(models(&[5.0], 11));
