@@ -95,7 +95,7 @@ def test_the_factor_for_light_jaws_gives_the_force_of_heavy_ones(jaw_kg: float, 
     card = palpate.export(BALL, "mujoco", mass_kg=mass_kg)
     words = " ".join(card.text.split())
     assert "multiply both numbers of solref by 0.250 (w1 + w2), with w from model.body_invweight0[id][0]" in words
-    assert "it is 1/M where the joint lies along an axis of the body and the centre of mass at its origin, and 1/(3 M) where not, as here" in words
+    assert "it is 1/M where model.body_simple[id] is 2" in words
     factor = 1 + mass_kg / (jaw_kg if is_free else 3 * jaw_kg)
 
     def scaled(by: float) -> str:
@@ -172,6 +172,7 @@ def test_the_factor_is_that_of_the_compiled_model_and_not_of_the_masses(axis: st
     compiled = model(1.0)
     w = [float(compiled.body_invweight0[compiled.body(name).id][0]) for name in ("ball", "left")]
     assert w == pytest.approx([1 / mass_kg, w_of_m / jaw_kg])
+    assert (compiled.body_simple[compiled.body("left").id] == 2) == (w_of_m == 1.0)
     heavy = mujoco_forces(card, np.array([0.005]), 0.0)[0]
     assert held(mass_kg * sum(w)) == pytest.approx(heavy, rel=1e-2)
     assert held(1.0) < 0.8 * heavy

@@ -123,8 +123,8 @@ fn notes(card: &Card, fit: &SoftConstraint) -> Vec<String> {
             "The force is in proportion to 1/(w1 + w2), w the first number of body_invweight0 of the two bodies in the compiled model, and \
              the card is for {mass} kg (w1 = 1/{mass}) and jaws so heavy that w2 is 0. For other bodies multiply both numbers of solref by \
              {mass} (w1 + w2), with w from model.body_invweight0[id][0] of your compiled model. It does not follow from the mass: of a jaw \
-             of mass M on one slide joint it is 1/M where the joint lies along an axis of the body and the centre of mass at its origin, and \
-             1/(3 M) where not, as here"
+             of mass M on one slide joint it is 1/M where model.body_simple[id] is 2, such as with its centre of mass at the origin of its \
+             body and the joint along an axis of that, and 1/(3 M) where not, as here"
         ),
     ];
     match card.body.sides() {
