@@ -117,6 +117,7 @@ fn law_curve(samples: &Samples<'_>, law: Law, options: &LawOptions) -> Result<La
         model,
         scaled,
         solution,
+        counted: None,
     };
     Ok(fitted.curve())
 }

@@ -129,6 +129,7 @@ impl Scaled {
             noise: NoiseChoice::FromResiduals,
             known,
             may_vary: false,
+            counted: None,
             curve: None,
             times: None,
         };

@@ -117,7 +117,7 @@ pub struct Fit {
     pub residual_square: f64,
     /// Root mean square residual √(Σ r²/N) in the unit of the signal, all samples alike.
     pub rmse: f64,
-    /// Correlation of neighbouring residuals.
+    /// Correlation of neighbouring residuals, as the loss counts them.
     pub residual_correlation: f64,
     /// The size of the noise follows the signal or time.
     #[serde(default)]

@@ -6,6 +6,8 @@ use palpate::fit::{Fit, LawOptions, Loss, Samples, Termination, fit_law};
 use palpate::laws::Law;
 use palpate::test_problems::Rng;
 
+use crate::repeats::repeats;
+
 const NOISE: f64 = 0.01;
 const TRUTH: [f64; 3] = [2.0, 1.0, -0.916_290_731_874_155]; // ln 0.4
 
@@ -92,4 +94,47 @@ fn an_exact_signal_keeps_its_law_under_a_tenth_of_outliers() {
     for (value, truth) in fit.values.iter().zip(TRUTH) {
         assert!((value - truth).abs() < 1e-9, "{:?} {:?}", fit.values, fit.termination);
     }
+}
+
+/// Outliers took the correlation off the residuals in which the noise was sought, which was then white: of 1 % outliers 95 % intervals by Huber
+/// and Tukey held the truth in 69 to 72 % of holds, of 5 % in 45 to 51 %.
+#[test]
+fn noise_that_correlates_is_found_among_outliers() {
+    let holds = repeats(40, 300);
+    for samples in [200, 1000] {
+        let times: Vec<f64> = (0..samples).map(|i| 10.0 / f64::from(samples) * f64::from(i)).collect();
+        for loss in [Loss::Huber, Loss::Tukey] {
+            for share in [0.0, 0.01, 0.05] {
+                let mut covered = 0;
+                for seed in 0..holds {
+                    let values = correlated(&times, share, &mut Rng::new(seed << 20));
+                    let options = LawOptions {
+                        loss,
+                        ..LawOptions::default()
+                    };
+                    let fit = fit_law(&Samples::new(&times, &values), Law::StandardLinearSolid, &options).unwrap();
+                    for (name, truth) in [("equilibrium", 2.0), ("amplitude", 1.0), ("time_constant_s", 2.5)] {
+                        let (low, high) = fit.estimate(name).unwrap().interval.unwrap();
+                        covered += u64::from(low <= truth && truth <= high);
+                    }
+                }
+                let found = covered as f64 / (3 * holds) as f64;
+                println!("{loss:?}, {samples} samples, {share} outliers: {found}");
+                assert!(found >= 0.87, "{loss:?}, {samples} samples, {share} outliers: {found}");
+            }
+        }
+    }
+}
+
+/// The hold with AR(1) noise of 0.9, and outliers of thirty standard deviations.
+fn correlated(times: &[f64], share: f64, random: &mut Rng) -> Vec<f64> {
+    let fresh = (1.0_f64 - 0.9 * 0.9).sqrt();
+    let mut last = random.normal();
+    let next = |t: &f64| {
+        last = 0.9 * last + fresh * random.normal();
+        let side = if random.uniform() < 0.5 { 30.0 } else { -30.0 };
+        let outlier = if random.uniform() < share { side } else { 0.0 };
+        TRUTH[0] + TRUTH[1] * (-0.4 * t).exp() + NOISE * (last + outlier)
+    };
+    times.iter().map(next).collect()
 }

@@ -135,6 +135,7 @@ impl Joint {
                     .map(|inverse| (0..count * count).map(|i| entry(inverse, i / count, i % count)).collect()),
                 termination,
             },
+            counted: None,
         }
     }
 

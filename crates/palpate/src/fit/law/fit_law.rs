@@ -80,6 +80,7 @@ impl Fitted {
             model,
             scaled,
             solution,
+            counted: None,
         };
         if options.loss != Loss::Squares {
             fitted.resist(options, effort)?;

@@ -9,6 +9,8 @@ pub(crate) struct Fitted {
     pub(crate) model: Model,
     pub(crate) scaled: Scaled,
     pub(crate) solution: Solution,
+    /// Residuals as a robust loss counts them, scale · ψ(r/scale); `None` where all count.
+    pub(crate) counted: Option<Vec<f64>>,
 }
 
 /// Free parameters in the units of the fit.

@@ -18,6 +18,7 @@ impl Fitted {
             noise: options.noise,
             known,
             may_vary: self.scaled.roots.is_none(),
+            counted: self.counted.as_deref(),
             curve: None,
             times: Some((&self.scaled.times, self.scaled.duration)),
         };

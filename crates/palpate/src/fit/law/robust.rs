@@ -6,6 +6,9 @@
 //! ```text
 //! K² · scale² · Σ ψ(u)²/(N − p) / (mean ψ′(u))² · (JᵀJ)⁻¹,    K = 1 + (p/N) var ψ′ / (mean ψ′)²
 //! ```
+//!
+//! Where residuals correlate, it is the products E ψ(uᵢ) ψ(uⱼ) that take the place of the squares: the noise is sought in scale · ψ(u). Residuals
+//! themselves would have the correlation of their outliers, which is none.
 
 use crate::fit::{FitError, Fitted, LawOptions, Loss, Scaled, search};
 use crate::optimise::{Effort, Ending, Solution, Termination, polished, refine, standing};
@@ -40,6 +43,8 @@ impl Fitted {
         let shapes = self.model.at(&self.scaled.times);
         let mut solution = standing(&shapes, self.scaled.target(), &found.nonlinear, &found.linear, found.termination);
         solution.variance = variance(options.loss, scale, &solution);
+        let counts = |r: &f64| r * weight(options.loss, r / scale);
+        self.counted = (scale > 0.0).then(|| solution.residuals.iter().map(counts).collect());
         self.solution = solution;
         Ok(())
     }

@@ -38,6 +38,8 @@ pub(crate) struct Trust<'a> {
     pub(crate) known: bool,
     /// Whether the size of the noise may change along the samples.
     pub(crate) may_vary: bool,
+    /// Residuals as a robust loss counts them.
+    pub(crate) counted: Option<&'a [f64]>,
     /// The fitted values, where they are no sum of columns.
     pub(crate) curve: Option<&'a [f64]>,
     /// Times of the samples, and their unit in s.
@@ -82,7 +84,7 @@ impl Assessed {
         let inverse = solution.inverse_normal.as_deref().filter(|_| trust.known);
         // Merged terms have columns that are one another's multiples, beside which no noise has a likelihood.
         let taken_up = if inverse.is_some() { columns.clone() } else { independent(&columns) };
-        let residuals = Residuals::of(&solution.residuals, taken_up.len());
+        let residuals = Residuals::of(trust.counted.unwrap_or(&solution.residuals), taken_up.len());
         let (times, time_unit) = trust.uneven_times();
         let taken = || inverse.map(|inverse| leverages(&columns, amplitudes, inverse));
         let spread = if times.is_none() { trust.spread(solution, &residuals, taken) } else { None };
@@ -110,7 +112,8 @@ impl Assessed {
         let correlates = noise.likely.iter().any(|likely| likely.model != NoiseModel::White);
         let in_size = views.as_ref().filter(|_| observed.is_some()).unwrap_or(&columns);
         let correlated = correlates.then(|| Columns::new(in_size, times));
-        let ratio = solution.variance * (residuals.values.len() - units.len()) as f64 / solution.residual_square;
+        let counted_square = trust.counted.map_or(solution.residual_square, |_| residuals.square);
+        let ratio = solution.variance * (residuals.values.len() - units.len()) as f64 / counted_square;
         let fit = Sandwich {
             columns: &columns,
             amplitudes,
@@ -123,6 +126,8 @@ impl Assessed {
         };
         assessed.white = Some(fit.scaled(inverse, solution.variance)).filter(|rows| is_finite(rows));
         if assessed.white.is_some() {
+            // The noise of a sample is that of all, outliers too.
+            let unit = unit * trust.counted.map_or(1.0, |_| (solution.residual_square / counted_square).sqrt());
             let mut uncertainty = Uncertainty::of_noise(&fit, &noise, (trust.confidence, unit), effort)?;
             if noise_p_value.is_some_and(|p_value| p_value < UNEXPLAINED)
                 && let Some(covariance) = fit.by_blocks()
@@ -164,6 +169,7 @@ impl Assessed {
             noise: NoiseChoice::FromResiduals,
             known: true,
             may_vary: true,
+            counted: None,
             curve: Some(&curve),
             times: None,
         };
