@@ -130,6 +130,7 @@ impl Scaled {
             known,
             may_vary: false,
             counted: None,
+            roots: None,
             curve: None,
             times: None,
         };

@@ -122,7 +122,8 @@ impl Scaled {
         let (per_duration, per_range) = (1.0 / duration, 1.0 / range);
         let (roots, precision) = samples.standard_deviations.map_or((None, 1.0), |standard_deviations| {
             let (roots, precision) = roots_of(standard_deviations);
-            (Some(roots), precision)
+            let differ = standard_deviations.iter().any(|deviation| *deviation != standard_deviations[0]);
+            (Some(roots).filter(|_| differ), precision)
         });
         let mut scaled = shifted(values, center, per_range);
         if let Some(roots) = &roots {

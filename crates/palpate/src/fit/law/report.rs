@@ -17,8 +17,9 @@ impl Fitted {
             confidence: options.confidence,
             noise: options.noise,
             known,
-            may_vary: self.scaled.roots.is_none(),
+            may_vary: true,
             counted: self.counted.as_deref(),
+            roots: self.scaled.roots.as_deref(),
             curve: None,
             times: Some((&self.scaled.times, self.scaled.duration)),
         };

@@ -25,7 +25,7 @@
 //!
 //! Where squares of residuals follow the fitted values or time, the noise has another size from sample to sample: V = σ² D R D with D the
 //! standard deviations, and R estimated from residuals over D; for R = 1 the squares of the residuals themselves stand for D² (HC3).
-//! Under a robust loss all this is of residuals as the loss counts them.
+//! Of samples with weights all this is of residuals times the roots of the weights; under a robust loss it is of residuals as the loss counts them.
 //!
 //! | part | what |
 //! |---|---|

@@ -40,6 +40,8 @@ pub(crate) struct Trust<'a> {
     pub(crate) may_vary: bool,
     /// Residuals as a robust loss counts them.
     pub(crate) counted: Option<&'a [f64]>,
+    /// What multiplies residuals and columns of samples that have weights.
+    pub(crate) roots: Option<&'a [f64]>,
     /// The fitted values, where they are no sum of columns.
     pub(crate) curve: Option<&'a [f64]>,
     /// Times of the samples, and their unit in s.
@@ -63,7 +65,7 @@ impl Trust<'_> {
         if !self.may_vary || self.noise == NoiseChoice::White {
             return None;
         }
-        let curve = self.curve.map_or_else(|| Cow::Owned(fitted(solution)), Cow::Borrowed);
+        let curve = self.curve.map_or_else(|| Cow::Owned(fitted(solution, self.roots)), Cow::Borrowed);
         Spread::of(residuals.values, &curve, &residuals.partial, leverages)
     }
 }
@@ -170,6 +172,7 @@ impl Assessed {
             known: true,
             may_vary: true,
             counted: None,
+            roots: None,
             curve: Some(&curve),
             times: None,
         };
@@ -283,11 +286,14 @@ fn are_uneven(times: &[f64]) -> bool {
     low > 0.0 && high > 2.0 * low
 }
 
-/// The curve of a solution: its columns times their amplitudes.
-fn fitted(solution: &Solution) -> Vec<f64> {
+/// The curve of a solution: its columns, over these roots of weights, times their amplitudes.
+fn fitted(solution: &Solution, roots: Option<&[f64]>) -> Vec<f64> {
     let mut values = vec![0.0; solution.residuals.len()];
     for (column, amplitude) in solution.columns.iter().zip(&solution.linear) {
         add_multiple(&mut values, *amplitude, column);
+    }
+    if let Some(roots) = roots {
+        values.iter_mut().zip(roots).for_each(|(value, root)| *value /= root);
     }
     values
 }
