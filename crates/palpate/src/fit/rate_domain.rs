@@ -205,6 +205,7 @@ impl Scaled {
             rmse: (residual_square / strains.len() as f64).sqrt(),
             residual_correlation: assessed.correlation,
             uneven_noise: assessed.uneven,
+            noise_course: None,
             noise: assessed.noise,
             noise_p_value: assessed.noise_p_value,
             interval_method: IntervalMethod::Curvature,

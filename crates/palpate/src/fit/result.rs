@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::{ErrorParts, Estimate, IntervalMethod, NoiseModel, ParameterName, RedundantTerm, Uncertainty};
+use super::{ErrorParts, Estimate, IntervalMethod, NoiseCourse, NoiseModel, ParameterName, RedundantTerm, Uncertainty};
 use crate::laws::{Law, LawCurve, Loading, Response};
 use crate::optimise::{Termination, Work};
 
@@ -122,6 +122,9 @@ pub struct Fit {
     /// The size of the noise follows the signal or time.
     #[serde(default)]
     pub uneven_noise: bool,
+    /// How it may change along the hold; `None` where nothing shows that it does.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub noise_course: Option<NoiseCourse>,
     /// Correlation of the residuals, which intervals take into account.
     pub noise: NoiseModel,
     /// Probability that noise of this model leaves residuals whose innovations correlate as much, by the test of Ljung and Box over 20 lags;

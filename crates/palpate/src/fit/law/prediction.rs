@@ -34,7 +34,7 @@ impl Fit {
     /// The curve at many times, as [`predict_interval`](Self::predict_interval).
     #[must_use]
     pub fn predict_intervals(&self, elapsed: &[f64]) -> Vec<Estimate> {
-        self.predictions(elapsed, |_| 0.0)
+        self.predictions(elapsed, |_, _| 0.0)
     }
 
     /// What one more sample would show there: the curve with its interval, and noise on top.
@@ -43,26 +43,35 @@ impl Fit {
         self.predict_samples(&[elapsed]).swap_remove(0)
     }
 
-    /// Further samples at many times, as [`predict_sample`](Self::predict_sample), each with the noise of a sample of the root mean square weight.
+    /// Further samples at many times, as [`predict_sample`](Self::predict_sample), each with the noise of a sample of the root mean square weight, of
+    /// the size that noise has there ([`NoiseCourse`](crate::fit::NoiseCourse)).
     #[must_use]
     pub fn predict_samples(&self, elapsed: &[f64]) -> Vec<Estimate> {
         let deviation = self.uncertainty.as_ref().map_or(0.0, |uncertainty| uncertainty.deviation);
-        self.predictions(elapsed, |_| deviation)
+        self.predictions(elapsed, |index, value| deviation * self.noise_size(elapsed[index], value))
     }
 
-    /// Further samples at many times whose noise has these standard deviations, in the unit of the signal.
+    /// Further samples at many times whose noise would have these standard deviations, in the unit of the signal, if its size did not change along
+    /// the hold.
     ///
     /// # Panics
     /// If there are fewer deviations than times.
     #[must_use]
     pub fn predict_samples_with(&self, elapsed: &[f64], deviations: &[f64]) -> Vec<Estimate> {
-        self.predictions(elapsed, |index| deviations[index])
+        self.predictions(elapsed, |index, value| deviations[index] * self.noise_size(elapsed[index], value))
     }
 
-    fn predictions(&self, elapsed: &[f64], deviation: impl Fn(usize) -> f64) -> Vec<Estimate> {
+    /// Standard deviation of the noise at a time where the curve has this value, over that of the whole hold.
+    fn noise_size(&self, elapsed: f64, value: f64) -> f64 {
+        self.noise_course.map_or(1.0, |course| course.size(elapsed, value))
+    }
+
+    /// `deviation` is that of the noise of a sample, by its number and the curve there.
+    fn predictions(&self, elapsed: &[f64], deviation: impl Fn(usize, f64) -> f64) -> Vec<Estimate> {
         let values = self.predict_many(elapsed);
+        let deviation = |index: usize| deviation(index, values[index]);
         let (Some(uncertainty), Some(white)) = (&self.uncertainty, &self.white_covariance) else {
-            return values.into_iter().map(Estimate::fixed).collect();
+            return values.iter().copied().map(Estimate::fixed).collect();
         };
         let mut gradients = self.gradients(elapsed);
         // At its limit a curve moves with the constant alone: 0 · ∞ is 0 there.

@@ -1,7 +1,10 @@
 //! From a solution to the result: parameters with errors and intervals.
 
 use super::quantity::Quantity;
-use crate::fit::{Assessed, Domain, Fit, Fitted, IntervalMethod, LawOptions, Loss, Trust, redundant_terms};
+use crate::fit::{
+    Assessed, Domain, Fit, Fitted, IntervalMethod, LawOptions, Loss, NoiseCourse, NoiseFollows, Scaled, Trust,
+    redundant_terms,
+};
 use crate::laws::Law;
 use crate::optimise::{Effort, Shapes, Termination, Work};
 use crate::watch::Cancelled;
@@ -70,6 +73,7 @@ impl Fitted {
             rmse: mean_square.sqrt() * scale,
             residual_correlation: assessed.correlation,
             uneven_noise: assessed.uneven,
+            noise_course: assessed.course.map(|course| self.in_callers_units(course)),
             noise: assessed.noise,
             noise_p_value: assessed.noise_p_value,
             interval_method: IntervalMethod::Curvature,
@@ -81,6 +85,25 @@ impl Fitted {
             redundant_terms: redundant_terms(&self.model, solution),
             profile: None,
             work,
+        }
+    }
+
+    fn in_callers_units(&self, course: NoiseCourse) -> NoiseCourse {
+        let (low, high) = course.range;
+        let Scaled {
+            times,
+            duration,
+            center,
+            range,
+            ..
+        } = &self.scaled;
+        NoiseCourse {
+            range: match course.follows {
+                NoiseFollows::Signal => (low * range + center, high * range + center),
+                // Its samples are evenly spaced.
+                NoiseFollows::Time => (times[0] * duration, times[times.len() - 1] * duration),
+            },
+            ..course
         }
     }
 

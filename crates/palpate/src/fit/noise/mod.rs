@@ -25,7 +25,8 @@
 //!
 //! Where squares of residuals follow the fitted values or time, the noise has another size from sample to sample: V = σ² D R D with D the
 //! standard deviations, and R estimated from residuals over D; for R = 1 the squares of the residuals themselves stand for D² (HC3).
-//! Of samples with weights all this is of residuals times the roots of the weights; under a robust loss it is of residuals as the loss counts them.
+//! The fit keeps D as a course, which bands of further samples follow. Of samples with weights all this is of residuals times the roots of the
+//! weights; under a robust loss it is of residuals as the loss counts them.
 //!
 //! | part | what |
 //! |---|---|
@@ -36,9 +37,11 @@
 //! | `estimation.rs` | which noise left the residuals |
 //! | `portmanteau.rs` | whether it accounts for them |
 //! | `spread.rs` | noise whose size changes along the hold |
+//! | `course.rs` | how it changes, at any time |
 //! | `covariance/` | covariances, errors and intervals that follow |
 
 mod autoregression;
+mod course;
 mod covariance;
 mod estimation;
 mod likelihood;
@@ -47,6 +50,7 @@ mod portmanteau;
 mod residuals;
 mod spread;
 
+pub use course::{NoiseCourse, NoiseFollows};
 pub(crate) use covariance::{Assessed, Scale, Trust, variance_of};
 pub use covariance::{ModelCovariance, Uncertainty};
 pub use model::NoiseModel;

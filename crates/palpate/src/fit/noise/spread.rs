@@ -3,9 +3,10 @@
 use std::borrow::Cow;
 
 use super::autoregression::innovations;
+use super::course::{FARTHEST, NoiseCourse, NoiseFollows};
 use crate::statistics::{dot, mean};
 use crate::vector::elementary::exp;
-use crate::vector::{accelerated, multiply, shifted, sum};
+use crate::vector::{accelerated, extremes, multiply, shifted, sum};
 
 /// Score of a change, in standard deviations, from which on it is one: 1 of 1,000 even noises.
 const OBSERVED: f64 = 3.3;
@@ -25,9 +26,6 @@ const FEW: usize = 400;
 /// Least share of a sample that a fit leaves in its residual.
 pub(super) const LEAST_LEFT: f64 = 0.05;
 
-/// Largest ln of a variance over the mean.
-const FARTHEST: f64 = 14.0;
-
 /// The standard deviation of each sample, of which the mean square is 1: over what a fit leaves of it in its residuals, where that is known.
 ///
 /// ln σ² is a quadratic in the fitted values, or in the number of the sample if that explains more, or linear where no bend shows; its
@@ -36,6 +34,8 @@ pub(super) struct Spread {
     deviations: Vec<f64>,
     /// That the size changes at all.
     pub(super) probability: f64,
+    /// The same at any value, in the units of the fitted values or numbers of samples.
+    pub(super) course: NoiseCourse,
 }
 
 impl Spread {
@@ -68,10 +68,11 @@ impl Spread {
             squares.iter_mut().for_each(|square| *square *= unit);
         }
         let numbers: Vec<f64> = (0..samples).map(|i| i as f64).collect();
-        let regressors = [fitted, &numbers];
-        let scored = regressors.map(|of| (score(&squares, of).abs(), of)).into_iter();
-        let (score, of) =
-            scored.filter(|(score, _)| score.is_finite()).max_by(|(one, _), (other, _)| one.total_cmp(other))?;
+        let regressors = [(NoiseFollows::Signal, fitted), (NoiseFollows::Time, &numbers)];
+        let scored = regressors.map(|(follows, of)| (score(&squares, of).abs(), follows, of)).into_iter();
+        let (score, follows, of) = scored
+            .filter(|(score, ..)| score.is_finite())
+            .max_by(|(one, ..), (other, ..)| one.total_cmp(other))?;
         let probability = if score > OBSERVED {
             1.0
         } else if score > POSSIBLE && samples <= FEW {
@@ -79,15 +80,26 @@ impl Spread {
         } else {
             return None;
         };
-        let mut variances = variances(&squares, &standardised(of));
+        let standard = standardised(of);
+        let (mut variances, powers) = variances(&squares, &standard);
         let mean_left = match &left {
             Some(left) => dot(&variances, left) / sum(left),
             None => mean(&variances),
         };
         variances.iter_mut().for_each(|variance| *variance = (*variance / mean_left).sqrt());
+        // a + b z + c z² with z = low + wide x.
+        let ((low, high), [a, b, c]) = (extremes(&standard), powers);
+        let wide = high - low;
+        let course = NoiseCourse {
+            follows,
+            range: extremes(of),
+            coefficients: [a + low * (b + low * c) - mean_left.ln(), wide * (b + 2.0 * low * c), wide * wide * c],
+            probability,
+        };
         Some(Self {
             deviations: variances,
             probability,
+            course,
         })
     }
 
@@ -121,8 +133,8 @@ fn score(squares: &[f64], of: &[f64]) -> f64 {
     (together - count * middle) / ((own - count) * (along / count - middle * middle)).sqrt()
 }
 
-/// exp(a + b x + c x²) of the largest likelihood, without c where that explains as much.
-fn variances(squares: &[f64], of: &[f64]) -> Vec<f64> {
+/// exp(a + b x + c x²) of the largest likelihood, without c where that explains as much; and a, b and c.
+fn variances(squares: &[f64], of: &[f64]) -> (Vec<f64>, [f64; 3]) {
     let count = of.len() as f64;
     // x² without what 1 and x have of it.
     let bent: Vec<f64> = of.iter().map(|x| x * x).collect();
@@ -131,7 +143,9 @@ fn variances(squares: &[f64], of: &[f64]) -> Vec<f64> {
     let bent: Vec<f64> = bent.iter().zip(of).map(|(square, x)| square - middle - slope * x).collect();
     let straight = likeliest(squares, [of, &bent], [0.0; 3], false);
     let bends = likeliest(squares, [of, &bent], straight.at, true);
-    if straight.deviance - bends.deviance > EVIDENCE { bends.variances } else { straight.variances }
+    let best = if straight.deviance - bends.deviance > EVIDENCE { bends } else { straight };
+    let [a, b, c] = best.at;
+    (best.variances, [a - c * middle, b - c * slope, c])
 }
 
 /// Coefficients of ln σ², σ² of the samples, and −2 ln L.
@@ -219,6 +233,11 @@ mod tests {
                 .map(|(found, true_one)| (found * unit / true_one).ln().abs());
             let worst = off.fold(0.0, f64::max);
             assert!(worst < 0.7, "{seed}: {worst}");
+            // The course is the same at every sample.
+            for (i, deviation) in found.deviations.iter().enumerate() {
+                let size = found.course.size(i as f64, signal[i]);
+                assert!((size / deviation - 1.0).abs() < 1e-9, "{seed} {i}: {size} {deviation}");
+            }
             assert!((dot(&found.deviations, &found.deviations) / 400.0 - 1.0).abs() < 1e-9);
         }
     }

@@ -6,6 +6,7 @@ use super::columns::Columns;
 use super::sandwich::Sandwich;
 use super::uncertainty::{Scale, Uncertainty};
 use super::uneven::leverages;
+use crate::fit::noise::course::NoiseCourse;
 use crate::fit::noise::model::Noise;
 use crate::fit::noise::portmanteau::{UNEXPLAINED, p_value};
 use crate::fit::noise::residuals::Residuals;
@@ -27,6 +28,8 @@ pub(crate) struct Assessed {
     pub(crate) correlation: f64,
     /// The size of the noise changes along the samples.
     pub(crate) uneven: bool,
+    /// How it may change.
+    pub(crate) course: Option<NoiseCourse>,
 }
 
 /// What is known of a fit whose errors are wanted.
@@ -106,6 +109,7 @@ impl Assessed {
             noise_p_value,
             correlation: residuals.correlations[0],
             uneven: observed.is_some(),
+            course: spread.as_ref().map(|spread| spread.course),
         };
         let Some(inverse) = inverse else { return Ok(assessed) };
         let weighed: Option<Vec<Vec<f64>>> =
@@ -220,6 +224,7 @@ impl Assessed {
             noise_p_value: None,
             correlation,
             uneven: false,
+            course: None,
         }
     }
 
