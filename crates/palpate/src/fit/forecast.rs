@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use super::{
     Condensed, FitError, Fitted, LawOptions, Samples, Scaled, SpectrumOptions, build, condense, finalists,
-    fit_spectrum, local,
+    fit_spectrum, local, until,
 };
 use crate::laws::{BasisFunction, Law, LawCurve, Term};
 use crate::optimise::{Effort, Ending, Termination, polished, refine, standing};
@@ -38,7 +38,7 @@ pub fn forecast(samples: &Samples<'_>, law: Law, options: &LawOptions, cut: f64)
     options.check()?;
     samples.check(1)?;
     let start = samples.times[0];
-    let fitted = samples.times.partition_point(|t| t - start <= cut);
+    let fitted = until(samples.times, cut);
     if fitted == samples.times.len() {
         return Err(FitError::TooFewSamples {
             parameters: 1,

@@ -64,4 +64,5 @@ pub use rate_domain::{fit_rates, fit_rates_watched};
 pub use result::{Domain, Fit, Parameter, ParameterRole, ParameterUnit, ProfileCurves};
 pub use samples::Samples;
 use samples::{Scaled, check_finite};
+pub(crate) use samples::{before, until};
 pub use spectrum::{Smoothing, SpectrumFit, SpectrumOptions, SpectrumPeak, fit_spectrum};

@@ -164,6 +164,19 @@ pub(crate) fn check_finite(columns: [(&'static str, &[f64]); 2]) -> Result<(), F
     found.map_or(Ok(()), |(_, error)| Err(error))
 }
 
+/// A time that is a share of another is off by less than this of itself, whatever the unit of time and the first sample.
+const ROUNDING: f64 = 1e-6;
+
+/// Number of times up to one since the first; one at that very time is among them, however it is rounded.
+pub(crate) fn until(times: &[f64], elapsed: f64) -> usize {
+    times.partition_point(|t| t - times[0] <= elapsed * (1.0 + ROUNDING))
+}
+
+/// Number of times before one since the first; one at that very time is not among them, however it is rounded.
+pub(crate) fn before(times: &[f64], elapsed: f64) -> usize {
+    times.partition_point(|t| t - times[0] < elapsed * (1.0 - ROUNDING))
+}
+
 /// 1/σ over its root mean square, and that, with care for σ near the limits of double precision.
 fn roots_of(standard_deviations: &[f64]) -> (Vec<f64>, f64) {
     let least = standard_deviations.iter().copied().fold(f64::INFINITY, f64::min);

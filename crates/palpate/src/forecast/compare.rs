@@ -2,7 +2,9 @@
 
 use super::verdict::judge;
 use super::{CompareOptions, Comparison, ForwardScore, HoldForecast, Ranking, Row, criteria};
-use crate::fit::{Fit, FitError, LawOptions, Samples, SpectrumFit, SpectrumOptions, fit_law_watched, fit_spectrum};
+use crate::fit::{
+    Fit, FitError, LawOptions, Samples, SpectrumFit, SpectrumOptions, fit_law_watched, fit_spectrum, until,
+};
 use crate::laws::Law;
 use crate::statistics::{mean, noise_in_time};
 use crate::watch::{Cancelled, Progress, Unwatched, Watch};
@@ -193,7 +195,7 @@ fn cuts(samples: &Samples<'_>, options: &CompareOptions, duration: f64, noise: f
     const OBSERVED: f64 = 5.0;
     let (times, values) = (samples.times, samples.values);
     let tells = |cut: &f64| {
-        let first = times.partition_point(|t| t - times[0] <= *cut);
+        let first = until(times, *cut);
         let rest = &values[first..];
         if first < FEWEST || rest.len() < FEWEST / 3 {
             return false;

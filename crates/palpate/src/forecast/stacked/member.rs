@@ -4,7 +4,7 @@ use std::fmt;
 
 use serde::{Deserialize, Serialize};
 
-use crate::fit::{Condensed, FitError, LawOptions, Samples, condensed_curve, extrapolated};
+use crate::fit::{Condensed, FitError, LawOptions, Samples, before, condensed_curve, extrapolated};
 use crate::laws::{Law, LawCurve};
 use crate::statistics::interpolated;
 
@@ -76,7 +76,7 @@ impl Course {
         };
         let start = samples.times[0];
         let scale = samples.times[samples.times.len() - 1] - start;
-        let first = samples.times.partition_point(|t| t - start < share * scale);
+        let first = before(samples.times, share * scale);
         let later = samples.times.len() - first;
         if later < FEWEST {
             return Err(FitError::TooFewSamples {

@@ -2,7 +2,7 @@
 
 use super::member::{Course, ForecastMember, line};
 use super::trial::{LONGER, Trial, TriedHold};
-use crate::fit::{Condensed, Samples};
+use crate::fit::{Condensed, Samples, before};
 use crate::statistics::interpolated;
 
 /// Shares of the duration from which on the course of another hold is scaled to this one.
@@ -53,7 +53,7 @@ impl Others {
         let (start, last) = (samples.times[0], *times.last()?);
         let elapsed: Vec<f64> = samples.times.iter().map(|t| t - start).collect();
         let nodes = Condensed::finer(&elapsed, samples.values);
-        let first = nodes.times.partition_point(|t| *t < from * elapsed[elapsed.len() - 1]);
+        let first = before(&nodes.times, from * elapsed[elapsed.len() - 1]);
         let reaches = |known: &&Known| Some(known.number) != without && known.end() >= REACHES * last;
         let (mut values, mut weights) = (vec![0.0; times.len()], 0.0);
         for known in self.known.iter().filter(reaches) {

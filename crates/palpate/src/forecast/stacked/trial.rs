@@ -2,7 +2,7 @@
 
 use super::change;
 use super::member::{Course, ForecastMember, members};
-use crate::fit::{Condensed, FitError, LawOptions, Samples};
+use crate::fit::{Condensed, FitError, LawOptions, Samples, until};
 use crate::laws::Law;
 use crate::watch::{Cancelled, Progress, Watch};
 
@@ -84,11 +84,9 @@ impl<'a> TriedHold<'a> {
         times[times.len() - 1] - times[0]
     }
 
-    /// Number of samples up to a time since the first, s; one at that very time is among them, however it is rounded.
+    /// Number of samples up to a time since the first, s.
     fn until(&self, elapsed: f64) -> usize {
-        const ROUNDING: f64 = 1e-6;
-        let times = self.samples.times;
-        times.partition_point(|t| t - times[0] <= elapsed * (1.0 + ROUNDING))
+        until(self.samples.times, elapsed)
     }
 
     /// The samples up to a time since the first, s.

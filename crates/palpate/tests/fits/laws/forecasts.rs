@@ -49,6 +49,36 @@ fn neither_rounding_nor_the_clock_changes_a_band() {
     }
 }
 
+/// Evenly spaced samples lie at shares of a first part to the digit, and the unit of time decided on which side: bands of 60 samples moved by 1 to
+/// 36 % of their width between seconds and milliseconds.
+#[test]
+fn the_unit_of_time_changes_no_forecast() {
+    let (laws, options) = (CompareOptions::default().laws(), LawOptions::default());
+    for samples in [41, 60, 61, 73, 101] {
+        let mut random = Rng::new(samples);
+        let times: Vec<f64> = (0..samples).map(|i| 0.1 * i as f64).collect();
+        let values: Vec<f64> = times
+            .iter()
+            .map(|t| 1.0 + 2.0 * (1.0 + 2.8 * 3.0 * t).powf(-0.25) + 3e-3 * random.normal())
+            .collect();
+        let found = [1.0, 1e3, 1.0 / 60.0].map(|unit| {
+            let times: Vec<f64> = times.iter().map(|t| t * unit).collect();
+            let hold = Samples::new(&times, &values);
+            let found = HoldForecast::of(&hold, &laws, &options, &mut Unwatched).unwrap().unwrap();
+            let at = found.at(3.0 * times[times.len() - 1], 0.95);
+            let cut = 0.5 * times[times.len() - 1];
+            let forward =
+                laws.iter().map(|law| forecast(&hold, *law, &options, cut).unwrap().fitted).collect::<Vec<_>>();
+            ([at.value, at.low, at.high], forward)
+        });
+        for (other, forward) in &found {
+            let off = other.iter().zip(found[0].0).map(|(other, one)| (other / one - 1.0).abs()).fold(0.0, f64::max);
+            assert!(off < 1e-9, "{samples}: {off}");
+            assert_eq!(*forward, found[0].1, "{samples}");
+        }
+    }
+}
+
 #[test]
 fn the_band_of_a_forecast_covers_what_follows() {
     const REPEATS: usize = 6;
