@@ -43,9 +43,11 @@ its intervals wider than they need be.
 
 # Of few samples fewer kinds can be told apart; of more, others.
 KINDS_OF = {
-    12: ("white", "AR(1) 0.7", "walk 0.1 and white", "logarithmic times"),
-    25: ("white", "AR(1) 0.7", "walk 0.1 and white", "logarithmic times"),
-    100: ("white", "AR(1) 0.9", "low-pass filter", "1/f", "walk 1 and white", "proportional"),
+    12: ("white", "AR(1) 0.7", "AR(1) 0.9", "ARMA(2, 1)", "walk 0.1 and white", "logarithmic times"),
+    25: ("white", "AR(1) 0.7", "ARMA(2, 1)", "walk 0.1 and white", "proportional", "logarithmic times", "logarithmic times, and white"),
+    50: ("white", "AR(1) 0.9", "1/f", "proportional", "logarithmic times, and white"),
+    100: ("white", "AR(1) 0.9", "low-pass filter", "1/f", "walk 1 and white", "proportional", "logarithmic times, and white"),
+    200: ("white", "AR(1) 0.9", "low-pass filter", "1/f", "walk 1 and white", "proportional"),
     1000: ("white", "AR(1) 0.9", "low-pass filter", "1/f", "walk 1 and white", "walk 0.03 and white"),
 }
 

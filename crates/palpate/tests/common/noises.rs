@@ -20,12 +20,12 @@ pub(crate) enum Noise {
     Rounded,
     /// White noise of a sensor so many times as slow, with straight lines between its readings.
     Interpolated(usize),
-    /// Noise that fades within 0.1 s, at times evenly spaced in ln t.
-    LogarithmicTimes,
+    /// Noise that fades within 0.1 s, and white noise of this size, at times evenly spaced in ln t.
+    LogarithmicTimes(f64),
 }
 
 /// All kinds by their names.
-pub(crate) const KINDS: [(&str, Noise); 24] = [
+pub(crate) const KINDS: [(&str, Noise); 25] = [
     ("white", Noise::Filtered(&[], &[1.0], 1.0)),
     ("AR(1) 0.7", Noise::Filtered(&[0.7], &[1.0], 0.714)),
     ("AR(1) 0.9", Noise::Filtered(&[0.9], &[1.0], 0.436)),
@@ -50,7 +50,8 @@ pub(crate) const KINDS: [(&str, Noise); 24] = [
     ("rounded", Noise::Rounded),
     ("interpolated, 4 to 1", Noise::Interpolated(4)),
     ("interpolated, 10 to 1", Noise::Interpolated(10)),
-    ("logarithmic times", Noise::LogarithmicTimes),
+    ("logarithmic times", Noise::LogarithmicTimes(0.0)),
+    ("logarithmic times, and white", Noise::LogarithmicTimes(1.0)),
 ];
 
 /// A law with its true parameters.
@@ -101,7 +102,7 @@ pub(crate) fn truth_over(duration: f64, known: &Known, noise: Noise, samples: us
     let share = |i: usize| i as f64 / (samples - 1) as f64;
     let time = |i: usize| match noise {
         // Amplitudes are those at the first sample, the true ones at 0.
-        Noise::LogarithmicTimes => 1.001 * duration * (1.001e3_f64.powf(share(i)) - 1.0) / 1e3,
+        Noise::LogarithmicTimes(_) => 1.001 * duration * (1.001e3_f64.powf(share(i)) - 1.0) / 1e3,
         _ => duration * share(i),
     };
     let times: Vec<f64> = (0..samples).map(time).collect();
@@ -179,14 +180,15 @@ impl Noise {
                 (0..count).map(between).map(|(i, share)| read[i] + share * (read[i + 1] - read[i])).collect()
             }
             Self::Rounded => white(random),
-            Self::LogarithmicTimes => {
+            Self::LogarithmicTimes(beside) => {
                 let mut last = random.normal();
                 let mut next = |i: usize| {
                     let kept = if i == 0 { 1.0 } else { (-(times[i] - times[i - 1]) / 0.1).exp() };
                     last = kept * last + (1.0 - kept * kept).sqrt() * random.normal();
                     last
                 };
-                (0..count).map(&mut next).collect()
+                let made = (0..count).map(&mut next).collect();
+                plus(made, white(random), beside)
             }
         };
         let values = clean.iter().zip(noise).map(|(y, noise): (&f64, f64)| y + size * noise);
