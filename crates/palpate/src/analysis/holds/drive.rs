@@ -6,7 +6,7 @@ use crate::segment::{HoldMode, OBSERVED, Segment, ramps_before};
 use crate::statistics::{mean, median, noise};
 
 /// Share of the answer that the drive makes, from which on it is stated: of a creep, whose laws have a time more for it; and of a relaxation.
-const MATTERS: [f64; 2] = [0.01, 0.05];
+const MATTERS: [f64; 2] = [0.01, 0.02];
 
 /// How far what is held, by its `mode`, goes over the fitted part of segment `index`, in samples up to `end`; `None` where it stays, or where
 /// the body's answer hardly shows it.
