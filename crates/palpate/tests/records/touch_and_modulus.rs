@@ -346,6 +346,41 @@ fn a_first_touch_that_the_jaw_does_not_reach_is_refused() {
     assert!((requested - found - 1e-3).abs() < 1e-15 && found == farthest);
 }
 
+/// A first touch that was given left the zero of the load cell in the force: 1 N of offset made the equilibrium modulus half as much again.
+#[test]
+fn a_first_touch_that_is_given_has_its_own_zero_of_the_force() {
+    let levels = [0.01, 0.02];
+    for (rest, air, given) in [(2.0, 2e-3, 2e-3), (0.0, 2e-3, 2e-3), (2.0, 2e-3, 2.2e-3)] {
+        let bench = Bench {
+            rest,
+            zero: 1.0,
+            ..Bench::paper(air, 0.02)
+        };
+        let options = AnalysisOptions {
+            touch: ContactChoice::Displacement(given),
+            ..ball(Some(28e3))
+        };
+        let analysis = analyze(&bench.record(&levels, 10.0, 1), &options).unwrap();
+        let tare = analysis.contact.tare;
+        assert!((tare.force - 1.0).abs() < 0.02 && tare.displacement == given, "{rest} {given}: {tare:?}");
+        let codes: Vec<&str> = analysis.findings.iter().map(Finding::code).collect();
+        assert!(!codes.contains(&"force_not_zero"), "{codes:?}");
+    }
+    // Nothing before first touch gives no zero, and a finding says that there is a force.
+    let bench = Bench {
+        zero: 1.0,
+        ..Bench::paper(0.0, 0.02)
+    };
+    let options = AnalysisOptions {
+        touch: ContactChoice::Displacement(0.0),
+        ..ball(Some(28e3))
+    };
+    let analysis = analyze(&bench.record(&levels, 10.0, 1), &options).unwrap();
+    assert_eq!(analysis.contact.tare.force, 0.0);
+    let codes: Vec<&str> = analysis.findings.iter().map(Finding::code).collect();
+    assert!(codes.contains(&"force_not_zero"), "{codes:?}");
+}
+
 #[test]
 fn what_cannot_be_fitted_says_why() {
     let record = Bench::paper(0.0, 0.02).record(&LEVELS[0], 10.0, 1);

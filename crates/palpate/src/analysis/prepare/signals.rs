@@ -53,7 +53,8 @@ pub(crate) fn signal_findings(
         });
     }
     findings.extend(touch_findings(record, contact, options.touch));
-    if options.geometry.is_some() && options.touch == ContactChoice::AsRecorded {
+    let is_stated = matches!(options.touch, ContactChoice::AsRecorded | ContactChoice::Displacement(_));
+    if options.geometry.is_some() && is_stated {
         findings.extend(wrong_zero(record));
     }
     findings
@@ -219,8 +220,8 @@ fn touch_findings(record: &Record, contact: &ContactPoint, requested: ContactCho
     findings
 }
 
-/// [`Finding::DisplacementNotZero`] or [`Finding::ForceNotZero`] by the first row of a record whose columns are stated to count from first touch
-/// ([`ContactChoice::AsRecorded`]).
+/// [`Finding::DisplacementNotZero`] or [`Finding::ForceNotZero`] by the first row of a record whose first touch is stated
+/// ([`ContactChoice::AsRecorded`], [`ContactChoice::Displacement`]).
 fn wrong_zero(record: &Record) -> Option<Finding> {
     /// Shares of the travel: what is a displacement, and what is none.
     const MOVED: (f64, f64) = (0.2, 0.01);

@@ -21,7 +21,7 @@ pub enum ContactChoice {
     Auto,
     /// Displacement and force are zero at first touch already; nothing is subtracted.
     AsRecorded,
-    /// At this displacement, m.
+    /// At this displacement, m; the force without contact is that of the samples before it.
     Displacement(f64),
     /// Where this rule finds it; as [`Auto`](Self::Auto) where the rule finds nothing.
     By(TouchMethod),
@@ -98,6 +98,9 @@ const BASELINE: usize = 5;
 /// Only if that lies clearly behind the foot of the ramp (3 standard errors and 2 % of the travel), and the force is flat
 /// up to there, has the jaw travelled through air. Otherwise first touch is the foot of the ramp, and the zero of the force
 /// is its median at rest before it, or nothing is subtracted from a force without such a rest.
+///
+/// A first touch that is given has a zero of the force too: its median over the first half of the way there, if the record has at least five
+/// samples of that, or else of all samples before it; nothing is subtracted where there are fewer.
 #[must_use]
 pub fn find_contact_of(
     record: &Record,
@@ -108,10 +111,25 @@ pub fn find_contact_of(
     let as_recorded = ContactPoint::at(record, 0.0);
     match (choice, record.displacement()) {
         (ContactChoice::AsRecorded, _) | (_, None) => as_recorded,
-        (ContactChoice::Displacement(displacement), _) => ContactPoint::at(record, displacement),
+        (ContactChoice::Displacement(touch), Some(displacement)) => given(record, displacement, touch),
         (ContactChoice::Auto | ContactChoice::By(_), Some(displacement)) => {
             automatic(record, displacement, segmentation, body, choice).unwrap_or(as_recorded)
         }
+    }
+}
+
+/// First touch at a displacement that is given, and the force without contact before the jaw comes there.
+fn given(record: &Record, displacement: &[f64], touch: f64) -> ContactPoint {
+    let point = ContactPoint::at(record, touch);
+    let before = &displacement[..point.sample.unwrap_or(0)];
+    // Of half the way the force is surely one without contact; what is given may lie a little late.
+    let halfway = before.first().map_or(touch, |from| 0.5 * (from + touch));
+    let clear = before.iter().position(|d| *d >= halfway).unwrap_or(before.len());
+    let free = if clear >= BASELINE { clear } else { before.len() };
+    let force = if free >= BASELINE { median(&mut record.force()[..free].to_vec()) } else { 0.0 };
+    ContactPoint {
+        tare: Tare { force, ..point.tare },
+        ..point
     }
 }
 
