@@ -67,7 +67,7 @@ impl AnalysisError {
             Self::Correction(error) => error.hint().to_owned(),
             Self::Specimen(_) => "check the geometry in the test description and its units".to_owned(),
             Self::BeyondBody { .. } => {
-                "check the unit of the displacement, the size of the body and squeezed_from; a strip pulled in grips needs separation = false"
+                "check the unit of the displacement, the size of the body and squeezed_from; a body pulled in grips needs separation = false"
                     .to_owned()
             }
             Self::TouchBeyond { .. } => {

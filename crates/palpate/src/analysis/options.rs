@@ -85,6 +85,8 @@ pub struct AnalysisOptions {
     pub touch: ContactChoice,
     /// Whether the jaw can pull (for the overlay).
     pub separation: Separation,
+    /// Whether a body of constant section is squeezed even where the jaw can pull: it cannot go further than the body is long.
+    pub squeezed: bool,
     /// Layers of the overlay; fitted to the ramps if not given.
     pub layers: Option<LayersChoice>,
     /// Exponents that are fitted as given; a list of two or more is extended while its last or first has the lowest criterion.
@@ -127,6 +129,7 @@ impl Default for AnalysisOptions {
             conditions: Conditions::default(),
             touch: ContactChoice::AsRecorded,
             separation: Separation::default(),
+            squeezed: false,
             layers: None,
             exponents: vec![1.0, 2.0, 3.0, 5.0, 7.0],
             free_exponent: true,

@@ -322,6 +322,15 @@ fn a_jaw_that_goes_through_the_body_is_an_error() {
         assert!((found - limit).abs() < 1e-12 && *sample > 1, "{error}");
         assert!(error.to_string().contains("mm") && error.hint().contains("unit"), "{error}");
     }
+    // A block whose jaws can pull was squeezed to nothing and below without a word: its modulus was a tenth.
+    let held = AnalysisOptions {
+        squeezed: true,
+        ..options(cylinder.clone(), Sides::One, Separation::Bonded)
+    };
+    let error = analyze(&record(0.01), &held).unwrap_err();
+    assert!(matches!(error, AnalysisError::BeyondBody { limit, .. } if (limit - 0.005).abs() < 1e-12), "{error}");
+    assert!(error.hint().contains("separation = false"), "{}", error.hint());
+    assert!(analyze(&record(0.004), &held).is_ok());
     // A strip in grips stretched to three times its length is nothing special.
     let strip = analyze(&record(0.01), &options(cylinder, Sides::One, Separation::Bonded)).unwrap();
     assert!(strip.overlay.is_some(), "{:?}", strip.findings);

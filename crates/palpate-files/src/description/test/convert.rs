@@ -79,10 +79,14 @@ pub fn parse_test(text: &str, path: &Path) -> Result<TestDescription, Descriptio
     };
     let (fit, exponents) = settings::fit(&source, &tables.fit)?;
     let layers = layers(&source, contact, geometry.as_ref())?;
+    // Strips and dumbbells are pulled, and so is what is stated to be held by its jaws.
+    let form = tables.specimen.as_ref().map(|specimen| specimen.shape);
+    let is_squeezed = matches!(form, Some(ShapeName::Block | ShapeName::Cylinder)) && contact.separation.is_none();
     let analysis = AnalysisOptions {
         instrument,
         geometry,
         separation: contact::separation(contact.separation.unwrap_or(grows)),
+        squeezed: is_squeezed,
         layers,
         corrections: corrections::checked(&source, &tables.clock, &tables.force, &tables.machine)?,
         touch,

@@ -383,3 +383,16 @@ fn an_instrument_that_says_nothing_is_refused() {
     }
     says(test("[instrument]\nradius = \"1 mm\""), "instrument.radius", "without a [specimen]", "");
 }
+
+/// A block or a cylinder was analysed far beyond its own length: its jaws count as bonded, as the grips of a strip do.
+#[test]
+fn a_block_is_squeezed_and_what_is_in_grips_is_pulled() {
+    let squeezed = |shape: &str| {
+        let text = format!("[specimen]\nlength = \"20 mm\"\n{shape}");
+        test(&text).unwrap().analysis.squeezed
+    };
+    let block = "shape = \"block\"\narea = \"400 mm^2\"\n";
+    assert!(squeezed(block) && squeezed("shape = \"cylinder\"\ndiameter = \"22 mm\"\n"));
+    assert!(!squeezed(&format!("{block}[contact]\nseparation = false\n")));
+    assert!(!squeezed("shape = \"strip\"\nwidth = \"20 mm\"\nthickness = \"2 mm\"\n"));
+}

@@ -194,7 +194,7 @@ impl Corrected {
         let body = options.geometry.as_ref().map(|geometry| geometry.specimen(1.0)).transpose()?;
         let contact = find_contact_of(&self.record, &segmentation, body.as_ref(), touch);
         let record = self.record.tared(contact.tare);
-        beyond_body(&record, body.as_ref(), options.separation)?;
+        beyond_body(&record, body.as_ref(), options)?;
         Ok(Prepared {
             record,
             segmentation,
@@ -206,12 +206,14 @@ impl Corrected {
 /// An error if the jaw goes as far as the body is deep: a unit, a radius or a number of sides is wrong.
 ///
 /// A ball and a body between plates have that limit; a strip in grips can be stretched beyond its own length.
-fn beyond_body(record: &Record, body: Option<&Specimen>, separation: Separation) -> Result<(), AnalysisError> {
+fn beyond_body(record: &Record, body: Option<&Specimen>, options: &AnalysisOptions) -> Result<(), AnalysisError> {
     let (Some(body), Some(displacement)) = (body, record.displacement()) else {
         return Ok(());
     };
-    let is_strip = matches!(body.shape(), Shape::Prism { .. }) && separation == Separation::Bonded;
-    if is_strip {
+    // A travel that was a strain or an angle may be one of shear, which has no end.
+    let is_travel = !record.corrections().iter().any(|done| matches!(done, Correction::ReadAs { .. }));
+    let is_stretched = options.separation == Separation::Bonded && !(options.squeezed && is_travel);
+    if is_stretched && matches!(body.shape(), Shape::Prism { .. }) {
         return Ok(());
     }
     let share = body.contact_displacement(1.0);
