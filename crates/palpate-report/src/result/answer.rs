@@ -216,10 +216,7 @@ fn sentence(record: &ComparedRecord, law: Option<Law>, agreeing: usize, judged: 
         all if all.contains(&Reservation::DriveChanges) => {
             "In some holds what is held goes on, so that no law there is that of the body alone. The closest for this record"
         }
-        all if all.len() == compared => {
-            "No law that was compared describes this record down to its noise. The best approximation"
-        }
-        _ => "Best approximation for this record, of which some holds refute every law",
+        all => reserved(all, compared),
     };
     let which = match (agreeing, compared) {
         (_, 1) => "On the one hold compared".to_owned(),
@@ -230,6 +227,24 @@ fn sentence(record: &ComparedRecord, law: Option<Law>, agreeing: usize, judged: 
         "{}{what}: {law}, {name}. {which} it is the best law or not distinguishable from the best.",
         by_fit_alone(judged)
     )
+}
+
+/// What stands against every law on the holds that have a reservation, of `compared` holds; it stands before the best approximation.
+///
+/// A hold whose forecasts all miss refutes no law: its noise may hide which one it follows.
+fn reserved(reservations: &[Reservation], compared: usize) -> &'static str {
+    let refuted = reservations.iter().filter(|one| **one == Reservation::Refuted).count();
+    let all = reservations.len() == compared;
+    match (refuted, reservations.len() - refuted, all, compared) {
+        (0, _, true, 1) => "No law that was compared predicts the rest of this hold. The closest",
+        (0, _, true, _) => "No law that was compared predicts the rest of any hold. The closest for this record",
+        (0, _, false, _) => "In some holds no law predicts what follows. The best approximation for this record",
+        (_, 0, true, _) => "No law that was compared describes this record down to its noise. The best approximation",
+        (_, 0, false, _) => "Best approximation for this record, of which some holds refute every law",
+        _ => {
+            "Some holds refute every law, and in others no law predicts what follows. The best approximation for this record"
+        }
+    }
 }
 
 /// That the law is open, unless it is certain on most holds that name this one; it stands before the choice.
@@ -291,4 +306,26 @@ fn most_severe(findings: &[Finding]) -> Vec<String> {
         .take(MOST_FINDINGS)
         .map(|finding| format!("{}: {}", word(finding.severity()), finding.observation()))
         .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A hold too noisy for a forecast was stated to refute every law, and a single one to be described by none.
+    #[test]
+    fn a_hold_that_no_law_predicts_refutes_none() {
+        use Reservation::{Refuted, Unpredictive};
+        let refutes = |of: &[Reservation], compared| {
+            let text = reserved(of, compared);
+            (text.contains("refute") || text.contains("down to its noise"), text.contains("predicts"))
+        };
+        assert_eq!(refutes(&[Unpredictive], 1), (false, true));
+        assert_eq!(refutes(&[Unpredictive], 6), (false, true));
+        assert_eq!(refutes(&[Unpredictive, Unpredictive], 2), (false, true));
+        assert_eq!(refutes(&[Refuted], 1), (true, false));
+        assert_eq!(refutes(&[Refuted, Refuted], 6), (true, false));
+        assert_eq!(refutes(&[Refuted, Unpredictive], 2), (true, true));
+        assert!(reserved(&[Unpredictive], 1).contains("this hold"));
+    }
 }
