@@ -4,7 +4,7 @@
 
 use palpate::units::{self, Dimension};
 
-use crate::naming::{is_unit_in_words, names_quantity};
+use crate::naming::{is_named_in, is_unit_in_words, names_quantity};
 
 /// Words that units are made of, in lower case.
 const WORDS: &[&str] = &[
@@ -35,6 +35,10 @@ const SUFFIXES: &[&str] = &[
     "pa", "kpa", "mpa", "gpa", "psi", "percent", "pct", "deg", "rad", "degc",
 ];
 
+/// Units that are taken for one behind a blank as well. Words that are names or ends of names too (`Time in`, `Force m`, `Load cell`) are left
+/// out; single letters but the newton and the second are.
+const LAST_WORDS: &[&str] = &["inch", "inches", "mil", "daN", "cN", "ozf", "kip", "min"];
+
 /// Opening and closing brackets that enclose units.
 const BRACKETS: [(char, char); 8] = [
     ('(', ')'),
@@ -55,6 +59,7 @@ pub(crate) fn split(cell: &str) -> (Option<String>, Option<String>) {
         .or_else(|| behind_slash(cell))
         .or_else(|| behind_word(cell))
         .or_else(|| behind_underscore(cell))
+        .or_else(|| behind_blank(cell))
         .unwrap_or((cell, ""));
     let owned = |text: &str| Some(text.trim().to_owned()).filter(|text| !text.is_empty());
     (owned(name), owned(&narrow(unit)))
@@ -162,6 +167,18 @@ fn behind_underscore(cell: &str) -> Option<(&str, &str)> {
     (!name.is_empty() && (minutes || is_one_of(SUFFIXES, unit))).then_some((name, unit))
 }
 
+/// The unit behind the last blank of a name that says the quantity it measures: `Load kN`, `Extension inch`.
+fn behind_blank(cell: &str) -> Option<(&str, &str)> {
+    let (name, unit) = cell.rsplit_once(char::is_whitespace)?;
+    let is_letter = unit.chars().count() == 1;
+    let may_end = if is_letter {
+        matches!(unit, "N" | "s")
+    } else {
+        is_one_of(SUFFIXES, unit) || LAST_WORDS.iter().any(|known| known.eq_ignore_ascii_case(unit))
+    };
+    (may_end && is_named_in(name, unit)).then_some((name, unit))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -202,6 +219,16 @@ mod tests {
             ("Время, с", "Время", "с"),
             ("Усилие (кгс)", "Усилие", "кгс"),
             ("하중(뉴턴)", "하중", "뉴턴"),
+            ("Load kN", "Load", "kN"),
+            ("Load lbf", "Load", "lbf"),
+            ("Load mN", "Load", "mN"),
+            ("Load N", "Load", "N"),
+            ("Kraft kN", "Kraft", "kN"),
+            ("Extension inch", "Extension", "inch"),
+            ("Position um", "Position", "um"),
+            ("Time sec", "Time", "sec"),
+            ("Time min", "Time", "min"),
+            ("Stress MPa", "Stress", "MPa"),
         ] {
             assert_eq!(split(cell), (Some(name.to_owned()), Some(unit.to_owned())));
         }
@@ -220,6 +247,18 @@ mod tests {
             "Force (filtered)",
             "試験力（平均）",
             "_mm",
+            "Load cell",
+            "Time in",
+            "Position in",
+            "Force m",
+            "Force mm",
+            "Force min",
+            "Displacement m",
+            "Time std",
+            "Load n",
+            "Sensor mN",
+            "Max force kN",
+            "kN",
         ] {
             assert_eq!(split(cell), (Some(cell.to_owned()), None));
         }

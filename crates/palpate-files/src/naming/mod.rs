@@ -19,7 +19,8 @@ mod unit_words;
 mod vocabulary;
 
 pub(crate) use names::{
-    measured, measures_another, names_another, names_multiples_of, names_quantity, rank_of_name, topic_and_field, words,
+    is_named_in, last_unit, measured, measures_another, names_another, names_multiples_of, names_quantity,
+    rank_of_name, topic_and_field, words,
 };
 pub use quantity::Quantity;
 pub(crate) use rheometry::rank_in_rheometry;

@@ -20,6 +20,20 @@ pub(crate) fn names_quantity(name: &str) -> bool {
     VOCABULARY.iter().any(|vocabulary| rank_of_name(name, vocabulary).is_some())
 }
 
+/// Whether a name says a quantity that this unit measures.
+pub(crate) fn is_named_in(name: &str, unit: &str) -> bool {
+    let measures = |quantity: Quantity| unit_factor(unit, quantity.dimension()).is_some();
+    let says = |vocabulary: &Vocabulary| rank_of_name(name, vocabulary).is_some();
+    VOCABULARY.iter().any(|vocabulary| measures(vocabulary.quantity) && says(vocabulary))
+}
+
+/// The symbol of the unit that the last word of a name is, though it may be a part of the name: what a message may propose.
+pub(crate) fn last_unit(name: &str, quantity: Quantity) -> Option<&'static str> {
+    let (_, last) = name.rsplit_once(|letter: char| letter.is_whitespace() || letter == '_')?;
+    let factor = unit_factor(last, quantity.dimension())?;
+    quantity.dimension().units().iter().find(|(_, of)| *of == factor).map(|(symbol, _)| *symbol)
+}
+
 /// Whether a unit is one of another kind of quantity.
 pub(crate) fn measures_another(unit: &str, quantity: Quantity) -> bool {
     let others = [

@@ -5,7 +5,7 @@
 //! exact.
 
 use super::part::ColumnInfo;
-use crate::naming::Quantity;
+use crate::naming::{Quantity, last_unit};
 
 /// The unit in a description that says: seconds, or parts of them, since 1970.
 pub(crate) const EPOCH: &str = "epoch";
@@ -55,13 +55,18 @@ pub(crate) fn are_serials(times: &[f64]) -> bool {
     times.len() > 1 && SERIALS.contains(first) && (last - first).abs() < 1.0
 }
 
-/// The unit that a column without one most often has: days where a time begins like a date of a spreadsheet, 45123.4567.
+/// The unit that a column without one most often has: days where a time begins like a date of a spreadsheet, 45123.4567; what its name ends with
+/// where that is a unit.
 pub(crate) fn usual_unit(column: &ColumnInfo, quantity: Quantity) -> &'static str {
     /// Decimals of a day that tell ten seconds.
     const FEWEST: usize = 4;
     let decimals = column.sample.split_once(['.', ',']).map_or(0, |(_, decimals)| decimals.len());
     let is_serial = || decimals >= FEWEST && first(column).is_some_and(|first| SERIALS.contains(&first));
-    if quantity == Quantity::Time && is_serial() { "d" } else { quantity.usual_unit() }
+    if quantity == Quantity::Time && is_serial() {
+        return "d";
+    }
+    let in_name = column.name.as_deref().and_then(|name| last_unit(name, quantity));
+    in_name.unwrap_or_else(|| quantity.usual_unit())
 }
 
 /// A date in s less another, both counted from 1970: to the µs, which is the most that dates are written to. What is beyond

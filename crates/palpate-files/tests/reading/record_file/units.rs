@@ -39,6 +39,32 @@ fn a_line_above_the_table_states_the_unit_of_a_column_without_one() {
     }
 }
 
+/// `Load kN` was refused with the hint `force=Load kN:N`, which made the force a thousandth.
+#[test]
+fn the_last_word_of_a_header_is_its_unit() {
+    for (names, factor, travel) in [
+        ("Time s,Extension mm,Load kN", 1e3, 1e-3),
+        ("Time s,Extension inch,Load lbf", 4.448_221_615_260_5, 0.0254),
+        ("Zeit s,Weg um,Kraft mN", 1e-3, 1e-6),
+        ("Time s,Position mm,Load N", 1.0, 1e-3),
+    ] {
+        let read = read(format!("{names}\n{ROWS}"), "").unwrap();
+        let scaled = |values: [f64; 3], factor: f64| values.map(|value| scale(value, factor)).to_vec();
+        assert_eq!(read.record.force(), scaled([0.0, 12.0, 9.0], factor), "{names}");
+        assert_eq!(read.record.displacement().unwrap(), scaled([0.0, 5.0, 5.0], travel), "{names}");
+    }
+    // Words that are names as well are no units, but a hint may take them for some.
+    for (names, hint) in [
+        ("Time (s),Displacement (mm),Load cell", "force=Load cell:N"),
+        ("Time (s),Displacement (mm),Force m", "force=Force m:N"),
+        ("Time in,Displacement (mm),Force (N)", "time=Time in:s"),
+        ("Time (s),Position in,Force (N)", "displacement=Position in:in"),
+    ] {
+        let error = force(&format!("{names}\n{ROWS}")).unwrap_err();
+        assert!(error.contains(hint), "{names}: {error}");
+    }
+}
+
 #[test]
 fn a_line_above_that_contradicts_the_header_or_another_line_is_refused() {
     let error = force(&format!("Force unit: kN\nTime (s),Displacement (mm),Force (N)\n{ROWS}")).unwrap_err();
