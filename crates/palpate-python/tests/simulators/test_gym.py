@@ -133,8 +133,9 @@ def test_a_finger_moves_by_the_equation_that_is_stated(settings: dict[str, Any],
     def errors(substeps: int) -> np.ndarray[Any, Any]:
         envs = SoftGripVectorEnv(1, substeps=substeps, mass_kg=0.05, **settings)
         envs.reset(seed=0)
-        forces = [float(envs.step(pushed(envs, share))[4]["force_n"][0]) for _ in exact]
-        return np.abs(np.array(forces) / exact - 1.0)
+        forces = np.array([float(envs.step(pushed(envs, share))[4]["force_n"][0]) for _ in exact])
+        off: np.ndarray[Any, Any] = np.abs(forces / exact - 1.0)
+        return off
 
     usual, finer, finest = errors(SoftGripTask.substeps), errors(32), errors(128)
     assert usual.max() < 1e-2 and usual[4] < 5e-3
