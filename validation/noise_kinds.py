@@ -36,8 +36,9 @@ TABLE = """
 """
 
 TAIL = """
-Intervals are not to be relied on where the least coverage is far below 95 %: under a slow drift that is hidden in white noise, and under
-noise whose power goes as 1/f, in holds of about a hundred samples above all. Those of equilibria suffer first. White noise pays for it: a drift that the residuals cannot rule out makes
+Intervals are not to be relied on where the least coverage is far below 95 %: under a slow drift that is hidden in white noise; under noise
+whose power goes as 1/f, in holds of one to three hundred samples above all; and of a dozen or two samples, under noise that correlates over
+several of them or follows the signal. Those of equilibria, and of starts under the last, suffer first. White noise pays for it: a drift that the residuals cannot rule out makes
 its intervals wider than they need be.
 """
 
