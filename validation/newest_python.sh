@@ -12,7 +12,8 @@ cd "$(dirname "$0")/.."
 root="$(mktemp -d)"
 undo() {
     umount "$root/proc" "$root/dev" "$root/mnt" 2>/dev/null || true
-    mountpoint -q "$root/mnt" || rm -rf "$root" "$root.log"
+    # Nothing of this machine is below it, even where it could not be unmounted.
+    rm -rf --one-file-system "$root" "$root.log"
 }
 trap undo EXIT
 debootstrap --variant=minbase --include=python3,python3-venv,ca-certificates forky "$root" http://deb.debian.org/debian "$(
@@ -22,15 +23,15 @@ cp /etc/resolv.conf "$root/etc/"
 mount --bind . "$root/mnt"
 mount --bind /dev "$root/dev"
 mount -t proc proc "$root/proc"
-cp "$wheel" "$root/root/"
-chroot "$root" env -i PATH=/usr/bin:/bin HOME=/root PYTHONDONTWRITEBYTECODE=1 \
+cp "$wheel" "$root/opt/"
+chroot "$root" env -i PATH=/usr/bin:/bin HOME=/tmp PYTHONDONTWRITEBYTECODE=1 \
     SSL_CERT_FILE=/etc/ssl/certs/ca-certificates.crt bash -euo pipefail -c '
     cd /mnt/crates/palpate-python
     python3 -m venv /opt/tests
     export VIRTUAL_ENV=/opt/tests PATH="/opt/tests/bin:$PATH"
     pip install -q --require-hashes -r tests/uv.txt
     uv pip install -q --require-hashes -r tests/requirements.txt
-    uv pip install -q --no-deps /root/*.whl
+    uv pip install -q --no-deps /opt/*.whl
     python --version
     python -m pytest -q -p no:cacheprovider -n 2 --dist loadfile "${@:-tests}" --ignore tests/simulators/test_mujoco_plugin.py
 ' tests "$@"
