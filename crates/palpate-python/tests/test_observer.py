@@ -215,11 +215,12 @@ def test_ten_times_the_ticks_take_ten_times_as_long() -> None:
     force = palpate.laws.latency(t, 1.2, 1.7, 6.0, 5.0)
     displacement = np.full(len(t), 5e-3)
 
+    # The time of this process on the processor, tick count beside tick count: other work on the machine that lasts for one of the two counts alone changes neither.
     def seconds(count: int) -> float:
-        start = time.perf_counter()
+        start = time.process_time()
         table = palpate.Observer().feed_many(t[:count], force[:count], displacement[:count])
         assert len(table) == count
-        return time.perf_counter() - start
+        return time.process_time() - start
 
-    few, many = min(seconds(20_000) for _ in range(3)), min(seconds(200_000) for _ in range(3))
-    assert many < 20 * few, f"{many} s, {few} s for a tenth"
+    pairs = [(seconds(20_000), seconds(200_000)) for _ in range(4)]
+    assert min(many / few for few, many in pairs) < 20, pairs
