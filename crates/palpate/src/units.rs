@@ -111,8 +111,17 @@ const POUND_FORCE: f64 = 4.448_221_615_260_5;
 const KILOGRAM_FORCE: f64 = 9.806_65;
 const POUND: f64 = 0.453_592_37;
 
-const LENGTH: &[(&str, f64)] =
-    &[("m", 1.0), ("cm", 1e-2), ("mm", 1e-3), ("µm", 1e-6), ("um", 1e-6), ("nm", 1e-9), ("in", INCH)];
+const LENGTH: &[(&str, f64)] = &[
+    ("m", 1.0),
+    ("cm", 1e-2),
+    ("mm", 1e-3),
+    ("µm", 1e-6),
+    ("um", 1e-6),
+    ("nm", 1e-9),
+    ("in", INCH),
+    ("mil", INCH * 1e-3),
+    ("ft", 12.0 * INCH),
+];
 const AREA: &[(&str, f64)] = &[
     ("m²", 1.0),
     ("m^2", 1.0),
@@ -125,6 +134,9 @@ const AREA: &[(&str, f64)] = &[
     ("mm2", 1e-6),
     ("µm²", 1e-12),
     ("um^2", 1e-12),
+    ("in²", INCH * INCH),
+    ("in^2", INCH * INCH),
+    ("in2", INCH * INCH),
 ];
 const TIME: &[(&str, f64)] = &[
     ("s", 1.0),
@@ -148,7 +160,9 @@ const FORCE: &[(&str, f64)] = &[
     ("pN", 1e-12),
     ("gf", KILOGRAM_FORCE * 1e-3),
     ("kgf", KILOGRAM_FORCE),
+    ("tf", KILOGRAM_FORCE * 1e3),
     ("lbf", POUND_FORCE),
+    ("kip", POUND_FORCE * 1e3),
     ("ozf", POUND_FORCE / 16.0),
 ];
 const PRESSURE: &[(&str, f64)] = &[
@@ -162,6 +176,7 @@ const PRESSURE: &[(&str, f64)] = &[
     ("N/m^2", 1.0),
     ("bar", 1e5),
     ("psi", POUND_FORCE / (INCH * INCH)),
+    ("ksi", 1e3 * POUND_FORCE / (INCH * INCH)),
 ];
 const SPEED: &[(&str, f64)] = &[
     ("m/s", 1.0),
@@ -172,6 +187,7 @@ const SPEED: &[(&str, f64)] = &[
     ("µm/s", 1e-6),
     ("um/s", 1e-6),
     ("nm/s", 1e-9),
+    ("in/s", INCH),
     ("in/min", INCH / 60.0),
 ];
 const RATE: &[(&str, f64)] =
@@ -212,6 +228,7 @@ const STIFFNESS: &[(&str, f64)] = &[
     ("pN/nm", 1e-3),
     ("nN/µm", 1e-3),
     ("nN/um", 1e-3),
+    ("lbf/in", POUND_FORCE / INCH),
 ];
 const VOLTAGE: &[(&str, f64)] = &[("V", 1.0), ("mV", 1e-3), ("µV", 1e-6), ("uV", 1e-6)];
 const MASS: &[(&str, f64)] = &[
@@ -483,7 +500,18 @@ mod tests {
         ] {
             assert_eq!(parse(text, dimension), Ok(si), "{text}");
         }
-        assert!((parse("1 psi", Dimension::Pressure).unwrap_or(0.0) - 6_894.757_293_168_361).abs() < 1e-11);
+        for (text, dimension, si) in [
+            ("1 psi", Dimension::Pressure, 6_894.757_293_168_361),
+            ("1 ksi", Dimension::Pressure, 6_894_757.293_168_361),
+            ("10 mil", Dimension::Length, 2.54e-4),
+            ("2 ft", Dimension::Length, 0.609_6),
+            ("1 in²", Dimension::Area, 6.451_6e-4),
+            ("1 kip", Dimension::Force, 4_448.221_615_260_5),
+            ("1 tf", Dimension::Force, 9_806.65),
+            ("1 lbf/in", Dimension::Stiffness, 175.126_835_246_476),
+        ] {
+            assert!(parse(text, dimension).is_ok_and(|found| (found / si - 1.0).abs() < 1e-14), "{text}");
+        }
     }
 
     #[test]

@@ -24,7 +24,9 @@ const SYNONYMS: [(Dimension, &str); 5] = [
          m: meter meters metre metres mètre mètres metro metros м 米 メートル 미터
          um: micron microns micrometer micrometers micrometre micrometres mikrometer micromètre micromètres micrómetro micrómetros micra micras мкм 微米 マイクロメートル ミクロン 마이크로미터
          nm: nanometer nanometers nanometre nanometres nanomètre nanomètres nanómetro nanómetros нм 纳米 ナノメートル 나노미터
-         in: inch inches zoll pouce pouces pulgada pulgadas 英寸 インチ",
+         in: inch inches zoll pouce pouces pulgada pulgadas 英寸 インチ
+         mil: mils thou thousandths
+         ft: foot feet",
     ),
     (
         Dimension::Force,
@@ -34,7 +36,9 @@ const SYNONYMS: [(Dimension, &str); 5] = [
          nN: nanonewton nanonewtons 纳牛 ナノニュートン
          gf: gf gram-force grams-force gramme-force grammes-force gramo-fuerza gramos-fuerza гс 克力 グラム重
          kgf: kgf kilogram-force kilograms-force kp kilopond kilogramme-force kilogrammes-force kilogramo-fuerza kilogramos-fuerza кгс 千克力 公斤力 キログラム重
-         lbf: lbf lbsf pound-force pounds-force pfund-kraft livre-force livres-force libra-fuerza libras-fuerza 磅力 重量ポンド ポンド重",
+         lbf: lbf lbsf pound-force pounds-force pfund-kraft livre-force livres-force libra-fuerza libras-fuerza 磅力 重量ポンド ポンド重
+         kip: kips kilopound-force kilopounds-force
+         tf: tonne-force tonnes-force тс 吨力",
     ),
     (
         Dimension::Pressure,
@@ -204,6 +208,8 @@ mod tests {
             ("gramos-fuerza", Dimension::Force, 9.806_65e-3),
             ("Millimètres", Dimension::Length, 1e-3),
             ("Zoll", Dimension::Length, 0.0254),
+            ("thou", Dimension::Length, 0.0254 * 1e-3),
+            ("kips", Dimension::Force, 4_448.221_615_260_5),
             ("pulgadas", Dimension::Length, 0.0254),
             ("ミリメートル", Dimension::Length, 1e-3),
             ("キロニュートン", Dimension::Force, 1e3),

@@ -125,6 +125,21 @@ pub enum Finding {
         /// How far it fell before, N.
         fall: f64,
     },
+    /// The force drifts before first touch.
+    BaselineDrifts {
+        /// N/s.
+        rate: f64,
+        /// Half of its interval of 99.9 %, N/s.
+        half: f64,
+        /// How long that was observed, s.
+        lasts: f64,
+        /// The hold in which it matters most, from 1.
+        hold: usize,
+        /// By how much the force of that hold changes if the drift goes on, N.
+        change: f64,
+        /// The same as a share of its relaxation.
+        share: f64,
+    },
     /// The jaw moves in the hold while the force is constant.
     FeedbackControlled {
         /// How far it moves, m.

@@ -181,6 +181,18 @@ impl Finding {
                 "load cell, temperature or frame drifts, or the jaw still moves; no law of relaxation describes such a rise",
                 "warm up the load cell, check the tare, or end the fit before the rise (until)",
             ),
+            Self::BaselineDrifts { rate, half, lasts, hold, change, share } => caution(
+                "baseline_drifts",
+                format!(
+                    "before first touch the force drifts by {}, over {} s: if that goes on, {} N in hold {hold}, {} % of its relaxation",
+                    with_interval(*rate, (rate - half, rate + half)) + " N/s",
+                    significant(*lasts, 3),
+                    significant(*change, 2),
+                    significant(100.0 * share, 2)
+                ),
+                "the load cell or its temperature drifts, or a preload relaxes; equilibrium forces and long time constants contain it",
+                "warm up the load cell; baseline = \"sloped\" in [force] of the test description subtracts the line",
+            ),
             Self::FeedbackControlled { travel, change } => caution(
                 "feedback_controlled",
                 format!(

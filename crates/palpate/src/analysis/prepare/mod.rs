@@ -8,6 +8,7 @@
 //! | `skew.rs`, `kink.rs` | how much later the force is stamped than the displacement |
 //! | `lag.rs` | how much later the force answers where one clock stamps both columns |
 //! | `motion.rs` | the motion of the jaw, its noise taken out |
+//! | `rest.rs` | whether the force drifts while nothing touches the body |
 //! | `ramps_alone.rs` | the ramps of a record without a hold |
 //! | `signals.rs` | what the columns, and what was done to them, give cause to say |
 
@@ -16,6 +17,7 @@ mod kink;
 mod lag;
 mod motion;
 mod ramps_alone;
+mod rest;
 mod signals;
 mod skew;
 

@@ -1,5 +1,6 @@
 //! What the columns of a record, and what was done to them, give cause to say.
 
+use super::rest::baseline_drifts;
 use crate::analysis::{AnalysisOptions, Corrected, Finding, Prepared};
 use crate::record::{Astray, Column, Correction, Record, SignalReport, Values};
 use crate::segment::{
@@ -30,6 +31,7 @@ pub(crate) fn signal_findings(
     let aligned = aligned.as_ref().map_or(measured, |(record, signals)| (record, signals));
     findings.extend(column_findings(aligned, segmentation, record));
     findings.extend(corrected.skew_finding().into_iter().chain(corrected.lag.map(Finding::from)));
+    findings.extend(baseline_drifts(&corrected.record, segmentation));
     if !segmentation.settings.from_displacement {
         findings.push(Finding::PhasesFromForce);
     }

@@ -1,0 +1,128 @@
+//! Whether the force drifts while nothing touches the body.
+
+use crate::analysis::Finding;
+use crate::fit::{Assessed, Scale};
+use crate::record::Record;
+use crate::segment::{HoldMode, Segment, Segmentation, free_samples};
+use crate::statistics::mean;
+
+/// Fewest samples of a rest that tell a drift from noise.
+const FEWEST: usize = 30;
+/// Samples that a longer rest is averaged to.
+const MOST: usize = 1000;
+/// Confidence with which the force drifts.
+const SURE: f64 = 0.999;
+/// Share of the relaxation of a hold that the drift makes in it, from which on it is stated.
+const MATTERS: f64 = 0.02;
+
+/// [`Finding::BaselineDrifts`] where the force before first touch follows a line by so much that it matters in the hold that it changes most.
+///
+/// The line is one by least squares, with the error that the noise of its residuals gives it, slow noise too.
+pub(super) fn baseline_drifts(record: &Record, segmentation: &Segmentation) -> Option<Finding> {
+    /// Samples at either end of a hold; a hundredth of all at its end.
+    const ENDS: usize = 3;
+    let rest = free_samples(record, segmentation).into_iter().next().filter(|rest| rest.len() >= FEWEST)?;
+    let (time, force) = (record.time(), record.force());
+    let lasts = time[rest.end - 1] - time[rest.start];
+    let together = rest.len().div_ceil(MOST);
+    let averaged = |values: &[f64]| values[rest.clone()].chunks(together).map(mean).collect::<Vec<f64>>();
+    let (rate, half) = slope(&averaged(time), &averaged(force))?;
+    if rate.abs() <= half {
+        return None;
+    }
+    let in_hold = |(number, hold): (usize, &Segment)| {
+        let held = &force[hold.fit_start..hold.end];
+        let last = &held[held.len() - (held.len() / 100).max(ENDS).min(held.len())..];
+        let fall = mean(&held[..ENDS.min(held.len())]) - mean(last);
+        let change = rate * (time[hold.end - 1] - time[hold.fit_start]);
+        // What the body relaxes is what the force falls, and the drift hides.
+        (number, change, (change / (fall + change)).abs())
+    };
+    let relaxes = |hold: &&Segment| !matches!(hold.mode, Some(HoldMode::ForceHeld | HoldMode::Neither));
+    let holds = (1..).zip(segmentation.holds()).filter(|(_, hold)| relaxes(hold)).map(in_hold);
+    let (hold, change, share) = holds.max_by(|one, other| one.2.total_cmp(&other.2))?;
+    (share > MATTERS).then_some(Finding::BaselineDrifts {
+        rate,
+        half,
+        lasts,
+        hold,
+        change,
+        share,
+    })
+}
+
+/// The slope of a line, and half of its interval.
+fn slope(time: &[f64], force: &[f64]) -> Option<(f64, f64)> {
+    let (middle, level) = (mean(time), mean(force));
+    let from_middle: Vec<f64> = time.iter().map(|t| t - middle).collect();
+    let square: f64 = from_middle.iter().map(|t| t * t).sum();
+    let slope = from_middle.iter().zip(force).map(|(t, force)| t * (force - level)).sum::<f64>() / square;
+    let left = from_middle.iter().zip(force).map(|(t, force)| force - level - slope * t).collect();
+    let columns = vec![vec![1.0; time.len()], from_middle];
+    let line = Assessed::of_columns(columns, (force, left), SURE).ok()?;
+    let (low, high) = line.estimate(slope, &[0.0, 1.0], Scale::Linear).interval?;
+    Some((slope, 0.5 * (high - low)))
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used, reason = "in a test a panic is the verdict")]
+
+    use super::*;
+    use crate::analysis::AnalysisOptions;
+    use crate::analysis::prepare::corrected;
+    use crate::record::Baseline;
+    use crate::simulate::{ContactState, Separation};
+    use crate::test_problems::{Rng, paper_ball};
+
+    /// 40 s of rest, 5 mm in 0.6 s and a hold of 100 s; the load cell drifts by `rate` (N/s) beside noise of `white` (N) and a walk of
+    /// `step` (N) a sample.
+    fn record(rate: f64, white: f64, step: f64, seed: u64) -> Record {
+        let (model, mut contact, mut random) =
+            (paper_ball(Separation::Unilateral), ContactState::default(), Rng::new(seed));
+        let way = |t: f64| 5e-3 * (t.clamp(0.0, 0.6) / 0.6);
+        let (mut time, mut jaw, mut force, mut walk) = (Vec::new(), Vec::new(), Vec::new(), 0.0);
+        for i in 0..2800 {
+            let t = 0.05 * f64::from(i);
+            walk += step * random.normal();
+            time.push(t);
+            jaw.push(way(t - 40.0));
+            let of_body = contact.step(&model, 0.05, way(t - 40.0)).unwrap();
+            force.push(of_body + rate * t + walk + white * random.normal());
+        }
+        Record::new(time, Some(jaw), force).unwrap()
+    }
+
+    fn drift(record: &Record, options: &AnalysisOptions) -> Option<(f64, f64)> {
+        let corrected = corrected(record, options).unwrap();
+        match baseline_drifts(&corrected.record, &corrected.segmentation.unwrap())? {
+            Finding::BaselineDrifts { rate, share, .. } => Some((rate, share)),
+            _ => None,
+        }
+    }
+
+    /// A load cell that drifted by 0.2 N within a hold, as its rest showed, stood without a word; the equilibrium force contains it.
+    #[test]
+    fn a_load_cell_that_drifts_at_rest_is_stated() {
+        for seed in 0..4 {
+            let drifting = record(2e-3, 5e-3, 0.0, seed);
+            let (rate, share) = drift(&drifting, &AnalysisOptions::default()).unwrap();
+            assert!((rate / 2e-3 - 1.0).abs() < 0.1 && (0.05..0.15).contains(&share), "{rate} {share}");
+            let mut sloped = AnalysisOptions::default();
+            sloped.corrections.baseline = Some(Baseline::Sloped);
+            assert_eq!(drift(&drifting, &sloped), None);
+        }
+    }
+
+    #[test]
+    fn a_load_cell_that_walks_or_is_noisy_does_not_drift() {
+        let stated = |step: f64| {
+            (0..20)
+                .filter(|seed| drift(&record(0.0, 5e-3, step, *seed), &AnalysisOptions::default()).is_some())
+                .count()
+        };
+        let counts = [0.0, 5e-4, 2e-3].map(stated);
+        println!("{counts:?}");
+        assert!(counts.iter().all(|count| *count <= 1), "{counts:?}");
+    }
+}
