@@ -5,6 +5,7 @@ use palpate::calibrate::{
 };
 use palpate::contact::Shape;
 use palpate::fit::{NoiseModel, Termination};
+use palpate::instrument::{Instrument, InstrumentQuantity};
 use palpate::number::significant;
 use palpate::simulate::Separation;
 use palpate::units::quantity;
@@ -113,9 +114,7 @@ impl CalibratedRecord {
                 remarks.push("The record holds one displacement: only the ramps determine the dependence of v on strain, so that an error of the law there biases it. Holds at several displacements would determine it.".to_owned());
             }
             remarks.extend(remarks_of(chosen));
-            if self.data.instrument().is_empty() {
-                remarks.push(EXACT.to_owned());
-            }
+            remarks.extend(exact(self.data.instrument()));
         }
         remarks
     }
@@ -126,8 +125,25 @@ pub(super) fn are_systematic(noise: NoiseModel, relative: f64) -> bool {
     relative > 5e-3 && noise.correlations(1).first().is_some_and(|correlation| *correlation > 0.9)
 }
 
-/// The remark where no instrument is described.
-const EXACT: &str = "The intervals are those of the scatter of the samples (Type A): load cell, displacement, first touch and the sizes of the body count as exact. [instrument] in the test description states their uncertainty.";
+/// The remark where no instrument is described: what the intervals contain that was found in the record, and what counts as exact.
+fn exact(instrument: &Instrument) -> Option<String> {
+    let [touch, zero] = [InstrumentQuantity::Touch, InstrumentQuantity::Force]
+        .map(|quantity| instrument.inputs.iter().filter(|input| input.quantity == quantity).count());
+    if touch + zero < instrument.inputs.len() {
+        return None;
+    }
+    let known = match (touch > 0, zero > 0) {
+        (false, false) => "",
+        (true, false) => ", and of first touch as found",
+        (false, true) => ", and of the zero of the force as found",
+        (true, true) => ", and of first touch and the zero of the force as found",
+    };
+    let cell = if zero > 0 { "gain of the load cell" } else { "load cell" };
+    let first_touch = if touch > 0 { "" } else { ", first touch" };
+    Some(format!(
+        "The intervals are those of the scatter of the samples (Type A){known}: {cell}, displacement{first_touch} and the sizes of the body count as exact. [instrument] in the test description states their uncertainty."
+    ))
+}
 
 fn remarks_of(made: &Calibration) -> Vec<String> {
     let mut remarks = Vec::new();

@@ -8,6 +8,7 @@ use std::hash::{Hash, Hasher};
 use palpate::analysis::{Analysis, Severity};
 use palpate::fit::ParameterRole;
 use palpate::record::Record;
+use palpate::segment::After;
 use palpate::statistics::SampleMean;
 use palpate::units::quantity;
 
@@ -33,6 +34,10 @@ pub struct SpecimenResult {
     pub holds: Vec<SpecimenHold>,
     /// The modulus of its first loading ramp, where a body is described, Pa.
     pub loading_modulus: Option<f64>,
+    /// The modulus of its equilibrium forces, where none was given, Pa.
+    pub equilibrium_modulus: Option<f64>,
+    /// Its equilibrium strain follows from its displacement alone: the modulus is that of the one equilibrium force.
+    pub strain_is_geometry: bool,
     /// Its findings by code, and how severe they are.
     pub findings: Vec<(&'static str, Severity)>,
     /// Equal of records with the same samples.
@@ -106,6 +111,9 @@ impl SpecimenResult {
                 .collect(),
             law,
             loading_modulus: analysis.loading_modulus.as_ref().map(|found| found.value),
+            equilibrium_modulus: analysis.modulus.as_ref().map(|found| found.estimate.value),
+            strain_is_geometry: analysis.modulus.is_some()
+                && analysis.holds.iter().filter(|hold| hold.after != Some(After::Unloading)).count() < 2,
             findings: all.map(|finding| (finding.code(), finding.severity())).collect(),
             samples: digest(&analysis.record),
         }
@@ -186,14 +194,24 @@ impl SpecimenResults {
     #[must_use]
     pub fn between(&self) -> Vec<BetweenSpecimens> {
         let mut found = Vec::new();
-        let moduli: Vec<f64> = self.specimens.iter().filter_map(|specimen| specimen.loading_modulus).collect();
-        found.extend(SampleMean::of(&moduli, self.confidence).map(|sample| BetweenSpecimens {
-            hold: None,
-            condition: "first loading ramp".to_owned(),
-            name: "loading_modulus_pa".to_owned(),
-            unit: "Pa".to_owned(),
-            sample,
-        }));
+        let moduli: [(&str, &str, fn(&SpecimenResult) -> Option<f64>); 2] = [
+            ("first loading ramp", "loading_modulus_pa", |specimen| specimen.loading_modulus),
+            ("equilibrium forces", "equilibrium_modulus_pa", |specimen| specimen.equilibrium_modulus),
+        ];
+        for (condition, name, of) in moduli {
+            let moduli: Vec<f64> = self.specimens.iter().filter_map(of).collect();
+            found.extend(SampleMean::of(&moduli, self.confidence).map(|sample| BetweenSpecimens {
+                hold: None,
+                condition: condition.to_owned(),
+                name: name.to_owned(),
+                unit: "Pa".to_owned(),
+                sample,
+            }));
+        }
+        // Strains that are displacements over a length scatter as the jaw does, and say nothing of the bodies.
+        let is_geometry = self.specimens.iter().any(|specimen| specimen.strain_is_geometry);
+        let says_nothing =
+            |name: &str, parameter: &ParameterDocument| is_geometry && name == "equilibrium" && parameter.unit == "1";
         let Some(law) = self.law() else { return found };
         for number in 1..=self.most_holds() {
             let holds = self.specimens.iter().flat_map(|specimen| &specimen.holds).filter(|hold| hold.number == number);
@@ -206,7 +224,9 @@ impl SpecimenResults {
                 let values: Vec<f64> = values.collect();
                 let geometric = SampleMean::geometric(&values, self.confidence).filter(|_| is_scale(&parameter.unit));
                 let sample = geometric.or_else(|| SampleMean::of(&values, self.confidence));
-                let of_interest = is_of_interest(name, parameter) && (is_one_exponent || !depends_on_exponent(name));
+                let of_interest = is_of_interest(name, parameter)
+                    && (is_one_exponent || !depends_on_exponent(name))
+                    && !says_nothing(name, parameter);
                 found.extend(sample.filter(|_| of_interest).map(|sample| BetweenSpecimens {
                     hold: Some(number),
                     condition: common_condition(&fitted),
@@ -318,6 +338,8 @@ mod tests {
                 laws: vec![(law.to_owned(), parameters.map(|(name, one)| (name.to_owned(), one)).into())],
             }],
             loading_modulus: None,
+            equilibrium_modulus: None,
+            strain_is_geometry: false,
             findings: findings.to_vec(),
             samples: exponent.to_bits(),
         }
@@ -342,6 +364,23 @@ mod tests {
         let all = ["equilibrium", "exponent", "rate_coefficient_per_s"].map(str::to_owned);
         assert_eq!(names([2.0, 3.0]), (all[..2].to_vec(), true));
         assert_eq!(names([3.0, 3.0]), (all.to_vec(), false));
+    }
+
+    /// Equilibrium strains of specimens whose moduli differ by 30 % had a coefficient of variation of 1e-14 %: each is that of its own modulus.
+    #[test]
+    fn strains_by_the_modulus_of_the_same_hold_have_no_mean_and_that_modulus_has() {
+        let of = |modulus: f64| {
+            let mut found = specimen("a.csv", "latency", 2.0, &[]);
+            (found.equilibrium_modulus, found.strain_is_geometry) = (Some(modulus), true);
+            for (_, parameters) in &mut found.holds[0].laws {
+                parameters.entry("equilibrium".to_owned()).and_modify(|parameter| parameter.unit = "1".to_owned());
+            }
+            found
+        };
+        let found = results([250e3, 325e3].map(of).into()).between();
+        let names: Vec<&str> = found.iter().map(|row| row.name.as_str()).collect();
+        assert_eq!(names, ["equilibrium_modulus_pa", "exponent", "rate_coefficient_per_s"]);
+        assert_eq!(found[0].sample.mean, 287.5e3);
     }
 
     /// A copy of a record, and saturated ones, counted as others without a word.

@@ -49,7 +49,7 @@ impl<'a> Causes<'a> {
         implied: Option<&'a ImpliedModulus>,
     ) -> Option<Self> {
         let touch = contact.displacement_error.filter(|_| specimen.is_some());
-        let stated = options.instrument.with_touch(touch).inputs;
+        let stated = options.instrument.with_found(touch, contact.force_error).inputs;
         let mut quantities: Vec<Cause> = stated.iter().map(|input| Cause::Stated(input.quantity)).collect();
         let mut inputs: Vec<InputQuantity> = stated.into_iter().map(|input| input.uncertainty).collect();
         let error = implied.and_then(|implied| implied.standard_error);
@@ -189,7 +189,7 @@ fn sides<T>(input: &InputQuantity, result: impl Fn(f64) -> Option<T>) -> Option<
 pub(in crate::analysis) fn error_of_modulus(
     hold: &HoldAnalysis,
     options: &AnalysisOptions,
-    touch: Option<f64>,
+    contact: &ContactPoint,
 ) -> Option<f64> {
     let (geometry, level) = (options.geometry.as_ref()?, hold.displacement?);
     let modulus = |quantity, by| {
@@ -198,10 +198,9 @@ pub(in crate::analysis) fn error_of_modulus(
         let place = body.contact_displacement(deviation.displacement(level, hold.force_end));
         Some(deviation.force(hold.force_end) / body.equilibrium_force(place)).filter(|modulus| modulus.is_finite())
     };
-    let stated = options.instrument.inputs.iter();
-    let stated = stated.map(|input| (input.quantity, input.uncertainty.standard_uncertainty));
-    let touch = touch.map(|error| (InstrumentQuantity::Touch, error));
-    let square = stated.chain(touch).try_fold(0.0, |sum, (quantity, by)| {
+    let inputs = options.instrument.with_found(contact.displacement_error, contact.force_error).inputs;
+    let mut stated = inputs.iter().map(|input| (input.quantity, input.uncertainty.standard_uncertainty));
+    let square = stated.try_fold(0.0, |sum, (quantity, by)| {
         let half = 0.5 * (modulus(quantity, by)? - modulus(quantity, -by)?);
         Some(sum + half * half)
     })?;

@@ -377,6 +377,13 @@ pub enum Finding {
         /// Displacement where the record begins, m.
         start: f64,
     },
+    /// The jaw goes on through air from a first touch that was stated.
+    AirAsTravel {
+        /// How far, m.
+        air: f64,
+        /// The largest squeeze, m.
+        squeeze: f64,
+    },
     /// Force and displacement count from first touch, as was stated, but there is a force where the displacement is zero.
     ForceNotZero {
         /// Force where the record begins, N.

@@ -153,9 +153,10 @@ fn examined(
         None => ModulusSource::Given,
     });
     let causes = Causes::new(options, &contact, specimen.as_ref(), implied.as_ref());
-    let modulus = implied.as_ref().map(|implied| match &causes {
-        Some(causes) => causes.of_modulus(implied),
-        None => implied.estimate(),
+    let modulus = implied.as_ref().map(|implied| match (&causes, &options.geometry) {
+        (Some(causes), _) => causes.of_modulus(implied),
+        (None, Some(geometry)) => implied.estimate_beside(geometry, &contact),
+        (None, None) => implied.estimate(),
     });
     findings.extend(modulus.iter().map(|modulus| Finding::ModulusEstimated {
         modulus: modulus.estimate.value,
@@ -194,7 +195,7 @@ fn examined(
         findings.push(Finding::OverlayPoor { relative });
     }
     for hold in &mut holds {
-        hold.modulus_error = error_of_modulus(hold, options, contact.displacement_error);
+        hold.modulus_error = error_of_modulus(hold, options, &contact);
     }
     // What holds have in common is no difference between them: all comparisons come first.
     if let Some(causes) = &causes {

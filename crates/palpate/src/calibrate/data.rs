@@ -148,7 +148,7 @@ impl CalibrationData {
         let motion = measured.motion.clone();
         Ok(Self {
             measured: Some(measured),
-            instrument: options.instrument.with_touch(contact.displacement_error),
+            instrument: options.instrument.with_found(contact.displacement_error, contact.force_error),
             force_held,
             findings,
             ..Self::new(geometry, options.separation, motion, times, forces, &held)?

@@ -78,9 +78,11 @@ impl Material {
     ///
     /// Simulations go along the columns L_k of a root of the covariance C = L Lᵀ of the parameters' logarithms, to the ends of their intervals on
     /// either side, z standard deviations away. With Δ±_k = f(±z L_k) − f(0) the standard error is √(Σ_k (Δ₊_k − Δ₋_k)²)/(2z). With
-    /// Δ±_k = ln f(±z L_k) − ln f(0) the interval ends at f(0) exp √(Σ_k max(Δ₊_k, Δ₋_k, 0)²) above, and below alike with −Δ: this is exact for a
-    /// product of powers of lognormal parameters, and farther on one side than on the other where parameters spread widely (Nadolsky & Sullivan
-    /// 2001, arXiv:hep-ph/0110378, combine sides so). Where f is not positive, or doubles in a direction, f itself stands for ln f.
+    /// Δ±_k = ln f(±z L_k) − ln f(0) the interval ends at f(0) exp √(Σ_k max(Δ₊_k, Δ₋_k, |Δ₊_k − Δ₋_k|/2)²) above, and below alike with −Δ: this is
+    /// exact for a product of powers of lognormal parameters, and farther on one side than on the other where parameters spread widely (Nadolsky &
+    /// Sullivan 2001, arXiv:hep-ph/0110378, combine sides so). Parameters that one hold leaves in a curved valley raise f on both sides of a straight
+    /// line through it: neither side is nearer than half of their difference. Where f is not positive, or doubles in a direction, f itself stands for
+    /// ln f, and 0 for that half.
     ///
     /// # Errors
     /// As for [`simulate`](crate::simulate::simulate()).
@@ -266,7 +268,9 @@ impl<'a> Spreads<'a> {
             let logs = [high, low].map(|side| (side / course).ln() / share);
             // A logarithm that does not exist is not near.
             let is_near = *course > 0.0 && logs.iter().all(|log| log.abs() < RATIO.ln());
-            add(&mut squares.log, if is_near { below_and_above(logs[0], logs[1]) } else { [f64::INFINITY; 2] });
+            let even = 0.5 * (logs[0] - logs[1]).abs();
+            let off = below_and_above(logs[0], logs[1]).map(|off| off.max(even));
+            add(&mut squares.log, if is_near { off } else { [f64::INFINITY; 2] });
         }
     }
 
@@ -362,6 +366,17 @@ mod tests {
             (below - 1.5 * root_of_2).abs() < 1e-14 && (above - 0.5 * root_of_2).abs() < 1e-14,
             "{below} {above}"
         );
+    }
+
+    /// Of a force that rose on both sides of a straight line through a curved valley the interval ended at the force itself: 41 of 60 for 95 %.
+    #[test]
+    fn an_interval_has_two_sides_where_a_valley_is_curved() {
+        let mut spreads = Spreads::new(&[1.0]);
+        spreads.add(&[0.03_f64.exp()], &[0.01_f64.exp()], 1.0);
+        let (_, widths) = spreads.widened(&[0.0], 4.0, 2.0);
+        let (below, above) = widths[0];
+        assert!((below + (-0.01_f64).exp_m1()).abs() < 1e-14, "{below}");
+        assert!((above - 0.03_f64.exp_m1()).abs() < 1e-14, "{above}");
     }
 
     #[test]

@@ -47,6 +47,9 @@ const OVERSHOOTS: (f64, f64) = (1e-3, 1e4);
 /// Range of the factor by which v differs, on either side of 1, as a logarithm.
 const FACTORS: f64 = 12.0;
 
+/// How many times faster a law whose exponent is searched may be than one of n = 5 at an excess that no ramp leaves.
+const STEEPEST: f64 = 1e12;
+
 /// Range of the exponent.
 const EXPONENTS: (f64, f64) = (0.2, 30.0);
 
@@ -85,10 +88,12 @@ impl Prepared {
                 })
                 .collect(),
         };
-        // At an excess that no ramp leaves, a law of high order is that much faster than anything observed.
         let (slowest, fastest) = (1e-5 / scales.duration, 1e9 / scales.ramp);
         match candidate.law {
             Law::Latency { exponent } => {
+                // At an excess that no ramp leaves, a law of high order is that much faster than anything observed, the more so the higher it is.
+                let faster = exponent.given().map_or(STEEPEST, |n| 10f64.powf(1.2 * (n - 5.0).clamp(0.0, 50.0)));
+                let fastest = faster * fastest;
                 match exponent {
                     ExponentChoice::Free => searched.push(log("exponent", EXPONENTS.0, EXPONENTS.1)),
                     ExponentChoice::Fixed(n) if n.is_finite() && n > 0.0 => {}

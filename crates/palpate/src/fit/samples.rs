@@ -72,6 +72,15 @@ impl<'a> Samples<'a> {
         Err(FitError::TimeNotRising { index: rising + 1 })
     }
 
+    /// Square roots of the weights over their root mean square, `None` if all are alike; and that root mean square of 1/σ.
+    pub(crate) fn roots(&self) -> (Option<Vec<f64>>, f64) {
+        self.standard_deviations.map_or((None, 1.0), |standard_deviations| {
+            let (roots, precision) = roots_of(standard_deviations);
+            let differ = standard_deviations.iter().any(|deviation| *deviation != standard_deviations[0]);
+            (Some(roots).filter(|_| differ), precision)
+        })
+    }
+
     /// These without the samples that may be off by anything, which say nothing; `None` if there is no such sample.
     fn certain(&self) -> Option<[Vec<f64>; 3]> {
         let standard_deviations =
@@ -120,11 +129,7 @@ impl Scaled {
             return Err(FitError::OutOfRange);
         }
         let (per_duration, per_range) = (1.0 / duration, 1.0 / range);
-        let (roots, precision) = samples.standard_deviations.map_or((None, 1.0), |standard_deviations| {
-            let (roots, precision) = roots_of(standard_deviations);
-            let differ = standard_deviations.iter().any(|deviation| *deviation != standard_deviations[0]);
-            (Some(roots).filter(|_| differ), precision)
-        });
+        let (roots, precision) = samples.roots();
         let mut scaled = shifted(values, center, per_range);
         if let Some(roots) = &roots {
             multiply(&mut scaled, roots);

@@ -83,11 +83,11 @@ pub fn compare_laws_watched(
     let refuting = rows.iter().find_map(|row| row.spectrum.as_ref());
     let effective = match (refuting, closest) {
         (Some(spectrum), Some(closest)) if spectrum.residual_square < CLOSER * closest.residual_square => {
-            effective_beside(spectrum, times, values)
+            effective_beside(spectrum, samples)
         }
         _ => effective,
     };
-    weigh(&mut rows, effective, values.len(), change);
+    weigh(&mut rows, effective, values.len(), change * samples.roots().1);
     let ranking = if cuts.is_empty() { Ranking::Information } else { Ranking::Forward };
     let key = |row: &Row| match ranking {
         Ranking::Forward => row.forward.score.unwrap_or(f64::INFINITY),
@@ -127,12 +127,15 @@ fn independent<'f>(closest: &Fit, fits: impl Iterator<Item = &'f Fit>) -> f64 {
 const CLOSER: f64 = 0.8;
 
 /// Samples that count as independent by the correlation of neighbouring residuals of the spectrum, as those of AR(1).
-fn effective_beside(spectrum: &SpectrumFit, times: &[f64], values: &[f64]) -> f64 {
+fn effective_beside(spectrum: &SpectrumFit, samples: &Samples<'_>) -> f64 {
     /// As many say enough of their neighbours.
     const MOST: usize = 1 << 16;
+    let (times, values) = (samples.times, samples.values);
     let first = values.len().saturating_sub(MOST) / 2;
-    let some = times.iter().zip(values).skip(first).take(MOST);
-    let residuals: Vec<f64> = some.map(|(t, y)| y - spectrum.predict(*t - times[0])).collect();
+    let (roots, _) = samples.roots();
+    let root = |i: usize| roots.as_ref().map_or(1.0, |roots| roots[i]);
+    let left = |i: usize| root(i) * (values[i] - spectrum.predict(times[i] - times[0]));
+    let residuals: Vec<f64> = (first..values.len().min(first + MOST)).map(left).collect();
     let square: f64 = residuals.iter().map(|residual| residual * residual).sum();
     let product: f64 = residuals.windows(2).map(|pair| pair[0] * pair[1]).sum();
     let correlation = (product / square).clamp(0.0, 0.999);
@@ -158,7 +161,9 @@ fn row(
         forward: ForwardScore::default(),
     };
     if law == Law::Spectrum {
-        let fit = fit_spectrum(samples.times, samples.values, None, &SpectrumOptions::default())?;
+        let (roots, precision) = samples.roots();
+        let fit = fit_spectrum(samples.times, samples.values, roots.as_deref(), &SpectrumOptions::default())?;
+        let fit = fit.in_deviations(precision);
         row.effective_parameters = fit.effective_parameters;
         row.rmse = fit.rmse();
         row.spectrum = Some(fit);
@@ -213,7 +218,7 @@ fn cuts(samples: &Samples<'_>, options: &CompareOptions, duration: f64, noise: f
         .collect()
 }
 
-/// Fills the criteria of every row.
+/// Fills the criteria of every row; `change` is that of the signal in standard deviations, where samples have those.
 fn weigh(rows: &mut [Row], effective: f64, samples: usize, change: f64) {
     // Noise-free records leave rounding only; below this share of the signal all residuals are equal.
     let floor = (1e-9 * change).powi(2) * samples as f64;

@@ -107,14 +107,23 @@ pub struct Instrument {
 }
 
 impl Instrument {
-    /// The same with the error of a first touch that was found in the record, m; unchanged where nothing is stated.
+    /// The same with the errors of first touch (m) and of the zero of the force (N) as they were found in the record; a zero that is stated is that
+    /// of the tare, and found no more.
     #[must_use]
-    pub(crate) fn with_touch(&self, error: Option<f64>) -> Self {
+    pub(crate) fn with_found(&self, touch: Option<f64>, force: Option<f64>) -> Self {
+        let found = [
+            (InstrumentQuantity::Touch, "first touch, as found", touch),
+            (InstrumentQuantity::Force, "zero of the force, as found", force),
+        ];
+        let is_stated = self.inputs.iter().any(|input| input.quantity == InstrumentQuantity::Force);
+        let found = found.into_iter().filter(|(quantity, ..)| !(is_stated && *quantity == InstrumentQuantity::Force));
         let mut with = self.clone();
-        let found = error.and_then(|error| InputQuantity::standard("first touch, as found", "m", 0.0, error).ok());
-        with.inputs.extend(found.filter(|_| !self.is_empty()).map(|uncertainty| InstrumentInput {
-            quantity: InstrumentQuantity::Touch,
-            uncertainty: uncertainty.type_a(),
+        with.inputs.extend(found.filter_map(|(quantity, title, error)| {
+            let uncertainty = InputQuantity::standard(title, quantity.unit(), 0.0, error?).ok()?;
+            Some(InstrumentInput {
+                quantity,
+                uncertainty: uncertainty.type_a(),
+            })
         }));
         with
     }

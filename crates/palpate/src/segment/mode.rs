@@ -13,6 +13,9 @@ const LEAST_SHARE: f64 = 2e-3;
 /// How many times farther than the force the jaw goes, both as shares of what they do as they come to the hold.
 const FARTHER: f64 = 2.0;
 
+/// How far a jaw goes at least over how far it brings the force, both as shares of what they do as they come to the hold.
+const BROUGHT: f64 = 0.2;
+
 /// How far displacement and force go over a hold.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Change {
@@ -35,10 +38,13 @@ pub(crate) fn change(record: &Record, from: usize, until: usize) -> Option<Chang
     let scales = [displacement, record.force()].map(|column| range(&column[around.clone()]).max(f64::MIN_POSITIVE));
     let (jaw, force) = (&displacement[from..until], &record.force()[from..until]);
     let late = |column: &[f64]| column[column.len() / 2..].to_vec();
+    // What brings a force to where it is held is the jaw; a force that changes while the jaw hardly moves relaxes, though it is steady in the end.
+    let [travelled, changed] =
+        [(jaw, scales[0]), (force, scales[1])].map(|(column, scale)| moved(column).abs() / scale);
     let mode = match judged([jaw, force], scales) {
         // A controller that falls short at first ends on the force it holds.
         HoldMode::DisplacementHeld | HoldMode::Neither
-            if judged([&late(jaw), &late(force)], scales) == HoldMode::ForceHeld =>
+            if travelled > BROUGHT * changed && judged([&late(jaw), &late(force)], scales) == HoldMode::ForceHeld =>
         {
             HoldMode::ForceHeld
         }

@@ -9,6 +9,7 @@ use palpate::calibrate::{
     Prediction, RateLaw, calibrate, profile,
 };
 use palpate::contact::{Equilibrium, RateDependence, Shape, Sides};
+use palpate::latency::LatencyLaw;
 use palpate::record::Record;
 use palpate::simulate::{Contact, Motion, ProtocolStep, Sampling, Separation, protocol, simulate_force};
 use palpate::test_problems::{PAPER_RATE, Rng, paper_ball, paper_test_a, paper_test_b};
@@ -55,6 +56,40 @@ fn without_noise_the_numbers_come_back() {
             assert!((value / truth - 1.0).abs() < 1e-4, "{name}: {value}");
         }
         assert!(found.termination.is_good() && found.relative < 1e-8, "{:?} {:e}", found.termination, found.relative);
+    }
+}
+
+/// From n = 9 on the search ended at a bound of the rate at an excess that no ramp leaves, and the record "did not determine a parameter".
+#[test]
+fn a_law_of_high_order_is_found() {
+    let steps = [5e-3, 1e-2, 1.5e-2].map(|to| ProtocolStep {
+        to,
+        rate: PAPER_RATE,
+        hold: 20.0,
+    });
+    let motion = protocol(&steps).unwrap();
+    let times: Vec<f64> = (0..).map(|i| 0.1 * f64::from(i)).take_while(|t| *t <= motion.end()).collect();
+    for n in [9.0, 12.0, 20.0] {
+        let mut model = paper_ball(Separation::Unilateral);
+        // The same excess at the end of a ramp for any n.
+        let coefficient = 2e4 * 0.13_f64.powf(5.0 - n);
+        model.law = LatencyLaw::new(n, coefficient).unwrap();
+        let mut random = Rng::new(3);
+        let forces = simulate_force(&motion, &model, &times).unwrap();
+        let forces = forces.iter().map(|force| force + 0.03 * random.normal()).collect();
+        let held = steps.map(|step| step.to);
+        let data = CalibrationData::new(ball(), Separation::Unilateral, motion.clone(), times.clone(), forces, &held);
+        let data = data.unwrap();
+        for law in ["latency".to_owned(), format!("latency:{n}")] {
+            let found = calibrate(&data, candidate(&law, EVEN), 0.95, &mut Unwatched).unwrap();
+            let exponent = found.material.estimate("exponent").unwrap().value;
+            let rate = found.material.estimate("rate_coefficient_per_s").unwrap();
+            println!("{law} {n}: {:?} {exponent} {rate:?} {}", found.termination, found.relative);
+            assert!(found.termination.is_good(), "{law} {n}: {:?}", found.termination);
+            assert!((exponent / n - 1.0).abs() < 0.1, "{law} {n}: {exponent}");
+            let (low, high) = rate.interval.unwrap();
+            assert!(law != "latency" || (low..high).contains(&coefficient), "{n}: {low} {high} {coefficient}");
+        }
     }
 }
 

@@ -538,6 +538,16 @@ impl Finding {
                 "displacements count from first touch here, and this one does not: strains and modulus are those of a body that is pressed that far already",
                 "set touch = \"auto\" in [contact] of the test description, or the displacement at which the jaw meets the body",
             ),
+            Self::AirAsTravel { air, squeeze } => caution(
+                "air_as_travel",
+                format!(
+                    "the force begins {} mm behind the stated first touch; the largest squeeze is {} mm",
+                    significant(1e3 * air, 2),
+                    significant(1e3 * squeeze, 4)
+                ),
+                "the jaw went through air, or the body is soft at first: strains and modulus are those of a body that is pressed that much farther",
+                "set touch = \"auto\" in [contact] of the test description, or the displacement at which the jaw meets the body",
+            ),
             Self::ForceNotZero { start } => caution(
                 "force_not_zero",
                 format!("the record begins with a force of {} N at a displacement of zero", significant(*start, 3)),

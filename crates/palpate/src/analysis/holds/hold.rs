@@ -367,11 +367,11 @@ fn judge(hold: &mut HoldAnalysis) {
     }
     if let Some((low, high)) = best.equilibrium().interval {
         let end = best.predict(last);
-        let shares = if end < 0.0 { (high / end, low / end) } else { (low / end, high / end) };
-        if shares.1 < 0.0 && shares.0.is_finite() {
+        // A force below zero that goes on to one above it belongs to a body that is held on to.
+        if high < 0.0 && (low / end).is_finite() && end > 0.0 {
             hold.findings.push(Finding::EquilibriumBeyondZero {
                 share: best.equilibrium().value / end,
-                interval: shares,
+                interval: (low / end, high / end),
             });
         }
     }

@@ -2,11 +2,12 @@
 
 use super::rest::baseline_drifts;
 use crate::analysis::{AnalysisOptions, Corrected, Finding, Prepared};
+use crate::contact::Specimen;
 use crate::record::{Astray, Column, Correction, Record, SignalReport, Values};
 use crate::segment::{
-    ContactChoice, ContactPoint, HoldMode, Phase, Segment, SegmentOptions, Segmentation, find_phases,
+    ContactChoice, ContactPoint, HoldMode, Phase, Segment, SegmentOptions, Segmentation, find_contact_of, find_phases,
 };
-use crate::statistics::{median, noise};
+use crate::statistics::{mean, median, noise};
 
 /// Levels between the smallest and the largest value below which rounding is worth a word.
 const FEW_LEVELS: f64 = 200.0;
@@ -57,7 +58,9 @@ pub(crate) fn signal_findings(
     findings.extend(touch_findings(record, contact, options.touch));
     let is_stated = matches!(options.touch, ContactChoice::AsRecorded | ContactChoice::Displacement(_));
     if options.geometry.is_some() && is_stated {
-        findings.extend(wrong_zero(record));
+        let zero = wrong_zero(record, segmentation);
+        let body = options.geometry.as_ref().and_then(|geometry| geometry.specimen(1.0).ok());
+        findings.extend(zero.or_else(|| air_as_travel(record, segmentation, body.as_ref())));
     }
     findings
 }
@@ -209,8 +212,11 @@ fn touch_findings(record: &Record, contact: &ContactPoint, requested: ContactCho
     if let Some(spread) = contact.spread.filter(|spread| *spread > SPREAD * squeeze) {
         findings.push(Finding::TouchSpread { spread, squeeze });
     }
-    if let Some(apart) =
-        contact.apart().filter(|apart| requested == ContactChoice::Auto && apart.abs() > APART * squeeze)
+    // The error contains the distance where the curve misses the ramp: one that describes it is right, and the other rules are not.
+    let misses = |apart: &f64| contact.displacement_error.is_some_and(|error| error >= apart.abs());
+    if let Some(apart) = contact
+        .apart()
+        .filter(|apart| requested == ContactChoice::Auto && apart.abs() > APART * squeeze && misses(apart))
     {
         findings.push(Finding::TouchApart { apart, squeeze });
     }
@@ -222,25 +228,50 @@ fn touch_findings(record: &Record, contact: &ContactPoint, requested: ContactCho
     findings
 }
 
-/// [`Finding::DisplacementNotZero`] or [`Finding::ForceNotZero`] by the first row of a record whose first touch is stated
+/// [`Finding::DisplacementNotZero`] or [`Finding::ForceNotZero`] by the rows before the first ramp of a record whose first touch is stated
 /// ([`ContactChoice::AsRecorded`], [`ContactChoice::Displacement`]).
-fn wrong_zero(record: &Record) -> Option<Finding> {
+fn wrong_zero(record: &Record, segmentation: &Segmentation) -> Option<Finding> {
     /// Shares of the travel: what is a displacement, and what is none.
     const MOVED: (f64, f64) = (0.2, 0.01);
-    /// Shares of the largest force, likewise.
+    /// Shares of the largest force that the first row has to have, and a rest.
     const PRESSED: (f64, f64) = (0.03, 0.01);
+    /// Fewest rows of a rest.
+    const REST: usize = 10;
     let (force, displacement) = (record.force(), record.displacement()?);
+    let loads = segmentation
+        .segments
+        .iter()
+        .find(|segment| segment.phase == Phase::Loading)
+        .map_or(0, |ramp| ramp.start);
+    let rows = loads.saturating_sub(1);
     // A ramp of few rows has left its beginning in the second.
-    let (first_force, first) = (*force.first()?, *displacement.first()?);
+    let (first_force, first) = match rows >= REST {
+        true => (mean(&force[..rows]), median(&mut displacement[..rows].to_vec())),
+        false => (*force.first()?, *displacement.first()?),
+    };
     let farthest =
         |values: &[f64], from: f64| values.iter().fold(0.0, |most: f64, value| most.max((value - from).abs()));
     let (travel, largest) = (farthest(displacement, first), farthest(force, 0.0));
-    let noise = noise(force);
-    if first > MOVED.0 * travel && first_force.abs() <= (PRESSED.1 * largest).max(3.0 * noise) {
+    let (share, error) = match rows >= REST {
+        true => (PRESSED.1, noise(&force[..rows]) / (rows as f64 / REST as f64).sqrt()),
+        false => (PRESSED.0, noise(force)),
+    };
+    if first > MOVED.0 * travel && first_force.abs() <= (PRESSED.1 * largest).max(3.0 * error) {
         return Some(Finding::DisplacementNotZero { start: first });
     }
-    let is_pressed = first.abs() <= MOVED.1 * travel && first_force.abs() > (PRESSED.0 * largest).max(8.0 * noise);
+    let is_pressed = first.abs() <= MOVED.1 * travel && first_force.abs() > (share * largest).max(8.0 * error);
     is_pressed.then_some(Finding::ForceNotZero { start: first_force })
+}
+
+/// [`Finding::AirAsTravel`] where the jaw goes on through air from the first touch that is stated.
+fn air_as_travel(record: &Record, segmentation: &Segmentation, body: Option<&Specimen>) -> Option<Finding> {
+    /// Share of the largest squeeze, and standard errors of where the force begins.
+    const MATTERS: f64 = 0.03;
+    const SURE: f64 = 5.0;
+    let squeeze = record.displacement()?.iter().fold(0.0f64, |most, d| most.max(*d));
+    let found = find_contact_of(record, segmentation, body, ContactChoice::Auto);
+    let (air, error) = (found.tare.displacement, found.displacement_error?);
+    (air > (MATTERS * squeeze).max(SURE * error)).then_some(Finding::AirAsTravel { air, squeeze })
 }
 
 #[cfg(test)]
@@ -282,7 +313,8 @@ mod tests {
             let record = stairs(1.0);
             let displacement = record.displacement().unwrap().iter().map(|d| d + travel).collect();
             let force = record.force().iter().map(|f| f + force).collect();
-            wrong_zero(&Record::new(record.time().to_vec(), Some(displacement), force).unwrap())
+            let record = Record::new(record.time().to_vec(), Some(displacement), force).unwrap();
+            wrong_zero(&record, &find_phases(&record, &SegmentOptions::default()).unwrap())
         };
         assert_eq!((shifted(0.0, 0.0), shifted(-6.0, 0.0), shifted(0.0, 0.05)), (None, None, None));
         assert_eq!(shifted(6.0, 0.0).map(|finding| finding.code()), Some("displacement_not_zero"));

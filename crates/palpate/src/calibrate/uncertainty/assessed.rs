@@ -69,7 +69,7 @@ impl<'a> AssessedMaterial<'a> {
             of_displacement.iter().for_each(|covariance| assessed.add(covariance));
             new.assessed = Some(assessed);
         }
-        let has_errors = new.assessed.as_ref().is_some_and(|assessed| assessed.uncertainty.is_some());
+        let has_errors = new.uncertainty().is_some();
         if found.termination == Termination::Converged && !has_errors {
             let merges = prepared.searched.iter().any(|searched| searched.name == "rate_2");
             new.termination = if merges { Termination::TermsMerged } else { Termination::Singular };
@@ -113,7 +113,10 @@ impl<'a> AssessedMaterial<'a> {
         let uncertainty = self.found()?.uncertainty.as_ref()?;
         let mut covariance = transformed(&uncertainty.covariance, &self.gradients);
         self.systematic.iter().for_each(|effect| effect.add_to(&mut covariance));
-        Some(MaterialUncertainty {
+        // Parameters that the data leave open have variances of which others are lost in rounding.
+        let is_sound = (0..covariance.len())
+            .all(|i| covariance[i][i] >= 0.0 && covariance[i].iter().all(|entry| entry.is_finite()));
+        is_sound.then_some(MaterialUncertainty {
             confidence: self.confidence,
             freedom: uncertainty.freedom,
             covariance,

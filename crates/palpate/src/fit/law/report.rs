@@ -12,7 +12,7 @@ use crate::watch::Cancelled;
 impl Fitted {
     pub(crate) fn report(&self, law: Law, options: &LawOptions, effort: &Effort<'_>) -> Result<Fit, Cancelled> {
         let solution = &self.solution;
-        let known = matches!(solution.termination, Termination::Converged | Termination::AmplitudeAtBound);
+        let known = solution.termination == Termination::Converged;
         let (linear, scale) = (self.model.linear(), self.scaled.range);
         let searched = linear + solution.nonlinear.len();
         let units: Vec<f64> = (0..searched).map(|i| if i < linear { scale } else { 1.0 }).collect();
@@ -109,7 +109,7 @@ impl Fitted {
 
     /// s² (JᵀJ)⁻¹ in the caller's units for noise of this variance in the units of the fit; `None` where it is not known.
     pub(crate) fn white_covariance(&self, variance: f64) -> Option<Vec<Vec<f64>>> {
-        let known = matches!(self.solution.termination, Termination::Converged | Termination::AmplitudeAtBound);
+        let known = self.solution.termination == Termination::Converged;
         let inverse = self.solution.inverse_normal.as_deref().filter(|_| known)?;
         let size = self.solution.linear.len() + self.solution.nonlinear.len();
         let unit = |i: usize| if i < self.model.linear() { self.scaled.range } else { 1.0 };

@@ -61,6 +61,18 @@ impl SpectrumFit {
         terms.map(|(time, height)| height * (-elapsed / time).exp()).sum()
     }
 
+    /// The same where a unit weight is that of a sample with a standard deviation of 1/`precision`: squares add up as χ².
+    pub(crate) fn in_deviations(self, precision: f64) -> Self {
+        let square = precision * precision;
+        Self {
+            residual_square: self.residual_square * square,
+            least_residual_square: self.least_residual_square * square,
+            residual_limit: self.residual_limit * square,
+            weight: self.weight * square,
+            ..self
+        }
+    }
+
     /// Root mean square residual √(RSS/Σ weights).
     #[must_use]
     pub fn rmse(&self) -> f64 {

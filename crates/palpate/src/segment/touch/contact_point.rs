@@ -9,7 +9,7 @@ use super::loading_curve::{LoadingCurve, Touch};
 use crate::contact::Specimen;
 use crate::record::{Record, Tare};
 use crate::segment::segmentation::{Phase, Segment, Segmentation};
-use crate::statistics::{bounds, mean, median, noise, range};
+use crate::statistics::{bounds, dot, effective_count, lag_one_correlation, mean, median, noise, range};
 
 /// How to find first touch.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
@@ -37,6 +37,9 @@ pub struct ContactPoint {
     pub tare: Tare,
     /// Standard error of the displacement of first touch, m, where it was estimated.
     pub displacement_error: Option<f64>,
+    /// Standard error of the zero of the force, N, where that was estimated from samples without contact.
+    #[serde(default)]
+    pub force_error: Option<f64>,
     /// Travel through air before it, m.
     pub air_travel: f64,
     /// The rule that found it; `None` where it was given, or is the foot of the ramp.
@@ -126,11 +129,21 @@ fn given(record: &Record, displacement: &[f64], touch: f64) -> ContactPoint {
     let halfway = before.first().map_or(touch, |from| 0.5 * (from + touch));
     let clear = before.iter().position(|d| *d >= halfway).unwrap_or(before.len());
     let free = if clear >= BASELINE { clear } else { before.len() };
-    let force = if free >= BASELINE { median(&mut record.force()[..free].to_vec()) } else { 0.0 };
+    let (force, force_error) = if free >= BASELINE { zero(&record.force()[..free]) } else { (0.0, None) };
     ContactPoint {
         tare: Tare { force, ..point.tare },
+        force_error,
         ..point
     }
+}
+
+/// The median of forces without contact, and its standard error: 1.2533 σ/√N for a normal distribution, with as many of N as are independent.
+fn zero(free: &[f64]) -> (f64, Option<f64>) {
+    let zero = median(&mut free.to_vec());
+    let off: Vec<f64> = free.iter().map(|force| force - zero).collect();
+    let independent = effective_count(free.len(), lag_one_correlation(&off));
+    let deviation = (dot(&off, &off) / free.len() as f64).sqrt();
+    (zero, Some(1.2533 * deviation / independent.sqrt()))
 }
 
 /// Samples without contact: those before the force leaves its baseline in the first ramp, and, if the jaw travelled through
@@ -201,16 +214,16 @@ fn automatic(
     // Behind air the zero of the force is its median over half the way, or else the base of the curve.
     let behind_air = |touch: f64, base: Option<f64>| {
         let clear = first_beyond(displacement, foot, ramp, 0.5 * (from + touch)).max(foot);
-        let before = median(&mut force[..clear.max(1)].to_vec());
-        let zero = if clear >= BASELINE { before } else { base.unwrap_or(before) };
+        let before = zero(&force[..clear.max(1)]);
+        let zero = if clear >= BASELINE { before } else { (base.unwrap_or(before.0), None) };
         (touch, first_beyond(displacement, foot, ramp, touch), zero)
     };
-    let (method, displacement_error, (touch, sample, zero)) = match (by_rule, by_curve) {
+    let (method, displacement_error, (touch, sample, (zero, force_error))) = match (by_rule, by_curve) {
         (Some(rule), _) => (Some(rule.method), spread, behind_air(rule.displacement, None)),
         (None, Some(touch)) => {
             (Some(TouchMethod::LoadingCurve), Some(touch.error), behind_air(touch.displacement, Some(touch.base)))
         }
-        (None, None) => (None, None, (from, foot, if has_rest { median(&mut force[..=foot].to_vec()) } else { 0.0 })),
+        (None, None) => (None, None, (from, foot, if has_rest { zero(&force[..=foot]) } else { (0.0, None) })),
     };
     let mut point = ContactPoint {
         sample: Some(sample),
@@ -219,14 +232,15 @@ fn automatic(
             displacement: touch,
         },
         displacement_error,
+        force_error,
         air_travel: (touch - from).max(0.0),
         method,
         spread,
         estimates,
     };
-    // A curve that stands alone is that of another body; its own error knows nothing of that.
+    // A curve that stands alone and misses the ramp is that of another body; its own error knows nothing of that.
     if by_rule.is_none()
-        && let (Some(curve), Some(apart)) = (by_curve, point.apart())
+        && let (Some(curve), Some(apart)) = (by_curve.filter(|curve| curve.misses), point.apart())
         && apart.abs() > ALONE * (displacement[ramp.end - 1] - touch)
     {
         point.displacement_error = Some(curve.error.hypot(apart));

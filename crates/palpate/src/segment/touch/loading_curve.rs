@@ -19,6 +19,8 @@ pub(super) struct Touch {
     pub(super) base: f64,
     /// Root mean square residual, N.
     pub(super) noise: f64,
+    /// The curve leaves more of the ramp than the noise of the force.
+    pub(super) misses: bool,
     /// Rise of the force in the ramp, N.
     pub(super) rise: f64,
 }
@@ -67,6 +69,9 @@ impl HoldLaw {
         }
     }
 }
+
+/// How many times the noise of the force a curve leaves of the ramp that does not describe it.
+const MISSES: f64 = 1.2;
 
 /// Samples of ramp and rest that are fitted, at most.
 const MOST: usize = 600;
@@ -125,11 +130,13 @@ impl<'a> LoadingCurve<'a> {
         let displacement = average(&|curve| curve.parameters[0]);
         let square = average(&|curve| curve.error.powi(2) + (curve.parameters[0] - displacement).powi(2));
         let by_hold = self.error_by_hold(&best.0, best.1);
+        let left = (best.0.square / self.force.len() as f64).sqrt();
         Some(Touch {
             displacement,
             error: square.sqrt().hypot(by_hold),
             base: average(&|curve| curve.parameters[2]),
-            noise: (best.0.square / self.force.len() as f64).sqrt().max(self.deviation),
+            noise: left.max(self.deviation),
+            misses: left > MISSES * self.deviation.max(1e-9 * self.rise),
             rise: self.rise,
         })
     }

@@ -199,3 +199,22 @@ fn four_numbers_predict_half_an_hour_of_tape_as_well_as_a_dense_spectrum() {
     assert!(score("prony:2") > 10.0 * score("latency") && score("stretched") > 10.0 * score("latency"));
     assert_eq!(comparison.verdict.unwrap().law.to_string(), "latency");
 }
+
+/// The spectrum took every sample for one of a standard deviation of 1, and its information criterion stood beside those of laws that did not: a constant
+/// weight of 50 refuted the law that made the hold, by 1553.
+#[test]
+fn a_constant_standard_deviation_changes_no_comparison() {
+    let (times, values) = hold(201, 40.0, 0.02, |t| 5.0 + 1.5 * (-t / 2.0).exp() + 1.5 * (-t / 20.0).exp());
+    let plain = compared(&times, &values);
+    for deviation in [1e-3, 0.02, 50.0] {
+        let deviations = vec![deviation; 201];
+        let samples = Samples::new(&times, &values).with_standard_deviations(&deviations);
+        let weighted = compare_laws(&samples, &CompareOptions::default()).unwrap();
+        for row in &weighted.rows {
+            let same = plain.rows.iter().find(|other| other.law == row.law).unwrap();
+            let [found, expected] = [row.delta_bic, same.delta_bic].map(Option::unwrap_or_default);
+            assert!((found - expected).abs() < 1e-6 * (1.0 + expected), "{deviation} {}: {found} {expected}", row.law);
+        }
+        assert_eq!(weighted.verdict.map(|verdict| verdict.law), plain.verdict.as_ref().map(|verdict| verdict.law));
+    }
+}
