@@ -11,6 +11,9 @@
 //! samples, one for white noise, 52 for AR(1) noise of 0.9 in 1000 samples. Residuals are smaller than noise, and a block knows
 //! nothing of correlation beyond it; both would make intervals too narrow, so that residuals are first scaled to
 //! the variance of the noise ([`NoiseModel`]) times that of its long sums over that of sums of independent blocks.
+//!
+//! Under a robust loss the residuals are those that the loss counts (`robust.rs`), and draws are fitted by least squares. Outliers themselves would be
+//! most of the samples in some draws, which no loss withstands.
 
 use super::fitted::Point;
 use crate::fit::{BootstrapOptions, Estimate, Fit, FitError, Fitted, LawOptions, NoiseModel, Parameter, condense};
@@ -34,8 +37,9 @@ impl Fitted {
         let mut draws: Vec<Vec<f64>> = vec![Vec::new(); fit.parameters.len()];
         if let Some(uncertainty) = &fit.uncertainty {
             let noise = (uncertainty.deviation / self.scaled.range).powi(2);
-            let inflation =
+            let mut inflation =
                 noise * count as f64 / self.solution.residual_square * fit.noise.cut_by_blocks(block, count);
+            inflation *= self.take_as_counted();
             let urn = Urn {
                 residuals: self.solution.residuals.iter().map(|r| r * inflation.sqrt()).collect(),
                 values: self.scaled.values.iter().zip(&self.solution.residuals).map(|(y, r)| y - r).collect(),

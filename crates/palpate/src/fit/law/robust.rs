@@ -9,10 +9,14 @@
 //!
 //! Where residuals correlate, it is the products E ψ(uᵢ) ψ(uⱼ) that take the place of the squares: the noise is sought in scale · ψ(u). Residuals
 //! themselves would have the correlation of their outliers, which is none.
+//!
+//! With scale · ψ(u) in place of the residuals the samples have the same estimate by least squares, and their residual square rises about it as the loss
+//! does over mean ψ′: profiles and draws of such samples are those of the M-estimate, if s² is that of the loss.
 
 use crate::fit::{FitError, Fitted, LawOptions, Loss, Scaled, search};
 use crate::optimise::{Effort, Ending, Solution, Termination, polished, refine, standing};
-use crate::statistics::mean;
+use crate::statistics::{dot, mean};
+use crate::vector::multiply;
 
 /// Huber's bound, in noise standard deviations: 95 % efficiency on normal noise.
 const HUBER: f64 = 1.345;
@@ -89,11 +93,31 @@ impl Fitted {
         Ok(middle(&self.residuals_of(base)) / MEDIAN_SHARE)
     }
 
+    /// Samples and residuals from now on as the loss counts them. Returns s² of the loss over that of least squares to these: 1 where all count.
+    pub(crate) fn take_as_counted(&mut self) -> f64 {
+        let Some(counted) = self.counted.take() else {
+            return 1.0;
+        };
+        self.scaled.values = self.curve_among(&self.scaled).iter().zip(&counted).map(|(y, r)| y + r).collect();
+        let solution = &mut self.solution;
+        let freedom = counted.len() - solution.linear.len() - solution.nonlinear.len();
+        solution.residual_square = dot(&counted, &counted);
+        solution.residuals = counted;
+        solution.variance * freedom as f64 / solution.residual_square
+    }
+
     /// Residuals of the present solution, in units of each sample's own deviation.
     fn residuals_of(&self, base: &Scaled) -> Vec<f64> {
-        let curve = self.model_values();
-        let root = |i: usize| base.roots.as_ref().map_or(1.0, |roots| roots[i]);
-        base.values.iter().enumerate().map(|(i, value)| value - curve[i] * root(i)).collect()
+        base.values.iter().zip(self.curve_among(base)).map(|(value, curve)| value - curve).collect()
+    }
+
+    /// The fitted curve in the same units.
+    fn curve_among(&self, base: &Scaled) -> Vec<f64> {
+        let mut curve = self.model_values();
+        if let Some(roots) = &base.roots {
+            multiply(&mut curve, roots);
+        }
+        curve
     }
 
     /// The fitted curve in the units of the fit.
