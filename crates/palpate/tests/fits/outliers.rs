@@ -203,3 +203,29 @@ fn resampled_outliers_count_as_the_loss_counts_them() {
         }
     }
 }
+
+/// Profiles counted outliers by their squares: one spike of 5 to 50 among 200 samples made them 8 to 24 times as wide, or open.
+#[test]
+fn a_spike_does_not_widen_a_profile() {
+    for loss in [Loss::Huber, Loss::Tukey] {
+        for seed in 0..5 {
+            let (times, mut values) = single(&mut Rng::new(seed));
+            let fits = |values: &[f64]| {
+                [IntervalMethod::Curvature, IntervalMethod::Profile].map(|by| intervals_of(&times, values, loss, by))
+            };
+            let without = fits(&values);
+            for spike in [5.0, 20.0, 50.0] {
+                values[100] = spike;
+                let with = fits(&values);
+                for (name, _) in SINGLE {
+                    for (with, without) in with.iter().zip(&without) {
+                        let ratio = width(with, name) / width(without, name);
+                        assert!((0.95..1.1).contains(&ratio), "{loss:?} {seed} {spike} {name}: {ratio}");
+                    }
+                    let ratio = width(&with[1], name) / width(&with[0], name);
+                    assert!((ratio - 1.0).abs() < 0.02, "{loss:?} {seed} {spike} {name}: {ratio}");
+                }
+            }
+        }
+    }
+}

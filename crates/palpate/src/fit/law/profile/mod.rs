@@ -10,6 +10,8 @@
 //! `lmfit.conf_interval`. Where residuals correlate, w is the variance of the parameter for noise of their kind over that for
 //! white noise, and t has the degrees of freedom of that variance ([`Uncertainty`](super::Uncertainty)).
 //!
+//! Under a robust loss χ² is that of samples as the loss counts them (`law/robust.rs`), and w is times s² of the loss over that of such residuals.
+//!
 //! A parameter that follows from those (v from λ, Δ and n) has the ends of the one that it correlates with most, ϱ: its value at an end,
 //! its distance from the best value divided by |ϱ|. Where the data leave one direction nearly open, that direction is what all parameters
 //! share, and |ϱ| is near 1; below 0.7 the interval of the curvature stays.
@@ -65,7 +67,7 @@ pub fn profile_interval(
     options: &LawOptions,
     name: &str,
 ) -> Result<Interval, FitError> {
-    let fitted = Fitted::new(samples, law, options, &mut Effort::default())?;
+    let mut fitted = Fitted::new(samples, law, options, &mut Effort::default())?;
     let names = fitted.model.names(|parameter| parameter.name.clone());
     let place = names.iter().position(|known| known == name).ok_or_else(|| FitError::UnknownParameter {
         name: name.to_owned(),
@@ -77,7 +79,8 @@ pub fn profile_interval(
     let (Some(uncertainty), Some(quantity), true) = (&fit.uncertainty, quantity, fit.termination.is_good()) else {
         return Ok(Interval::OPEN);
     };
-    let about = About::new(&fitted, &fit, options, Closeness::EXACT);
+    let inefficiency = fitted.take_as_counted();
+    let about = About::new(&fitted, &fit, options, inefficiency, Closeness::EXACT);
     let ends = fitted.ends(place, &fit, uncertainty, &about, &mut Effort::default())?;
     let value = |end: &Option<End>| {
         let reached = end.as_ref().and_then(End::bound)?;
@@ -119,12 +122,18 @@ impl Fitted {
     }
 
     /// Intervals of the parameters of this fit by their profiles, whose ends may be open; standard errors are those of curvature.
-    pub(crate) fn profile(&self, fit: &mut Fit, options: &LawOptions, effort: &mut Effort<'_>) -> Result<(), FitError> {
+    pub(crate) fn profile(
+        &mut self,
+        fit: &mut Fit,
+        options: &LawOptions,
+        effort: &mut Effort<'_>,
+    ) -> Result<(), FitError> {
         fit.interval_method = IntervalMethod::Profile;
         let (Some(uncertainty), true) = (fit.uncertainty.clone(), fit.termination.is_good()) else {
             return Ok(());
         };
-        let about = About::new(self, fit, options, Closeness::USUAL);
+        let inefficiency = self.take_as_counted();
+        let about = About::new(self, fit, options, inefficiency, Closeness::USUAL);
         let all = (0..fit.values.len()).map(|place| self.ends(place, fit, &uncertainty, &about, effort));
         let all = all.collect::<Result<Vec<Ends>, Cancelled>>()?;
         let values_at = |end: &Option<End>| -> Option<Vec<f64>> {
@@ -215,7 +224,7 @@ impl Fitted {
             doubtful: &about.doubtful.terms,
             parameter,
             error: (variance * self.solution.residual_square / uncertainty.freedom).sqrt(),
-            target: (uncertainty.factor(&gradient) * widening).hypot(about.doubtful.z),
+            target: (uncertainty.factor(&gradient) * widening).hypot(about.doubtful.z) * about.inefficiency.sqrt(),
             freedom: uncertainty.freedom,
             most_iterations: about.most_iterations,
             closeness: about.closeness,
@@ -256,15 +265,18 @@ impl Quantity {
 struct About {
     nodes: Condensed,
     doubtful: Doubtful,
+    /// s² of the loss over that of least squares.
+    inefficiency: f64,
     most_iterations: usize,
     closeness: Closeness,
 }
 
 impl About {
-    fn new(fitted: &Fitted, fit: &Fit, options: &LawOptions, closeness: Closeness) -> Self {
+    fn new(fitted: &Fitted, fit: &Fit, options: &LawOptions, inefficiency: f64, closeness: Closeness) -> Self {
         Self {
             nodes: condense(&fitted.scaled),
             doubtful: fitted.doubtful(fit),
+            inefficiency,
             most_iterations: options.most_iterations,
             closeness,
         }
