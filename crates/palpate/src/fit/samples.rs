@@ -128,22 +128,38 @@ impl Scaled {
         if !(invertible(range) && invertible(duration) && first > f64::MIN_POSITIVE * 1e6) {
             return Err(FitError::OutOfRange);
         }
-        let (per_duration, per_range) = (1.0 / duration, 1.0 / range);
+        let per_duration = 1.0 / duration;
         let (roots, precision) = samples.roots();
-        let mut scaled = shifted(values, center, per_range);
-        if let Some(roots) = &roots {
-            multiply(&mut scaled, roots);
-        }
-        Ok(Self {
+        let mut scaled = Self {
             times: shifted(times, start, per_duration),
-            values: scaled,
+            values: Vec::new(),
             roots,
             precision,
             start,
             duration,
             center,
             range,
-        })
+        };
+        scaled.values = scaled.in_units(values);
+        Ok(scaled)
+    }
+
+    /// Other values of the same samples, in the units of these.
+    pub(crate) fn of(&self, samples: &Samples<'_>) -> Self {
+        let certain = samples.certain();
+        let values = certain.as_ref().map_or(samples.values, |[_, values, _]| values);
+        Self {
+            values: self.in_units(values),
+            ..self.clone()
+        }
+    }
+
+    fn in_units(&self, values: &[f64]) -> Vec<f64> {
+        let mut scaled = shifted(values, self.center, 1.0 / self.range);
+        if let Some(roots) = &self.roots {
+            multiply(&mut scaled, roots);
+        }
+        scaled
     }
 
     pub(crate) fn target(&self) -> Target<'_> {

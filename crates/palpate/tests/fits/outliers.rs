@@ -229,3 +229,61 @@ fn a_spike_does_not_widen_a_profile() {
         }
     }
 }
+
+/// One sample of 1000 among 200 of 1 to 3 was the range of the signal, and its square the noise beside which no parameter counted: fits were singular,
+/// and of 1e30 nothing was left of the signal.
+#[test]
+fn a_sentinel_leaves_the_fit_of_the_others() {
+    for loss in [Loss::Huber, Loss::Tukey] {
+        for (place, sign) in [(0, 1.0), (100, -1.0), (199, 1.0)] {
+            let (times, mut values) = single(&mut Rng::new(7));
+            let fits = [50.0, 1e3, 1e30].map(|spike| {
+                values[place] = sign * spike;
+                intervals_of(&times, &values, loss, IntervalMethod::Automatic)
+            });
+            for (name, truth) in SINGLE {
+                let [near, ..] = &fits;
+                let value = near.value(name).unwrap();
+                let of_noise = 0.5 * width(near, name);
+                assert!((value - truth).abs() < 3.0 * of_noise, "{loss:?} {place} {name}: {value}");
+                for fit in &fits {
+                    let off = (fit.value(name).unwrap() - value).abs();
+                    let wider = (width(fit, name) / (2.0 * of_noise) - 1.0).abs();
+                    assert!(off < 1e-6 * of_noise && wider < 1e-6, "{loss:?} {place} {name}: {off} {wider}");
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn several_sentinels_leave_the_fit_of_the_others() {
+    for loss in [Loss::Huber, Loss::Tukey] {
+        let (times, mut values) = single(&mut Rng::new(9));
+        values.iter_mut().skip(5).step_by(20).for_each(|value| *value = 1e6);
+        let fit = intervals_of(&times, &values, loss, IntervalMethod::Curvature);
+        for (name, truth) in SINGLE {
+            let (value, half) = (fit.value(name).unwrap(), 0.5 * width(&fit, name));
+            assert!((value - truth).abs() < 2.0 * half, "{loss:?} {name}: {value}");
+        }
+    }
+}
+
+/// A law that is over after a few samples has its first values as far from most as outliers are.
+#[test]
+fn a_fast_transient_is_no_outlier() {
+    let times: Vec<f64> = (0..200).map(|i| 0.1 * f64::from(i)).collect();
+    for noise in [0.01, 0.0] {
+        let mut random = Rng::new(3);
+        let values: Vec<f64> = times.iter().map(|t| 1.0 + 50.0 * (-t / 0.1).exp() + noise * random.normal()).collect();
+        for loss in [Loss::Huber, Loss::Tukey] {
+            let options = LawOptions {
+                loss,
+                ..LawOptions::default()
+            };
+            let fit = fit_law(&Samples::new(&times, &values), Law::StandardLinearSolid, &options).unwrap();
+            let (time, amplitude) = (fit.value("time_constant_s").unwrap(), fit.value("amplitude").unwrap());
+            assert!((time - 0.1).abs() < 2e-4 && (amplitude - 50.0).abs() < 0.05, "{loss:?}: {time} {amplitude}");
+        }
+    }
+}

@@ -1,5 +1,6 @@
 //! Any law fitted to a hold.
 
+use super::robust::{near, without_far};
 use crate::fit::{Fit, FitError, Fitted, IntervalMethod, LawOptions, Loss, SampleChoice, Samples, build, search};
 use crate::laws::Law;
 use crate::optimise::Effort;
@@ -74,17 +75,26 @@ impl Fitted {
         let form = options.form(law)?;
         let chosen = chosen(samples, options.samples)?;
         let samples = &chosen.samples(samples);
-        let (model, scaled) = build(form, samples, options)?;
-        let solution = search(&model, &scaled, options.most_iterations, effort)?.ok_or(FitError::NoDecay)?;
-        let mut fitted = Self {
-            model,
-            scaled,
-            solution,
-            counted: None,
+        let mut fitted = match options.loss {
+            Loss::Squares => {
+                let (model, scaled) = build(form, samples, options)?;
+                let solution = search(&model, &scaled, options.most_iterations, effort)?.ok_or(FitError::NoDecay)?;
+                Self {
+                    model,
+                    scaled,
+                    solution,
+                    counted: None,
+                }
+            }
+            Loss::Huber | Loss::Tukey => {
+                let nearer = without_far(samples.values);
+                let values = nearer.as_deref().unwrap_or(samples.values);
+                let (model, nearer) = build(form, &Samples { values, ..*samples }, options)?;
+                let all = nearer.of(samples);
+                let near = near(&nearer, &all, model.linear() + model.free().len());
+                Self::resisting(&model, all, near.as_ref(), options, effort)?
+            }
         };
-        if options.loss != Loss::Squares {
-            fitted.resist(options, effort)?;
-        }
         fitted.arrange();
         Ok(fitted)
     }

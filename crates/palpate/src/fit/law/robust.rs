@@ -13,10 +13,10 @@
 //! With scale · ψ(u) in place of the residuals the samples have the same estimate by least squares, and their residual square rises about it as the loss
 //! does over mean ψ′: profiles and draws of such samples are those of the M-estimate, if s² is that of the loss.
 
-use crate::fit::{FitError, Fitted, LawOptions, Loss, Scaled, search};
-use crate::optimise::{Effort, Ending, Solution, Termination, polished, refine, standing};
-use crate::statistics::{dot, mean};
-use crate::vector::multiply;
+use crate::fit::{FitError, Fitted, LawOptions, Loss, Model, Scaled, search};
+use crate::optimise::{Effort, Ending, Solution, Target, Termination, polished, refine, standing};
+use crate::statistics::{dot, mean, quantile};
+use crate::vector::{all_finite, multiply};
 
 /// Huber's bound, in noise standard deviations: 95 % efficiency on normal noise.
 const HUBER: f64 = 1.345;
@@ -27,6 +27,12 @@ const TUKEY: f64 = 4.685;
 /// A median absolute deviation of normal noise is this much of its standard deviation, in the four digits of the literature.
 const MEDIAN_SHARE: f64 = 0.6745;
 
+/// Noise standard deviations beyond which the distance of a sample no longer matters.
+const FAR: f64 = 10.0;
+
+/// The least scale, over the range of the signal.
+const FINEST: f64 = 1e-12;
+
 /// Rounds of reweighting after which it ends short.
 const ROUNDS: usize = 200;
 
@@ -35,22 +41,70 @@ impl Fitted {
     ///
     /// The scale is found anew in every round. After the first rounds the whole range of the nonlinear parameters is searched again,
     /// since outliers may have led the first search into the wrong valley. In the end the solution stands among all samples at
-    /// their own weights.
-    pub(crate) fn resist(&mut self, options: &LawOptions, effort: &mut Effort<'_>) -> Result<(), FitError> {
-        let base = self.scaled.clone();
-        let mut scale = self.reweigh(&base, Loss::Huber, options, effort)?;
-        if options.loss == Loss::Tukey {
-            scale = self.reweigh(&base, Loss::Tukey, options, effort)?;
+    /// their own weights; what they determine is judged by them as the loss counts them.
+    ///
+    /// Where some samples are far from most, the first search is among the `near` ones too. The others may be outliers or a fast transient: of both fits
+    /// that from which fewer samples stray is taken.
+    pub(crate) fn resisting(
+        model: &Model,
+        base: Scaled,
+        near: Option<&Scaled>,
+        options: &LawOptions,
+        effort: &mut Effort<'_>,
+    ) -> Result<Self, FitError> {
+        let mut best: Option<(Self, f64)> = None;
+        for start in near.into_iter().chain([&base]) {
+            let Some(solution) = search(model, start, options.most_iterations, effort)? else {
+                continue;
+            };
+            let mut fitted = Self {
+                model: model.clone(),
+                scaled: base.clone(),
+                solution,
+                counted: None,
+            };
+            let scale = match fitted.reweigh_all(&base, options, effort) {
+                Err(FitError::NoDecay) => continue,
+                found => found?,
+            };
+            let is_better = best.as_ref().is_none_or(|(other, of_other)| {
+                let both = scale.min(*of_other);
+                strays(&base, &fitted.curve_among(&base), both) < strays(&base, &other.curve_among(&base), both)
+            });
+            if is_better {
+                best = Some((fitted, scale));
+            }
         }
-        self.scaled = base;
+        let (mut fitted, scale) = best.ok_or(FitError::NoDecay)?;
+        fitted.stand(base, scale, options.loss);
+        Ok(fitted)
+    }
+
+    /// The solution among all samples at their own weights, with this scale.
+    fn stand(&mut self, base: Scaled, scale: f64, loss: Loss) {
+        let curve = self.curve_among(&base);
+        let residuals: Vec<f64> = base.values.iter().zip(&curve).map(|(value, curve)| value - curve).collect();
+        let counted: Vec<f64> = residuals.iter().map(|r| r * weight(loss, r / scale)).collect();
+        let values: Vec<f64> = curve.iter().zip(&counted).map(|(curve, r)| curve + r).collect();
+        let target = Target::new(&values, base.roots.as_deref());
         let found = &self.solution;
-        let shapes = self.model.at(&self.scaled.times);
-        let mut solution = standing(&shapes, self.scaled.target(), &found.nonlinear, &found.linear, found.termination);
-        solution.variance = variance(options.loss, scale, &solution);
-        let counts = |r: &f64| r * weight(options.loss, r / scale);
-        self.counted = (scale > 0.0).then(|| solution.residuals.iter().map(counts).collect());
+        let shapes = self.model.at(&base.times);
+        let mut solution = standing(&shapes, target, &found.nonlinear, &found.linear, found.termination);
+        solution.residual_square = dot(&residuals, &residuals);
+        solution.residuals = residuals;
+        solution.variance = variance(loss, scale, &solution);
+        self.counted = Some(counted);
         self.solution = solution;
-        Ok(())
+        self.scaled = base;
+    }
+
+    /// By Huber, then, if requested, by Tukey; returns the scale.
+    fn reweigh_all(&mut self, base: &Scaled, options: &LawOptions, effort: &mut Effort<'_>) -> Result<f64, FitError> {
+        let scale = self.reweigh(base, Loss::Huber, options, effort)?;
+        match options.loss {
+            Loss::Tukey => self.reweigh(base, Loss::Tukey, options, effort),
+            Loss::Squares | Loss::Huber => Ok(scale),
+        }
     }
 
     /// Reweights until nothing moves; returns the scale.
@@ -63,12 +117,9 @@ impl Fitted {
     ) -> Result<f64, FitError> {
         let mut before: Option<Vec<f64>> = None;
         for round in 0..ROUNDS {
-            let residuals = self.residuals_of(base);
-            let scale = middle(&residuals) / MEDIAN_SHARE;
-            if scale <= f64::MIN_POSITIVE {
-                return Ok(0.0);
-            }
-            self.scaled = reweighted(base, residuals.iter().map(|r| weight(loss, r / scale).sqrt()));
+            let curve = self.curve_among(base);
+            let scale = scale_of(base, &curve);
+            self.scaled = reweighted(base, &curve, loss, scale);
             if round == 2 {
                 self.solution =
                     search(&self.model, &self.scaled, options.most_iterations, effort)?.ok_or(FitError::NoDecay)?;
@@ -90,7 +141,7 @@ impl Fitted {
         if self.solution.termination == Termination::Converged {
             self.solution.termination = Termination::IterationLimit;
         }
-        Ok(middle(&self.residuals_of(base)) / MEDIAN_SHARE)
+        Ok(scale_of(base, &self.curve_among(base)))
     }
 
     /// Samples and residuals from now on as the loss counts them. Returns s² of the loss over that of least squares to these: 1 where all count.
@@ -106,12 +157,7 @@ impl Fitted {
         solution.variance * freedom as f64 / solution.residual_square
     }
 
-    /// Residuals of the present solution, in units of each sample's own deviation.
-    fn residuals_of(&self, base: &Scaled) -> Vec<f64> {
-        base.values.iter().zip(self.curve_among(base)).map(|(value, curve)| value - curve).collect()
-    }
-
-    /// The fitted curve in the same units.
+    /// The curve of the present solution, in units of each sample's own deviation.
     fn curve_among(&self, base: &Scaled) -> Vec<f64> {
         let mut curve = self.model_values();
         if let Some(roots) = &base.roots {
@@ -139,11 +185,32 @@ impl Fitted {
     }
 }
 
-/// The samples with the square roots of their weights times `factors`.
-fn reweighted(base: &Scaled, factors: impl Iterator<Item = f64>) -> Scaled {
+/// The scale of residuals about a curve, at least that of their rounding.
+fn scale_of(base: &Scaled, curve: &[f64]) -> f64 {
+    let residuals = base.values.iter().zip(curve).map(|(value, curve)| (value - curve).abs());
+    (middle(residuals.collect()) / MEDIAN_SHARE).max(FINEST)
+}
+
+/// How many samples stray from a curve, those by a few scales in part: Tukey's ρ.
+fn strays(base: &Scaled, curve: &[f64], scale: f64) -> f64 {
+    let part = |(value, curve): (&f64, &f64)| {
+        let left = 1.0 - ((value - curve) / (TUKEY * scale)).powi(2);
+        1.0 - left.max(0.0).powi(3)
+    };
+    base.values.iter().zip(curve).map(part).sum()
+}
+
+/// The samples with the weights that the loss gives their residuals about a curve. Those beyond [`FAR`] are brought there, where they pull as
+/// much: their squares would hide those of all others.
+fn reweighted(base: &Scaled, curve: &[f64], loss: Loss, scale: f64) -> Scaled {
     let mut scaled = base.clone();
     let mut roots = base.roots.clone().unwrap_or_else(|| vec![1.0; base.times.len()]);
-    for ((value, root), factor) in scaled.values.iter_mut().zip(&mut roots).zip(factors) {
+    for ((value, root), curve) in scaled.values.iter_mut().zip(&mut roots).zip(curve) {
+        let u = (*value - curve) / scale;
+        if u.abs() > FAR {
+            *value = curve + FAR.copysign(u) * scale;
+        }
+        let factor = weight(loss, u.clamp(-FAR, FAR)).sqrt();
         *value *= factor;
         *root *= factor;
     }
@@ -151,9 +218,43 @@ fn reweighted(base: &Scaled, factors: impl Iterator<Item = f64>) -> Scaled {
     scaled
 }
 
-/// Median size, the mean of the middle two of an even number.
-fn middle(residuals: &[f64]) -> f64 {
-    let mut sizes: Vec<f64> = residuals.iter().map(|r| r.abs()).collect();
+/// Values with those far from most of them brought nearer; `None` if there are none. One sentinel would be the range of the signal.
+pub(super) fn without_far(values: &[f64]) -> Option<Vec<f64>> {
+    /// Distances between quantiles from the outer of them beyond which a value is far.
+    const DISTANCE: f64 = 30.0;
+    /// Quantiles, the further ones for signals that have relaxed early.
+    const SHARES: [f64; 3] = [0.25, 0.1, 0.05];
+    if !all_finite(values) {
+        return None;
+    }
+    let mut sorted = values.to_vec();
+    let ends = SHARES.map(|share| [share, 1.0 - share].map(|share| quantile(&mut sorted, share)));
+    let [low, high] = ends.into_iter().find(|[low, high]| low < high)?;
+    let (low, high) = (low - DISTANCE * (high - low), high + DISTANCE * (high - low));
+    let is_far = |value: &f64| *value < low || *value > high;
+    values.iter().any(is_far).then(|| values.iter().map(|value| value.clamp(low, high)).collect())
+}
+
+/// The samples of a fit of so many parameters without those that were brought nearer; `None` if there are none, or too few others.
+pub(super) fn near(nearer: &Scaled, measured: &Scaled, parameters: usize) -> Option<Scaled> {
+    /// Samples for each parameter, of fewer a fit is nearly exact whichever are left out.
+    const ENOUGH: usize = 3;
+    let is_near: Vec<bool> = nearer.values.iter().zip(&measured.values).map(|(a, b)| a == b).collect();
+    let count = is_near.iter().filter(|near| **near).count();
+    if count == is_near.len() || count < ENOUGH * parameters {
+        return None;
+    }
+    let mut near = nearer.clone();
+    let mut roots = near.roots.take().unwrap_or_else(|| vec![1.0; is_near.len()]);
+    for ((value, root), _) in near.values.iter_mut().zip(&mut roots).zip(is_near).filter(|(_, near)| !near) {
+        (*value, *root) = (0.0, 0.0);
+    }
+    near.roots = Some(roots);
+    Some(near)
+}
+
+/// The median, the mean of the middle two of an even number.
+fn middle(mut sizes: Vec<f64>) -> f64 {
     sizes.sort_by(f64::total_cmp);
     let count = sizes.len();
     0.5 * (sizes[(count - 1) / 2] + sizes[count / 2])
@@ -161,9 +262,6 @@ fn middle(residuals: &[f64]) -> f64 {
 
 /// What stands for s² in the covariance s² (JᵀJ)⁻¹ of an M-estimate.
 fn variance(loss: Loss, scale: f64, solution: &Solution) -> f64 {
-    if scale == 0.0 {
-        return 0.0;
-    }
     let (count, free) = (solution.residuals.len() as f64, (solution.linear.len() + solution.nonlinear.len()) as f64);
     let units: Vec<f64> = solution.residuals.iter().map(|r| r / scale).collect();
     let influence: f64 = units.iter().map(|u| (u * weight(loss, *u)).powi(2)).sum();
