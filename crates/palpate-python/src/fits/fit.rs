@@ -273,6 +273,7 @@ shown! {
     /// of : str
     ///     Band of the "curve", or of a "sample" with the noise of the fitted ones: with weights that of those before and after it,
     ///     linear in between.
+    ///     Under a robust loss too the noise of a "sample" is that of all measured ones, outliers included.
     ///
     /// Returns
     /// -------

@@ -37,7 +37,8 @@ impl Fit {
         self.predictions(elapsed, |_, _| 0.0)
     }
 
-    /// What one more sample would show there: the curve with its interval, and noise on top.
+    /// What one more sample would show there: the curve with its interval, and noise on top. Under a robust loss too it is a sample as those measured,
+    /// outliers included.
     #[must_use]
     pub fn predict_sample(&self, elapsed: f64) -> Estimate {
         self.predict_samples(&[elapsed]).swap_remove(0)

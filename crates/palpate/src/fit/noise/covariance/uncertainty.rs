@@ -40,7 +40,8 @@ pub struct Uncertainty {
     pub confidence: f64,
     /// N − p.
     pub freedom: f64,
-    /// Standard deviation of the noise in the unit of the signal; of a sample of mean weight if they have weights.
+    /// Standard deviation of the noise in the unit of the signal, outliers included under a robust loss; of a sample of mean weight if they have
+    /// weights.
     pub deviation: f64,
     /// Covariance in the order of `parameters`: squares of standard errors, with the correlations of the mean over the models.
     pub covariance: Vec<Vec<f64>>,
