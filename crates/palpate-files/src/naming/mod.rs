@@ -23,7 +23,7 @@ pub(crate) use names::{
     rank_of_name, topic_and_field, words,
 };
 pub use quantity::Quantity;
-pub(crate) use rheometry::rank_in_rheometry;
+pub(crate) use rheometry::{names_strain, names_true_measure, rank_in_rheometry};
 pub(crate) use stated_units::stated_units;
 pub use unit_words::unit_factor;
 pub(crate) use unit_words::{is_share, is_unit_in_words, unit_behind_number, volts_are};

@@ -5,7 +5,7 @@ use super::{
     names::{measured, words},
     quantity::Quantity,
     unit_words::unit_factor,
-    vocabulary::{STRAINS, is_listed, is_other},
+    vocabulary::{STRAINS, TRUE_CHARACTERS, TRUE_MEASURES, is_listed, is_other},
 };
 
 /// Words that name the quantity, and names that are signs for it.
@@ -38,6 +38,20 @@ fn signs(quantity: Quantity) -> Option<Signs> {
         Quantity::Angle => of(ANGLES, "φ θ", false),
         Quantity::Time | Quantity::Displacement | Quantity::Force | Quantity::Stress => None,
     }
+}
+
+/// Whether a name is that of a strain over time, whatever its unit.
+pub(crate) fn names_strain(name: &str) -> bool {
+    let words = words(measured(name));
+    let has = |list: &str| words.iter().any(|word| is_listed(word, list));
+    let other = |word: &String| is_other(word) && !is_listed(word, STRAINS);
+    has(DEFORMATIONS) && !has(NOT_OVER_TIME) && !words.iter().any(other)
+}
+
+/// Whether a name says a true stress or a true strain, which are those of the section and the length as they are.
+pub(crate) fn names_true_measure(name: &str) -> bool {
+    let is_one = words(measured(name)).iter().any(|word| is_listed(word, TRUE_MEASURES));
+    is_one || TRUE_CHARACTERS.split_whitespace().any(|part| name.contains(part))
 }
 
 /// How well a column names such a quantity; 0 is best.

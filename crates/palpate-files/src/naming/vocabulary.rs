@@ -95,6 +95,14 @@ const OTHER: &str = "goal target set setpoint command commanded cmd demand desir
 /// Beginnings of German words for what was commanded, not measured: `Sollweg`, `Sollkraft`, `Sollwert`.
 pub(crate) const COMMANDED: &str = "soll vorgabe";
 
+/// Words of a stress on the section as it is and of a strain of the length as it is: true, Cauchy, Hencky, logarithmic.
+pub(crate) const TRUE_MEASURES: &str = "true cauchy hencky logarithmic log ln natural wahr wahre wahrer wahres logarithmisch logarithmische \
+    vrai vraie rationnelle logarithmique verdadero verdadera real logarítmica logaritmica vero vera reale истинное истинная истинные \
+    логарифмическая";
+
+/// The same in Chinese, Japanese and Korean.
+pub(crate) const TRUE_CHARACTERS: &str = "真应 真應 真实应 真応 真ひずみ 対数 对数 진응력 진변형";
+
 /// Words of a time that begins anew with each part of a test.
 pub(crate) const OF_A_PART: &str = "step action interval segment intervalle abschnitt schritt étape etape";
 

@@ -255,6 +255,15 @@ impl<'a> Chooser<'a> {
         Some(ColumnError::unit(column, format!("columns.{quantity}.unit"), UnitProblem::Multiples(quantity)))
     }
 
+    /// Stress and strain of a file are true ones.
+    pub(super) fn true_measures(&self) -> ColumnError {
+        let of = |quantity| {
+            let column = recognise::true_measure(&self.part.columns, quantity)?;
+            recognise::candidates(&self.part.columns, quantity).is_empty().then(|| (quantity, column.into()))
+        };
+        ColumnError::TrueMeasures([Quantity::Stress, Quantity::Strain].into_iter().filter_map(of).collect())
+    }
+
     /// The number of a column of heights of a cantilever's base, a measured one before others.
     fn height(&self) -> Option<usize> {
         let name = |column: &ColumnInfo| column.name.as_ref().map_or_else(String::new, |name| name.to_lowercase());

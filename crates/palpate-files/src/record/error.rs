@@ -88,6 +88,13 @@ pub enum ColumnError {
         "{0}: expected force and displacement for a body whose contact area changes, found stress, strain, a modulus or a compliance"
     )]
     NoSection(NamedColumn),
+    /// Stress or strain of the section and the length as they are, which those of the body as described make no force and displacement of.
+    #[error(
+        "{}: expected engineering stress and strain, found true {}",
+        listed(.0.iter().map(|(_, column)| column), ", "),
+        few(.0.iter().map(|(quantity, _)| quantity.to_string()), 2, " and ")
+    )]
+    TrueMeasures(Vec<(Quantity, NamedColumn)>),
     /// A test of a rheometer in oscillation, by its storage modulus.
     #[error("{0}: expected a test with a hold, found amplitudes of an oscillation")]
     Oscillation(NamedColumn),
@@ -198,6 +205,7 @@ impl ColumnError {
             Self::NoSection(..) => {
                 "choose a column of force, or describe the body as a strip, cylinder or block".to_owned()
             }
+            Self::TrueMeasures(columns) => snippet::of_true_measures(columns),
             Self::Oscillation(..) | Self::FlowCurve { .. } => {
                 "choose a test of relaxation or creep; if this is one, name its columns, such as columns.stress and columns.strain"
                     .to_owned()

@@ -9,6 +9,7 @@ use super::{
 use crate::{
     description::{ColumnChoice, TestDescription},
     naming::Quantity,
+    table::recognise,
 };
 
 /// Where the time of a record comes from.
@@ -39,10 +40,16 @@ impl<'a> Chooser<'a> {
                 return Ok(Some(found));
             }
         }
+        if recognise::true_measure(&self.part.columns, Quantity::Stress).is_some() {
+            return Err(self.true_measures());
+        }
         // A creep under a stress that is constant, and perhaps not given.
         let creeps = [Quantity::Compliance, Quantity::Strain].map(|quantity| self.find(quantity, None));
         match test.columns.strain.is_some() || creeps.into_iter().any(|found| matches!(found, Ok(Some(_)))) {
             true => Ok(None),
+            false if recognise::true_measure(&self.part.columns, Quantity::Strain).is_some() => {
+                Err(self.true_measures())
+            }
             false => Err(self.missing(Quantity::Force)),
         }
     }
@@ -67,9 +74,18 @@ impl<'a> Chooser<'a> {
             match self.find(*quantity, None) {
                 Ok(None) => {}
                 // Of several strains none is needed.
-                Err(ColumnError::Ambiguous(Quantity::Strain, _)) => {}
+                Err(ColumnError::Ambiguous(Quantity::Strain, _)) => return Ok(None),
                 found => return found,
             }
+        }
+        // Who names the column of the force, but none of the displacement, has no displacement.
+        let is_force_named = load.is_some_and(|load| {
+            let is_named = load.choice.is_some_and(|choice| choice.column.is_some());
+            is_named && load.role.measured() == Quantity::Force
+        });
+        let may_be_strain = beside.contains(&Quantity::Strain) && !is_force_named;
+        if may_be_strain && recognise::true_measure(&self.part.columns, Quantity::Strain).is_some() {
+            return Err(self.true_measures());
         }
         Ok(None)
     }

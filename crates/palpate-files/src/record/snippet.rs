@@ -254,6 +254,17 @@ pub(super) fn of_share(key: &str, quantity: Quantity, column: &NamedColumn) -> S
     format!("state what one per cent is{strain}; of a full scale of 500 {unit} it is 5 {unit}{stated}")
 }
 
+/// What helps where stress and strain are true ones, and what says that they are not.
+pub(super) fn of_true_measures(columns: &[(Quantity, NamedColumn)]) -> String {
+    let stated = option(columns.iter().map(|(quantity, column)| entry(*quantity, column, None, true)));
+    let lines = columns.iter().map(|(quantity, column)| format!("[columns.{quantity}]\ncolumn = {}", column.number));
+    format!(
+        "export engineering (nominal) stress and strain, or force and displacement; if these are engineering ones, name them: {stated}, or in \
+         a test description:\n{}",
+        lines.collect::<Vec<_>>().join("\n")
+    )
+}
+
 /// The lines that say the unit under `key`, such as `columns.force.unit`.
 pub(super) fn of_unit(key: &str, unit: &str, column: &NamedColumn) -> String {
     let (table, key) = key.rsplit_once('.').unwrap_or(("columns", key));

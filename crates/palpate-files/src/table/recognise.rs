@@ -6,7 +6,8 @@ use super::part::{ColumnInfo, ColumnKind};
 use crate::naming::{
     AXIAL, BENDING, EXTENSOMETERS, OTHER_CHARACTERS, Quantity, RATES_OF_SHEAR, SHEAR, SHEAR_RATES, SIGNS_OF_LENGTH,
     STORAGE, STRAINS, VOCABULARY, is_listed, is_other, is_share, measured, measures_another, names_another,
-    names_multiples_of, own_topics, rank_in_rheometry, rank_of_name, unit_factor, words,
+    names_multiples_of, names_strain, names_true_measure, own_topics, rank_in_rheometry, rank_of_name, unit_factor,
+    words,
 };
 
 /// The columns that name `quantity` best: one if it is clear, several if it is not, none if none does.
@@ -89,6 +90,15 @@ const DATES: [&str; 3] = ["date", "datetime", "datum"];
 
 /// How well a column names a quantity; 0 is best.
 fn rank(column: &ColumnInfo, quantity: Quantity) -> Option<u8> {
+    // The section of the body as described makes no force of a true stress, nor its length a displacement of a true strain.
+    let is_other_measure = || {
+        matches!(quantity, Quantity::Stress | Quantity::Strain)
+            && column.name.as_deref().is_some_and(names_true_measure)
+    };
+    rank_as_named(column, quantity).filter(|_| !is_other_measure())
+}
+
+fn rank_as_named(column: &ColumnInfo, quantity: Quantity) -> Option<u8> {
     let is_date = column.kind == ColumnKind::DateTime && quantity == Quantity::Time;
     if column.kind != ColumnKind::Number && !is_date {
         return None;
@@ -198,6 +208,18 @@ pub(crate) fn strain(columns: &[ColumnInfo]) -> Option<&ColumnInfo> {
     let named = |name: &str| words(measured(name)).iter().any(|word| is_listed(word, STRAINS));
     let is_strain = |column: &&ColumnInfo| column.name.as_deref().is_some_and(named);
     columns.iter().filter(|column| column.kind == ColumnKind::Number).find(is_strain)
+}
+
+/// A column of a true stress or a true strain.
+pub(crate) fn true_measure(columns: &[ColumnInfo], quantity: Quantity) -> Option<&ColumnInfo> {
+    let is_one = |column: &&ColumnInfo| {
+        let Some(name) = column.name.as_deref().filter(|name| names_true_measure(name)) else {
+            return false;
+        };
+        let without_unit = || quantity == Quantity::Strain && column.unit.is_none() && names_strain(name);
+        rank_as_named(column, quantity).is_some() || without_unit()
+    };
+    columns.iter().filter(|column| column.kind == ColumnKind::Number).find(is_one)
 }
 
 /// A storage modulus in numbers: the rows are those of an oscillation.

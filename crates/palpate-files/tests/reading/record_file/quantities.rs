@@ -73,6 +73,65 @@ fn a_strain_times_the_length_is_the_displacement() {
     );
 }
 
+/// True stress and true strain were taken for engineering ones: at a strain of 0.2 the modulus was wrong by a third.
+#[test]
+fn true_stress_and_strain_are_no_force_and_displacement() {
+    let block = "specimen = { shape = \"block\", area = \"400 mm^2\", length = \"20 mm\" }";
+    let rows = "0,0,0\n1,10,4\n2,10,3\n";
+    for (strain, stress) in [
+        ("True strain (%)", "True stress (kPa)"),
+        ("Strain (true) (%)", "Stress (true) (kPa)"),
+        ("true_strain_pct", "TrueStress (kPa)"),
+        ("True strain", "True stress (kPa)"),
+        ("wahre Dehnung (%)", "wahre Spannung (kPa)"),
+        ("Hencky strain (-)", "Cauchy stress (kPa)"),
+        ("log strain (mm/mm)", "Cauchy-Spannung (kPa)"),
+        ("Déformation logarithmique (%)", "Contrainte vraie (kPa)"),
+        ("Deformación verdadera (%)", "Esfuerzo verdadero (kPa)"),
+        ("истинная деформация (%)", "истинное напряжение (kPa)"),
+        ("真ひずみ (%)", "真応力 (kPa)"),
+    ] {
+        let error = read(format!("Time (s),{strain},{stress}\n{rows}"), block).unwrap_err();
+        let (text, hint) = (error.to_string(), error.hint().unwrap());
+        assert!(text.contains("expected engineering stress and strain, found true stress"), "{strain}: {text}");
+        assert!(text.contains("column 3 ("), "{strain}: {text}");
+        assert!(hint.contains("export engineering (nominal) stress and strain, or force and displacement"), "{hint}");
+    }
+    // One that is beside a force or a stress is not passed over.
+    for (header, named) in [
+        (
+            "True strain (%),Load (N)",
+            "column 2 (True strain): expected engineering stress and strain, found true strain",
+        ),
+        ("True strain,Stress (kPa)", "column 2 (True strain): expected"),
+        (
+            "Strain (%),True stress (kPa)",
+            "column 3 (True stress): expected engineering stress and strain, found true stress",
+        ),
+        ("Travel (mm),True stress (kPa)", "column 3 (True stress): expected"),
+    ] {
+        let error = read(format!("Time (s),{header}\n{rows}"), block).unwrap_err();
+        assert!(error.to_string().contains(named), "{header}: {error}");
+    }
+    // Who names the columns decides.
+    let table = format!("Time (s),True strain (%),True stress (kPa)\n{rows}");
+    let error = read(&table, block).unwrap_err();
+    let option = "--columns \"stress=True stress,strain=True strain\"";
+    assert!(error.hint().unwrap().contains(option), "{:?}", error.hint());
+    let stated = error.hint().unwrap().split_once('\n').unwrap().1.to_owned();
+    let file = read(&table, &format!("{block}\n{stated}")).unwrap();
+    near(file.record.displacement().unwrap(), &[0.0, 2e-3, 2e-3]);
+    near(file.record.force(), &[0.0, 1.6, 1.2]);
+    // What the body was measured by goes before it, and is enough.
+    let rows = "0,0,0,0,0\n1,10,4,9.5,4.4\n2,10,3,9.5,3.3\n";
+    let beside = format!("Time (s),Strain (%),Stress (kPa),True strain (%),True stress (kPa)\n{rows}");
+    near(read(&beside, block).unwrap().record.force(), &[0.0, 1.6, 1.2]);
+    let measured = format!("Time (s),Travel (mm),Load (N),True strain (%),True stress (kPa)\n{rows}");
+    near(read(&measured, block).unwrap().record.displacement().unwrap(), &[0.0, 0.01, 0.01]);
+    let alone = "Time (s),True strain (%),Load (N)\n0,0,0\n1,10,4\n2,10,3\n";
+    assert_eq!(read(alone, "columns.force.column = 3").unwrap().record.displacement(), None);
+}
+
 /// Torque and angle by the formulas of the geometry: shear stress 2T/(πR³) and 3T/(2πR³), shear strain φR/h and φ/α.
 #[test]
 fn torque_and_angle_are_those_of_the_sample_of_a_rheometer() {
