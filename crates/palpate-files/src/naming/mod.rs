@@ -23,11 +23,11 @@ pub(crate) use names::{
     rank_of_name, topic_and_field, words,
 };
 pub use quantity::Quantity;
-pub(crate) use rheometry::{names_strain, names_true_measure, rank_in_rheometry};
+pub(crate) use rheometry::{is_strain_in, names_strain, names_true_measure, rank_in_rheometry};
 pub(crate) use stated_units::stated_units;
 pub use unit_words::unit_factor;
 pub(crate) use unit_words::{is_share, is_unit_in_words, unit_behind_number, volts_are};
 pub(crate) use vocabulary::{
     AXIAL, BENDING, COUNTS, EXTENSOMETERS, MEANS, OTHER_CHARACTERS, RATES_OF_SHEAR, SHEAR, SHEAR_RATES,
-    SIGNS_OF_LENGTH, STORAGE, STRAINS, UNCALIBRATED, VOCABULARY, is_listed, is_other, names_statistic,
+    SIGNS_OF_LENGTH, STORAGE, STRAIN_GAUGES, STRAINS, UNCALIBRATED, VOCABULARY, is_listed, is_other, names_statistic,
 };

@@ -48,6 +48,11 @@ pub(crate) fn names_strain(name: &str) -> bool {
     has(DEFORMATIONS) && !has(NOT_OVER_TIME) && !words.iter().any(other)
 }
 
+/// Whether a name is that of a strain, and `unit` one of strains.
+pub(crate) fn is_strain_in(name: &str, unit: &str) -> bool {
+    unit_factor(unit, Quantity::Strain.dimension()).is_some() && names_strain(name)
+}
+
 /// Whether a name says a true stress or a true strain, which are those of the section and the length as they are.
 pub(crate) fn names_true_measure(name: &str) -> bool {
     let is_one = words(measured(name)).iter().any(|word| is_listed(word, TRUE_MEASURES));

@@ -55,6 +55,14 @@ const SYNONYMS: [(Dimension, &str); 5] = [
     ),
 ];
 
+/// Words and spellings for shares, most of them of strains, with their factors.
+const STRAINS: [(f64, &str); 4] = [
+    (1.0, "- mm/mm m/m cm/cm µm/µm um/um in/in inch/inch ft/ft strain"),
+    (1e-2, "percent pct"),
+    (1e-3, "mm/m millistrain mstrain mε"),
+    (1e-6, "µm/m um/m µin/in uin/in microstrain microstrains µstrain ustrain µε uε µe"),
+];
+
 /// Symbols in Cyrillic letters whose meaning hangs on their case.
 const CYRILLIC: [(&str, &str); 4] = [("мН", "mN"), ("мкН", "uN"), ("МПа", "MPa"), ("мПа", "mPa")];
 
@@ -87,9 +95,10 @@ fn plain_factor(unit: &str, dimension: Dimension) -> Option<f64> {
             return Some(1e-9);
         }
         if dimension == Dimension::Share
-            && matches!(word.as_str(), "-" | "mm/mm" | "m/m" | "percent" | "pct" | "strain")
+            && let Some((factor, _)) =
+                STRAINS.iter().find(|(_, words)| is_listed(&word.replace('\u{3bc}', "\u{b5}"), words))
         {
-            return Some(if word.starts_with('p') { 1e-2 } else { 1.0 });
+            return Some(*factor);
         }
         if matches!(dimension, Dimension::Angle) && matches!(word.as_str(), "degree" | "degrees" | "radian" | "radians")
         {
@@ -264,6 +273,27 @@ mod tests {
             "100 N", "0.001 N", "10 N", "x10", "10^3", "N/10", "N^-1", "x N", "10^x N", "x0 N", "x-1 N", "10^999 N",
         ] {
             assert_eq!(unit_factor(unit, Dimension::Force), None, "{unit}");
+        }
+    }
+
+    /// A strain in `in/in` or `µε` was passed over.
+    #[test]
+    fn strains_have_units_of_their_own() {
+        for (unit, factor) in [
+            ("in/in", 1.0),
+            ("-", 1.0),
+            ("microstrain", 1e-6),
+            ("ustrain", 1e-6),
+            ("\u{b5}\u{3b5}", 1e-6),
+            ("\u{3bc}\u{3b5}", 1e-6),
+            ("µm/m", 1e-6),
+            ("mm/m", 1e-3),
+            ("Percent", 1e-2),
+        ] {
+            assert_eq!(unit_factor(unit, Dimension::Share), Some(factor), "{unit}");
+        }
+        for unit in ["mm", "strains", "e", "V", ""] {
+            assert_eq!(unit_factor(unit, Dimension::Share), None, "{unit}");
         }
     }
 

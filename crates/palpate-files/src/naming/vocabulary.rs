@@ -138,6 +138,9 @@ pub(crate) const SIGNS_OF_LENGTH: &str = "x y z d s u w h δ delta dx dz dl Δl"
 pub(crate) const EXTENSOMETERS: &str = "extensometer extensomètre extensometre extensómetro estensometro dehnungsaufnehmer \
     dehnungsmesser wegaufnehmer feindehnung экстензометр 신율계 引伸计 伸び計";
 
+/// Words of a strain gauge, which may be that of a load cell.
+pub(crate) const STRAIN_GAUGES: &str = "gauge gauges gage gages dms jauge galga";
+
 /// Words of quantities that some machines give as a length, though they mean a ratio.
 pub(crate) const STRAINS: &str = "strain dehnung";
 

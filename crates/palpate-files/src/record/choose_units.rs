@@ -69,7 +69,7 @@ impl Chooser<'_> {
 
     /// The one column without a unit and of unknown name, where no column is the displacement.
     fn unnamed_travel(&self, found: &[Found<'_>]) -> Option<NamedColumn> {
-        let travels = found.iter().any(|found| found.role.measured() == Quantity::Displacement);
+        let travels = found.iter().any(|found| found.role.measured().is_travel());
         let is_free = |column: &&ColumnInfo| {
             column.unit.is_none()
                 && column.name.as_deref().is_some_and(|name| topic_and_field(name).is_none())

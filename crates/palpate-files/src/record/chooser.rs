@@ -112,6 +112,13 @@ impl<'a> Chooser<'a> {
         let column = match named {
             Some(named) => Some(self.named(&format!("columns.{quantity}.column"), named)?),
             None => match recognise::candidates(&self.part.columns, quantity)[..] {
+                // The unit that is stated is that of a strain without one.
+                [] if quantity == Quantity::Strain && choice.is_some_and(|choice| choice.unit.is_some()) => {
+                    match recognise::strains_without_unit(&self.part.columns)[..] {
+                        [only] => Some(only),
+                        _ => None,
+                    }
+                }
                 [] => None,
                 [only] => Some(only),
                 ref several => {

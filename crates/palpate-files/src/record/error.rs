@@ -227,6 +227,10 @@ impl UnitProblem {
                 if is_share(unit) {
                     return snippet::of_share(key, *quantity, column);
                 }
+                if *quantity == Quantity::Displacement && unit_factor(unit, Dimension::Share).is_some() {
+                    let strain = snippet::of_unit_stated("columns.strain.unit", unit, column);
+                    return format!("if it is a strain, state it{strain}");
+                }
                 let multiple = unit_behind_number(unit).map(|_| format!("x{unit}"));
                 if let Some(multiple) = multiple {
                     let stated = snippet::of_unit_stated(key, &multiple, column);

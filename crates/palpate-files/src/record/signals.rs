@@ -87,7 +87,13 @@ impl<'a> Chooser<'a> {
         if may_be_strain && recognise::true_measure(&self.part.columns, Quantity::Strain).is_some() {
             return Err(self.true_measures());
         }
-        Ok(None)
+        // A fraction or per cent: its unit is requested, unless a column of another name may be the displacement.
+        let strains = recognise::strains_without_unit(&self.part.columns);
+        let is_unclear = || recognise::possible_displacements(&self.part.columns).next().is_some();
+        Ok(match strains[..] {
+            [strain] if may_be_strain && !is_unclear() => Some(Found::of(Role::Values(Quantity::Strain), strain, None)),
+            _ => None,
+        })
     }
 
     /// The time: a column, or the rows at a rate that is stated or that the file gives.

@@ -179,6 +179,12 @@ pub(super) fn of_missing_units(
     let quantity = Quantity::Displacement;
     let usual = quantity.usual_unit();
     let lines = without.iter().map(|(key, unit, column)| of_unit(key, unit, column));
+    let of_strain = |key: &String| quantity_of(key) == Some(Quantity::Strain);
+    let ratio = if without.iter().any(|(key, ..)| of_strain(key)) {
+        ", a strain in % or as a ratio in 1"
+    } else {
+        ""
+    };
     let travels = travel.map(|column| {
         format!(
             "[columns.{quantity}]\nunit = \"{usual}\"\ncolumn = {}  # check; omit if there is none",
@@ -189,7 +195,7 @@ pub(super) fn of_missing_units(
     let stated = without.iter().map(|(key, unit, column)| Some(entry(quantity_of(key)?, column, Some(unit), true)));
     let travels = travel.map(|column| Some(entry(quantity, column, Some(usual), true)));
     match stated.chain(travels).collect::<Option<Vec<_>>>() {
-        Some(stated) => format!("state it: {}, or in a test description:\n{lines}", option(stated)),
+        Some(stated) => format!("state it{ratio}: {}, or in a test description:\n{lines}", option(stated)),
         None => format!("state it in a test description:\n{lines}"),
     }
 }

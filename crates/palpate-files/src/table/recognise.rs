@@ -5,9 +5,9 @@ use palpate::units::Dimension;
 use super::part::{ColumnInfo, ColumnKind};
 use crate::naming::{
     AXIAL, BENDING, EXTENSOMETERS, OTHER_CHARACTERS, Quantity, RATES_OF_SHEAR, SHEAR, SHEAR_RATES, SIGNS_OF_LENGTH,
-    STORAGE, STRAINS, VOCABULARY, is_listed, is_other, is_share, measured, measures_another, names_another,
-    names_multiples_of, names_strain, names_true_measure, own_topics, rank_in_rheometry, rank_of_name, unit_factor,
-    words,
+    STORAGE, STRAIN_GAUGES, STRAINS, VOCABULARY, is_listed, is_other, is_share, measured, measures_another,
+    names_another, names_multiples_of, names_strain, names_true_measure, own_topics, rank_in_rheometry, rank_of_name,
+    unit_factor, words,
 };
 
 /// The columns that name `quantity` best: one if it is clear, several if it is not, none if none does.
@@ -173,12 +173,13 @@ pub(crate) fn multiples(columns: &[ColumnInfo], quantity: Quantity) -> Option<&C
     columns.iter().filter(|column| column.kind == ColumnKind::Number).find(says)
 }
 
-/// A column that is named after the displacement and holds shares, of a full scale or of a length, with their unit.
+/// A column that is named after the displacement and holds shares, of a full scale or of a length, or a ratio, with their unit.
 pub(crate) fn share_of_displacement(columns: &[ColumnInfo]) -> Option<(&ColumnInfo, &str)> {
     let vocabulary = VOCABULARY.iter().find(|words| words.quantity == Quantity::Displacement)?;
     columns.iter().filter(|column| column.kind == ColumnKind::Number).find_map(|column| {
         let (name, unit) = (column.name.as_deref()?, column.unit.as_deref()?);
-        (is_share(unit) && rank_of_name(name, vocabulary)? < 4).then_some((column, unit))
+        let is_ratio = is_share(unit) || unit_factor(unit, Dimension::Share).is_some();
+        (is_ratio && rank_of_name(name, vocabulary)? < 4).then_some((column, unit))
     })
 }
 
@@ -220,6 +221,21 @@ pub(crate) fn true_measure(columns: &[ColumnInfo], quantity: Quantity) -> Option
         rank_as_named(column, quantity).is_some() || without_unit()
     };
     columns.iter().filter(|column| column.kind == ColumnKind::Number).find(is_one)
+}
+
+/// Columns of strains whose header gives no unit, or none that is known.
+pub(crate) fn strains_without_unit(columns: &[ColumnInfo]) -> Vec<&ColumnInfo> {
+    let of_another = |unit: &str| {
+        let others = [Dimension::Voltage, Dimension::Rate, Dimension::Angle, Dimension::PerPressure];
+        measures_another(unit, Quantity::Strain) || others.iter().any(|other| unit_factor(unit, *other).is_some())
+    };
+    let is_one = |column: &&ColumnInfo| {
+        let name = column.name.as_deref().filter(|name| own_topics::holds(name).is_none());
+        name.is_some_and(|name| names_strain(name) && !names_true_measure(name))
+            && !column.unit.as_deref().is_some_and(of_another)
+            && !has_word(column, STRAIN_GAUGES)
+    };
+    columns.iter().filter(|column| column.kind == ColumnKind::Number).filter(is_one).collect()
 }
 
 /// A storage modulus in numbers: the rows are those of an oscillation.

@@ -132,6 +132,66 @@ fn true_stress_and_strain_are_no_force_and_displacement() {
     assert_eq!(read(alone, "columns.force.column = 3").unwrap().record.displacement(), None);
 }
 
+/// A strain whose header gave no unit, or one that was not known, was passed over, and with it the body: the force alone was analysed.
+#[test]
+fn a_strain_without_a_known_unit_is_requested_about() {
+    let block = "specimen = { shape = \"block\", area = \"400 mm^2\", length = \"20 mm\" }";
+    let rows = "0,0,0\n1,0.1,4\n2,0.1,3\n";
+    for (strain, factor) in [
+        ("Strain (in/in)", 1.0),
+        ("Strain (mm/m)", 1e-3),
+        ("Strain (microstrain)", 1e-6),
+        ("Strain (ustrain)", 1e-6),
+        ("Strain (\u{b5}\u{3b5})", 1e-6),
+        ("Dehnung (\u{3bc}\u{3b5})", 1e-6),
+        ("Strain [µm/m]", 1e-6),
+        ("strain_percent", 1e-2),
+        ("Strain %", 1e-2),
+    ] {
+        let file = read(format!("Time (s),{strain},Load (N)\n{rows}"), block).unwrap();
+        near(file.record.displacement().unwrap(), &[0.0, 2e-3 * factor, 2e-3 * factor]);
+    }
+    for (header, found) in [
+        ("Strain,Load (N)", "expected a unit for column 2 (Strain), found none in the header"),
+        ("Dehnung,Spannung (kPa)", "expected a unit for column 2 (Dehnung), found none in the header"),
+        (
+            "Compressive strain,Stress",
+            "expected a unit for column 2 (Compressive strain), column 3 (Stress), found none",
+        ),
+        ("Strain (furlong),Load (N)", "column 2 (Strain (furlong)): \"furlong\" is not a unit of strain"),
+        ("Strain [furlong],Load (N)", "column 2 (Strain): \"furlong\" is not a unit of strain"),
+        ("Extension (mm/mm),Load (N)", "column 2 (Extension): \"mm/mm\" is not a unit of displacement"),
+    ] {
+        let table = format!("Time (s),{header}\n{rows}");
+        let error = read(&table, block).unwrap_err();
+        assert!(error.to_string().contains(found), "{header}: {error}");
+        let hint = error.hint().unwrap();
+        assert!(hint.contains("--columns \"strain="), "{header}: {hint}");
+        let stated = hint.split_once('\n').unwrap().1.to_owned();
+        assert!(read(&table, &format!("{block}\n{stated}")).unwrap().record.displacement().is_some(), "{header}");
+    }
+    let table = format!("Time (s),Strain,Load (N)\n{rows}");
+    let hint = read(&table, block).unwrap_err().hint().unwrap();
+    assert!(
+        hint.starts_with("state it, a strain in % or as a ratio in 1: --columns \"strain=Strain:%\""),
+        "{hint}"
+    );
+    for (unit, factor) in [("1", 1.0), ("%", 1e-2), ("microstrain", 1e-6)] {
+        let mut test = TestDescription::default();
+        test.columns.lay_over(&NamedColumns::parse(&format!("strain=Strain:{unit}")).unwrap().columns);
+        assert!(test.columns.strain.is_some());
+        let file = read(&table, &format!("{block}\ncolumns.strain = {{ column = 2, unit = \"{unit}\" }}")).unwrap();
+        near(file.record.displacement().unwrap(), &[0.0, 2e-3 * factor, 2e-3 * factor]);
+    }
+    // A displacement beside it is enough, as is a force that is named alone; nor is a strain gauge a strain of the body.
+    let beside = "Time (s),Strain,Travel (mm),Load (N)\n0,0,0,0\n1,0.1,5,4\n2,0.1,5,3\n";
+    near(read(beside, block).unwrap().record.displacement().unwrap(), &[0.0, 5e-3, 5e-3]);
+    let alone = [(table.as_str(), "columns.force.column = 3"), ("Time (s),Strain gauge,Load (N)\n0,0,0\n1,1,4\n", "")];
+    for (table, test) in alone {
+        assert_eq!(read(table, test).unwrap().record.displacement(), None, "{table}");
+    }
+}
+
 /// Torque and angle by the formulas of the geometry: shear stress 2T/(πR³) and 3T/(2πR³), shear strain φR/h and φ/α.
 #[test]
 fn torque_and_angle_are_those_of_the_sample_of_a_rheometer() {
