@@ -35,6 +35,8 @@ pub struct Columns {
 pub struct IgnoredLines {
     /// How many blank lines there are, wherever they stand.
     pub blank: usize,
+    /// How many lines behind the first row are comments.
+    pub comments: usize,
     /// Lines at the very end that are no data.
     pub footer: Option<Footer>,
     /// Rows of data in which a cell holds no number.

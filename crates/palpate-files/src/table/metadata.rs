@@ -58,6 +58,16 @@ pub(crate) fn without_comment_mark(text: &str) -> &str {
     if inside.len() == bare.len() { text } else { inside.trim_start_matches(' ') }
 }
 
+/// Whether a line begins with a mark that makes it a comment in other programs, and not with the error of a spreadsheet (`#N/A`, `#REF!`).
+pub(crate) fn is_comment(line: &[u8]) -> bool {
+    let bare = line.trim_ascii_start();
+    let is_error = || {
+        let cell = bare.split(|byte| b",;\t ".contains(byte)).next().unwrap_or_default();
+        number::is_absent(cell) || cell.ends_with(b"!") || cell.ends_with(b"?")
+    };
+    bare.starts_with(b"//") || bare.starts_with(b"%") || bare.starts_with(b"#") && !is_error()
+}
+
 /// The two sides of every `name=value` of a line that holds nothing else.
 fn equations<'a>(row: &[&'a str]) -> Option<Vec<(&'a str, &'a str)>> {
     let parts = row.iter().flat_map(|cell| cell.split(';'));

@@ -118,6 +118,9 @@ pub(super) fn signal_facts(file: &RecordFile, aligned: Option<&SignalReport>) ->
     }
     value_facts(&mut out, "force", &values.force, (1.0, "N"));
     record.corrections().iter().for_each(|done| out.push_str(&wrapped(&format!("done: {done}"))));
+    if file.ignored.comments > 0 {
+        let _ = writeln!(out, "{} below the header skipped", counted(file.ignored.comments, "comment line"));
+    }
     if let Some(footer) = &file.ignored.footer {
         let _ = writeln!(out, "{} lines after the data were skipped, from line {}", footer.lines, footer.first_line);
     }

@@ -20,9 +20,9 @@ const TRIES: usize = 3;
 /// no more than [`MOST_ROWS`](crate::table::MOST_ROWS) rows are kept: of a longer file successive rows are averaged. `progress` is given the bytes done and the bytes there are,
 /// once for every quarter of a mebibyte or so for each processor and once at the end.
 ///
-/// Blank lines are passed over and counted. Lines at the very end that do not start like data are
+/// Blank lines and comments (`#`, `%`, `//`) are passed over and counted. Lines at the very end that do not start like data are
 /// passed over as a footer, up to 50 of them. Rows in which a cell is empty or says that there is no number (`n/a`, `NaN`, `-`)
-/// are left out and counted where they are at most 3 % of all, and so are rows that hold nothing in any chosen column, however many. Every other line must be a full row. Of a packed file, blank lines and those that
+/// are left out and counted where they are at most 3 % of all, and so are rows that hold nothing in any chosen column, however many. Every other line must be a full row. Of a packed file, blank lines, comments and those that
 /// are left out have a limit ([`FileProblem::Idle`]).
 ///
 /// # Errors
@@ -93,6 +93,10 @@ pub fn read_columns(
             }
             Err(_) if suspect.is_none() && plan.holds_nothing(line) => {
                 lacking.leave_out_bare(number);
+                idle.pass(line.len(), number, read.rows())?;
+            }
+            Err(_) if suspect.is_none() && plan.is_comment(line) => {
+                read.ignored.comments += 1;
                 idle.pass(line.len(), number, read.rows())?;
             }
             Err(fault) if plan.is_data(line) => return Err(plan.error(fault, line, number)),

@@ -9,7 +9,7 @@
 //! description of the test) then picks columns, and [`read_columns`] streams these as `f64`.
 //!
 //! Nothing is guessed twice and nothing is dropped in silence: a cell that cannot be read is an error that
-//! names its line and column, and the few lines that may be passed over (blank ones, a footer) are
+//! names its line and column, and the few lines that may be passed over (blank ones, comments, a footer) are
 //! counted in [`Columns::ignored`](crate::table::Columns::ignored).
 //!
 //! ```

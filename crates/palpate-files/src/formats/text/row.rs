@@ -6,7 +6,7 @@ use crate::{
     cell::{Cell, Fields, date, number},
     error::{CellPosition, FileError, FileProblem, shorten},
     naming::{names_statistic, words},
-    table::{ColumnKind, LackingRows, Layout, block},
+    table::{ColumnKind, LackingRows, Layout, block, metadata::is_comment},
 };
 
 /// How to read the rows of one file.
@@ -213,6 +213,12 @@ impl<'a> RowPlan<'a> {
             count += 1;
         }
         held > 0 && count >= self.fewest
+    }
+
+    /// Whether a faulty line is a comment: no row of this file begins with a text.
+    pub(crate) fn is_comment(&self, line: &[u8]) -> bool {
+        let first = self.layout.columns.first().map(|column| column.kind);
+        first != Some(ColumnKind::Text) && is_comment(line)
     }
 
     /// Indices of the cells of a line that are to be read and hold no number.

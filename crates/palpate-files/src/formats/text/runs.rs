@@ -144,7 +144,7 @@ fn begins_again_later(
                 return Ok(number > from);
             }
             last = read[0];
-        } else if number > from && !line.trim_ascii().is_empty() && !is_known(line) {
+        } else if number > from && !line.trim_ascii().is_empty() && !is_known(line) && !plan.is_comment(line) {
             return Ok(false);
         }
     }

@@ -190,6 +190,26 @@ fn faulty_first_row_is_no_header() {
     assert!(matches!(error.problem, FileProblem::TextInNumbers { place, .. } if place.line == 2));
 }
 
+/// One line that began with `#` among the rows was refused with the advice to split the file.
+#[test]
+fn comments_between_rows_are_passed_over() {
+    for comment in ["# paused", "#paused, restarted", "# 1.5,2.5", "  // paused", "% paused", "#"] {
+        for at in 1..5 {
+            let mut lines = vec!["Time (s),Force (N)", "0,1.5", "1,2.5", "2,3.5", "3,4.5"];
+            lines.insert(at + usize::from(at < 2), comment);
+            let text = format!("{}\n", lines.join("\n"));
+            let read = read(&text, &[1, 2]).unwrap_or_else(|error| panic!("{text}{error}"));
+            assert_eq!(read.values, [[0.0, 1.0, 2.0, 3.0], [1.5, 2.5, 3.5, 4.5]], "{text}");
+            assert_eq!((read.ignored.comments, read.ignored.footer.is_some()), (1, false), "{text}");
+        }
+    }
+    // The error of a spreadsheet is no comment, and a row of texts that begins so is none.
+    let error = read("Time (s),Force (N)\n0,1.5\n#REF!,2.5\n2,3.5\n", &[1, 2]).expect_err("a row without a time");
+    assert!(error.to_string().contains("line 3"), "{error}");
+    let error = read("Mark,Time (s),Force (N)\n#1,0,1.5\n#2,x,2.5\n#3,2,3.5\n", &[2, 3]).expect_err("a faulty row");
+    assert!(error.to_string().contains("line 3"), "{error}");
+}
+
 #[test]
 fn junk_between_rows() {
     let error = read("t,F\n0,1.5\n1,2.5\nt,F\n0,3.5\n", &[1, 2]).expect_err("two records");
