@@ -111,7 +111,10 @@ fn clipped(record: &Record, column: Column, values: &Values, holds: &[Held]) -> 
     let time = record.time();
     let at_level = |(from, until, _): &Held| {
         let rows = time.partition_point(|t| t < from)..time.partition_point(|t| t <= until);
-        measured[rows].iter().filter(|value| **value == saturation.level).count()
+        measured[rows]
+            .iter()
+            .filter(|value| (**value - saturation.level).abs() <= saturation.spread)
+            .count()
     };
     // A force that the machine holds is commanded.
     let pressed = holds.iter().filter(|(_, _, mode)| column == Column::Force && *mode == Some(HoldMode::ForceHeld));
@@ -297,6 +300,34 @@ mod tests {
         let time: Vec<f64> = (0..170).map(|i| 0.1 * f64::from(i)).collect();
         let travel: Vec<f64> = time.iter().map(|t| sign * at(*t)).collect();
         Record::new(time, Some(travel.clone()), travel).unwrap()
+    }
+
+    /// A load cell clipped at 30 N of 42 N with the noise of its amplifier gave no finding; without noise it did.
+    #[test]
+    fn a_clipped_load_cell_is_stated_with_and_without_noise() {
+        let time: Vec<f64> = (0..3000).map(|i| 0.02 * f64::from(i)).collect();
+        let displacement: Vec<f64> = time.iter().map(|t| 2e-3 * (t - 2.0).clamp(0.0, 2.0)).collect();
+        let decay = (-0.02_f64 / 3.0).exp();
+        let mut transient = 0.0;
+        let mut force = vec![0.0];
+        force.extend(displacement.windows(2).map(|pair| {
+            transient = decay * transient + 7.5e3 * (pair[1] - pair[0]) / 0.02 * 3.0 * (1.0 - decay);
+            5e3 * pair[1] + transient
+        }));
+        let found = |noise: f64, most: f64| {
+            let mut random = crate::random::Rng::new(11);
+            let force = force.iter().map(|force| force.min(most) + noise * random.normal()).collect();
+            let record = Record::new(time.clone(), Some(displacement.clone()), force).unwrap();
+            let analysis = crate::analysis::analyze(&record, &AnalysisOptions::default()).unwrap();
+            analysis.findings.into_iter().find(|finding| finding.code() == "saturated")
+        };
+        for noise in [0.0, 0.005, 0.02, 0.1] {
+            let Some(Finding::Saturated { level, rows, .. }) = found(noise, 30.0) else {
+                panic!("not found under {noise} N");
+            };
+            assert!((level - 30.0).abs() < 0.02 && (145..=155).contains(&rows), "{noise}: {level} {rows}");
+            assert_eq!(found(noise, 100.0), None);
+        }
     }
 
     /// Steps up of a third each and a release in one go looked like a test that begins downwards.

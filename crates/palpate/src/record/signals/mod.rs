@@ -4,10 +4,12 @@
 //! |---|---|
 //! | `stamps.rs` | time stamps: interval, gaps, repeated and reversed ones |
 //! | `values.rs` | measured columns: rows that stray, saturation, rounding |
+//! | `plateau.rs` | plateaus of a force that was clipped before its amplifier |
 //! | `astray.rs` | rows that stray |
 //! | `rounding.rs` | the step that values were rounded to |
 
 mod astray;
+mod plateau;
 mod rounding;
 mod stamps;
 mod values;

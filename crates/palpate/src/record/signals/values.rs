@@ -2,7 +2,11 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::{Astray, Column, bridge, rounding_step_heard};
+use super::{
+    Astray, Column, bridge,
+    plateau::{Plateau, noisy_plateau},
+    rounding_step_heard,
+};
 use crate::statistics::{bounds, noise};
 
 /// What a measured column is like; its unit is that of the column.
@@ -41,6 +45,9 @@ pub struct Strays {
 pub struct Saturation {
     /// The value.
     pub level: f64,
+    /// How far the rows of a column that was clipped before its amplifier lie from the value, which is their mean; else 0.
+    #[serde(default)]
+    pub spread: f64,
     /// Rows at that value in runs of five or more.
     pub rows: usize,
     /// Rows of the longest run.
@@ -80,7 +87,9 @@ impl Values {
         let rows = Astray::of(values).those(|run| column == Column::Force || run.len() == 1);
         hear()?;
         let repeats = values.windows(2).filter(|pair| pair[0] == pair[1]).count();
-        let saturation = saturation(column, values, other);
+        let exact = saturation(column, values, other);
+        let noisy = || noisy_plateau(values, other.filter(|_| column == Column::Force)?).map(Saturation::from);
+        let saturation = exact.filter(|found| found.clipped).or_else(noisy).or(exact);
         let step = rounding_step_heard(values, hear)?;
         Ok(Self {
             not_finite,
@@ -94,6 +103,19 @@ impl Values {
             repeating: repeats as f64 / values.len().saturating_sub(1).max(1) as f64,
             range: if high >= low { high - low } else { 0.0 },
         })
+    }
+}
+
+impl From<Plateau> for Saturation {
+    fn from(Plateau { level, spread, rows }: Plateau) -> Self {
+        Self {
+            level,
+            spread,
+            rows: rows.len(),
+            longest: rows.len(),
+            first_row: rows.start,
+            clipped: true,
+        }
     }
 }
 
@@ -117,6 +139,7 @@ fn saturation(column: Column, values: &[f64], other: Option<&[f64]>) -> Option<S
     let clipped = without_noise || runs.iter().any(|run| goes_on(column, values, other.as_deref(), *run));
     Some(Saturation {
         level,
+        spread: 0.0,
         rows: runs.iter().map(|(_, length)| length).sum(),
         longest,
         first_row,
