@@ -235,6 +235,15 @@ pub enum Finding {
         /// Of how many rows a sample is the mean.
         averaged: usize,
     },
+    /// The record goes on in a second one, whose displacement counts from another zero.
+    ContinuedApart {
+        /// When the second begins, s.
+        time: f64,
+        /// Displacement before, m.
+        before: f64,
+        /// Displacement behind, m.
+        after: f64,
+    },
     /// The record is one of stress, and no section was given.
     StressAsForce,
     /// Rows of a clock that is coarser than the sampling were spread between its stamps.

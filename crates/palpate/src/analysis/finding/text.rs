@@ -323,6 +323,18 @@ impl Finding {
                 "events shorter than that many rows are smoothed: peaks are lower, and the start of a hold is coarser",
                 "none, if the events of interest last longer; otherwise cut the file, or record fewer rows per second",
             ),
+            Self::ContinuedApart { time, before, after } => {
+                let [before, after] = [before, after].map(|place| measured(Column::Displacement, *place));
+                warning(
+                    "continued_apart",
+                    format!(
+                        "the displacement goes from {before} to {after} at once where the second file begins, at {} s, and the force goes on",
+                        significant(*time, 4)
+                    ),
+                    "the displacement of the second file counts from a zero of its own: strains, phases and moduli from there on are wrong",
+                    "add the difference to the displacements of one of the files, or export both from one zero, and join them again",
+                )
+            }
             Self::StressAsForce => caution(
                 "stress_as_force",
                 "the file gives stress, and the description no section: each value in N stands for the same value in Pa"

@@ -10,6 +10,7 @@
 //! | `motion.rs` | the motion of the jaw, its noise taken out |
 //! | `rest.rs` | whether the force drifts while nothing touches the body |
 //! | `ramps_alone.rs` | the ramps of a record without a hold |
+//! | `seam.rs` | where a second record follows, whether it has the same zero |
 //! | `signals.rs` | what the columns, and what was done to them, give cause to say |
 
 mod corrected;
@@ -18,6 +19,7 @@ mod lag;
 mod motion;
 mod ramps_alone;
 mod rest;
+mod seam;
 mod signals;
 mod skew;
 

@@ -1,6 +1,6 @@
 //! What the columns of a record, and what was done to them, give cause to say.
 
-use super::rest::baseline_drifts;
+use super::{rest::baseline_drifts, seam::continued_apart};
 use crate::analysis::{AnalysisOptions, Corrected, Finding, Prepared};
 use crate::contact::Specimen;
 use crate::record::{Astray, Column, Correction, Record, SignalReport, Values};
@@ -69,6 +69,7 @@ pub(crate) fn signal_findings(
 #[must_use]
 pub fn record_findings(record: &Record) -> Vec<Finding> {
     let mut findings = correction_findings(record);
+    findings.extend(continued_apart(record));
     findings.extend(rows_astray(record));
     findings.extend(suspicious_signs(record));
     findings
