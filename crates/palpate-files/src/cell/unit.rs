@@ -4,241 +4,39 @@
 
 use palpate::units::{self, Dimension};
 
-use crate::naming::{is_named_in, is_strain_in, is_unit_in_words, names_quantity};
+use crate::naming::{is_listed, is_named_in, is_strain_in, is_unit_in_words, names_quantity};
 
 /// Words that units are made of, in lower case.
 const WORDS: &[&str] = &[
     // time and frequency
-    "s",
-    "sec",
-    "secs",
-    "second",
-    "seconds",
-    "ms",
-    "msec",
-    "us",
-    "usec",
-    "µs",
-    "μs",
-    "ns",
-    "nsec",
-    "nanosec",
-    "min",
-    "mins",
-    "minute",
-    "minutes",
-    "h",
-    "hr",
-    "hrs",
-    "hour",
-    "hours",
-    "d",
-    "day",
-    "days",
-    "hz",
-    "khz",
-    "mhz",
-    "sekunde",
-    "sekunden",
-    "seconde",
-    "secondes",
-    "segundo",
-    "segundos",
-    "秒",
-    "毫秒",
-    "分",
-    "分钟",
+    "s", "sec", "secs", "second", "seconds", "ms", "msec", "us", "usec", "µs", "μs", "ns", "nsec", "nanosec", "min",
+    "mins", "minute", "minutes", "h", "hr", "hrs", "hour", "hours", "d", "day", "days", "hz", "khz", "mhz", "sekunde",
+    "sekunden", "seconde", "secondes", "segundo", "segundos", "秒", "毫秒", "分", "分钟",
     "小时", // length and angle
-    "m",
-    "dm",
-    "cm",
-    "mm",
-    "um",
-    "µm",
-    "μm",
-    "nm",
-    "pm",
-    "km",
-    "in",
-    "inch",
-    "inches",
-    "\"",
-    "ft",
-    "mil",
-    "deg",
-    "°",
-    "rad",
-    "mrad",
-    "米",
-    "厘米",
-    "毫米",
-    "微米",
-    "度", // force and mass
-    "n",
-    "dan",
-    "cn",
-    "kn",
-    "mn",
-    "un",
-    "µn",
-    "μn",
-    "nn",
-    "pn",
-    "newton",
-    "newtons",
-    "lbf",
-    "ozf",
-    "kip",
-    "lb",
-    "lbs",
-    "kgf",
-    "gf",
-    "g",
-    "kg",
-    "mg",
-    "ug",
-    "µg",
-    "μg",
-    "牛",
-    "牛顿",
-    "千牛",
-    "毫牛",
-    "克",
+    "m", "dm", "cm", "mm", "um", "µm", "μm", "nm", "pm", "km", "in", "inch", "inches", "\"", "ft", "mil", "deg", "°",
+    "rad", "mrad", "米", "厘米", "毫米", "微米", "度", // force and mass
+    "n", "dan", "cn", "kn", "mn", "un", "µn", "μn", "nn", "pn", "newton", "newtons", "lbf", "ozf", "kip", "lb", "lbs",
+    "kgf", "gf", "g", "kg", "mg", "ug", "µg", "μg", "牛", "牛顿", "千牛", "毫牛", "克",
     "千克", // stress and pressure
-    "pa",
-    "hpa",
-    "kpa",
-    "mpa",
-    "gpa",
-    "psi",
-    "ksi",
-    "bar",
-    "mbar",
-    "atm",
-    "帕",
-    "千帕",
-    "兆帕",
+    "pa", "hpa", "kpa", "mpa", "gpa", "psi", "ksi", "bar", "mbar", "atm", "帕", "千帕", "兆帕",
     // ratios and arbitrary units
-    "%",
-    "pct",
-    "percent",
-    "ppm",
-    "strain",
-    "microstrain",
-    "microstrains",
-    "millistrain",
-    "mstrain",
-    "ustrain",
-    "µstrain",
-    "μstrain",
-    "mε",
-    "uε",
-    "µε",
-    "με",
-    "µe",
-    "μe",
-    "µin",
-    "μin",
-    "uin",
-    "1",
-    "au",
-    "a",
-    "u",
-    "count",
-    "counts",
-    "cycle",
-    "cycles",
-    "segment",
-    "segments",
-    "point",
-    "points", // temperature
-    "°c",
-    "℃",
-    "degc",
-    "c",
-    "°f",
-    "degf",
-    "f",
-    "k",
-    "°k", // electricity, work, textiles
-    "v",
-    "mv",
-    "uv",
-    "µv",
-    "μv",
-    "ma",
-    "ua",
-    "ohm",
-    "ohms",
-    "ω",
-    "kω",
-    "mω",
-    "kohm",
-    "pf",
-    "nf",
-    "uf",
-    "µf",
-    "μf",
-    "j",
-    "mj",
-    "uj",
-    "w",
-    "mw",
-    "tex",
-    "dtex",
-    "den",
+    "%", "pct", "percent", "ppm", "strain", "1", "au", "a", "u", "count", "counts", "cycle", "cycles", "segment",
+    "segments", "point", "points", // temperature
+    "°c", "℃", "degc", "c", "°f", "degf", "f", "k", "°k", // electricity, work, textiles
+    "v", "mv", "uv", "µv", "μv", "ma", "ua", "ohm", "ohms", "ω", "kω", "mω", "kohm", "pf", "nf", "uf", "µf", "μf", "j",
+    "mj", "uj", "w", "mw", "tex", "dtex", "den",
 ];
+
+/// Units of strains, in lower case.
+const STRAINS: &str =
+    "microstrain microstrains millistrain mstrain ustrain µstrain μstrain mε uε µε με µe μe µin μin uin";
 
 /// Units that are taken for one behind an underscore. Single letters that often number or label something else
 /// (`sensor_A`, `run_C`) are left out.
 const SUFFIXES: &[&str] = &[
-    "s",
-    "sec",
-    "secs",
-    "seconds",
-    "ms",
-    "msec",
-    "us",
-    "usec",
-    "µs",
-    "μs",
-    "ns",
-    "nsec",
-    "nanosec",
-    "hz",
-    "khz",
-    "m",
-    "cm",
-    "mm",
-    "um",
-    "µm",
-    "μm",
-    "nm",
-    "n",
-    "kn",
-    "mn",
-    "un",
-    "µn",
-    "μn",
-    "nn",
-    "pn",
-    "lbf",
-    "kgf",
-    "gf",
-    "kg",
-    "mg",
-    "pa",
-    "kpa",
-    "mpa",
-    "gpa",
-    "psi",
-    "percent",
-    "pct",
-    "microstrain",
-    "ustrain",
-    "deg",
-    "rad",
-    "degc",
+    "s", "sec", "secs", "seconds", "ms", "msec", "us", "usec", "µs", "μs", "ns", "nsec", "nanosec", "hz", "khz", "m",
+    "cm", "mm", "um", "µm", "μm", "nm", "n", "kn", "mn", "un", "µn", "μn", "nn", "pn", "lbf", "kgf", "gf", "kg", "mg",
+    "pa", "kpa", "mpa", "gpa", "psi", "percent", "pct", "deg", "rad", "degc",
 ];
 
 /// Units that are taken for one behind a blank as well. Words that are names or ends of names too (`Time in`, `Force m`, `Load cell`) are left
@@ -310,7 +108,7 @@ pub(crate) fn is_known(text: &str) -> bool {
         .filter(|word| !word.is_empty())
         .peekable();
     let only_one = text.trim() == "1";
-    only_one || (words.peek().is_some() && words.all(|word| is_one_of(WORDS, word)))
+    only_one || (words.peek().is_some() && words.all(|word| is_one_of(WORDS, word) || is_of_strain(word)))
 }
 
 /// Whether a text behind a name is its unit.
@@ -321,6 +119,10 @@ fn is_unit(text: &str) -> bool {
 fn is_one_of(known: &[&str], word: &str) -> bool {
     let word = word.to_lowercase();
     known.contains(&word.as_str())
+}
+
+fn is_of_strain(word: &str) -> bool {
+    is_listed(&word.to_lowercase(), STRAINS)
 }
 
 fn bracketed(cell: &str) -> Option<(&str, &str)> {
@@ -370,7 +172,7 @@ fn behind_underscore(cell: &str) -> Option<(&str, &str)> {
     let lower = name.to_lowercase();
     // "force_min" is the least force, "time_min" a time in minutes.
     let minutes = unit.eq_ignore_ascii_case("min") && (lower == "t" || lower.ends_with("time"));
-    (!name.is_empty() && (minutes || is_one_of(SUFFIXES, unit))).then_some((name, unit))
+    (!name.is_empty() && (minutes || is_one_of(SUFFIXES, unit) || is_of_strain(unit))).then_some((name, unit))
 }
 
 /// The unit behind the last blank of a name that says the quantity it measures: `Load kN`, `Extension inch`.
@@ -380,7 +182,9 @@ fn behind_blank(cell: &str) -> Option<(&str, &str)> {
     let may_end = if is_letter {
         matches!(unit, "N" | "s" | "%")
     } else {
-        is_one_of(SUFFIXES, unit) || LAST_WORDS.iter().any(|known| known.eq_ignore_ascii_case(unit))
+        is_one_of(SUFFIXES, unit)
+            || is_of_strain(unit)
+            || LAST_WORDS.iter().any(|known| known.eq_ignore_ascii_case(unit))
     };
     (may_end && (is_named_in(name, unit) || is_strain_in(name, unit))).then_some((name, unit))
 }
@@ -438,6 +242,7 @@ mod tests {
             ("Strain %", "Strain", "%"),
             ("Strain (in/in)", "Strain", "in/in"),
             ("Strain (microstrain)", "Strain", "microstrain"),
+            ("Strain microstrain", "Strain", "microstrain"),
             ("Dehnung (µε)", "Dehnung", "µε"),
             ("strain_percent", "strain", "percent"),
         ] {
