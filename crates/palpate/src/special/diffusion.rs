@@ -36,7 +36,8 @@ pub fn diffusion_decay(s: f64) -> (f64, f64) {
         term *= step;
         step *= shrink;
         k += 2.0;
-        if term <= 1e-17 * slope {
+        // Of a time that is none, too.
+        if term <= 1e-17 * slope || term.is_nan() {
             break;
         }
     }
