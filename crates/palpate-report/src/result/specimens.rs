@@ -194,12 +194,13 @@ impl SpecimenResults {
     #[must_use]
     pub fn between(&self) -> Vec<BetweenSpecimens> {
         let mut found = Vec::new();
-        let moduli: [(&str, &str, fn(&SpecimenResult) -> Option<f64>); 2] = [
-            ("first loading ramp", "loading_modulus_pa", |specimen| specimen.loading_modulus),
-            ("equilibrium forces", "equilibrium_modulus_pa", |specimen| specimen.equilibrium_modulus),
+        let loading = self.specimens.iter().filter_map(|specimen| specimen.loading_modulus).collect();
+        let equilibrium = self.specimens.iter().filter_map(|specimen| specimen.equilibrium_modulus).collect();
+        let moduli: [(&str, &str, Vec<f64>); 2] = [
+            ("first loading ramp", "loading_modulus_pa", loading),
+            ("equilibrium forces", "equilibrium_modulus_pa", equilibrium),
         ];
-        for (condition, name, of) in moduli {
-            let moduli: Vec<f64> = self.specimens.iter().filter_map(of).collect();
+        for (condition, name, moduli) in moduli {
             found.extend(SampleMean::of(&moduli, self.confidence).map(|sample| BetweenSpecimens {
                 hold: None,
                 condition: condition.to_owned(),
