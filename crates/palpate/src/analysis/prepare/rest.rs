@@ -13,7 +13,7 @@ const MOST: usize = 1000;
 /// Confidence with which the force drifts.
 const SURE: f64 = 0.999;
 /// Share of the relaxation of a hold that the drift makes in it, from which on it is stated.
-const MATTERS: f64 = 0.02;
+const MATTERS: f64 = 5e-3;
 
 /// [`Finding::BaselineDrifts`] where the force before first touch follows a line by so much that it matters in the hold that it changes most.
 ///
