@@ -41,7 +41,7 @@ const SUFFIXES: &[&str] = &[
 
 /// Units that are taken for one behind a blank as well. Words that are names or ends of names too (`Time in`, `Force m`, `Load cell`) are left
 /// out; single letters but the newton and the second are.
-const LAST_WORDS: &[&str] = &["inch", "inches", "mil", "daN", "cN", "ozf", "kip", "min"];
+const LAST_WORDS: &[&str] = &["inch", "inches", "mil", "mils", "daN", "cN", "ozf", "kip", "kips", "ksi", "min"];
 
 /// Opening and closing brackets that enclose units.
 const BRACKETS: [(char, char); 8] = [

@@ -5,7 +5,7 @@ use palpate::calibrate::{
 };
 use palpate::contact::Shape;
 use palpate::fit::{NoiseModel, Termination};
-use palpate::instrument::{Instrument, InstrumentQuantity};
+use palpate::instrument::{Instrument, InstrumentInput, InstrumentQuantity};
 use palpate::number::significant;
 use palpate::simulate::Separation;
 use palpate::units::quantity;
@@ -127,11 +127,13 @@ pub(super) fn are_systematic(noise: NoiseModel, relative: f64) -> bool {
 
 /// The remark where no instrument is described: what the intervals contain that was found in the record, and what counts as exact.
 fn exact(instrument: &Instrument) -> Option<String> {
-    let [touch, zero] = [InstrumentQuantity::Touch, InstrumentQuantity::Force]
-        .map(|quantity| instrument.inputs.iter().filter(|input| input.quantity == quantity).count());
-    if touch + zero < instrument.inputs.len() {
+    // Others were stated.
+    let is_found = |input: &InstrumentInput| input.uncertainty.name.ends_with(", as found");
+    if !instrument.inputs.iter().all(is_found) {
         return None;
     }
+    let [touch, zero] = [InstrumentQuantity::Touch, InstrumentQuantity::Force]
+        .map(|quantity| instrument.inputs.iter().filter(|input| input.quantity == quantity).count());
     let known = match (touch > 0, zero > 0) {
         (false, false) => "",
         (true, false) => ", and of first touch as found",

@@ -73,7 +73,7 @@ pub struct AnalysisOptions {
     pub geometry: Option<Geometry>,
     /// How phases are found.
     pub segment: SegmentOptions,
-    /// Uncertainty of the instrument and of the body; empty: they count as exact.
+    /// Uncertainty of the instrument and of the body; what is not among it counts as exact.
     pub instrument: Instrument,
     /// Corrections of the record that are made only on request.
     pub corrections: CorrectionOptions,

@@ -98,7 +98,8 @@ pub struct InstrumentInput {
     pub uncertainty: InputQuantity,
 }
 
-/// What is known of the instrument and of the body besides a record; empty where everything counts as exact.
+/// What is known of the instrument and of the body besides a record; what is not among it counts as exact, but for first touch and the zero of the
+/// force where they are found in the record.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 #[serde(transparent)]
 pub struct Instrument {
@@ -119,7 +120,8 @@ impl Instrument {
         let found = found.into_iter().filter(|(quantity, ..)| !(is_stated && *quantity == InstrumentQuantity::Force));
         let mut with = self.clone();
         with.inputs.extend(found.filter_map(|(quantity, title, error)| {
-            let uncertainty = InputQuantity::standard(title, quantity.unit(), 0.0, error?).ok()?;
+            let error = error.filter(|error| *error > 0.0)?;
+            let uncertainty = InputQuantity::standard(title, quantity.unit(), 0.0, error).ok()?;
             Some(InstrumentInput {
                 quantity,
                 uncertainty: uncertainty.type_a(),

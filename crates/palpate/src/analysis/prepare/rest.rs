@@ -3,8 +3,8 @@
 use crate::analysis::Finding;
 use crate::fit::{Assessed, Scale};
 use crate::record::Record;
-use crate::segment::{HoldMode, Segment, Segmentation, free_samples};
-use crate::statistics::mean;
+use crate::segment::{After, HoldMode, Phase, Segment, Segmentation, free_samples};
+use crate::statistics::{mean, noise};
 
 /// Fewest samples of a rest that tell a drift from noise.
 const FEWEST: usize = 30;
@@ -12,6 +12,8 @@ const FEWEST: usize = 30;
 const MOST: usize = 1000;
 /// Confidence with which the force drifts.
 const SURE: f64 = 0.999;
+/// Share of a hold that a rest lasts at least which says how the force goes on in it.
+const SHORTEST: f64 = 0.05;
 /// Share of the relaxation of a hold that the drift makes in it, from which on it is stated.
 const MATTERS: f64 = 5e-3;
 
@@ -19,9 +21,13 @@ const MATTERS: f64 = 5e-3;
 ///
 /// The line is one by least squares, with the error that the noise of its residuals gives it, slow noise too.
 pub(super) fn baseline_drifts(record: &Record, segmentation: &Segmentation) -> Option<Finding> {
-    /// Samples at either end of a hold; a hundredth of all at its end.
-    const ENDS: usize = 3;
-    let rest = free_samples(record, segmentation).into_iter().next().filter(|rest| rest.len() >= FEWEST)?;
+    // A way through air may have a force of its own.
+    let loads = segmentation.segments.iter().find(|segment| segment.phase == Phase::Loading)?.start;
+    let free = free_samples(record, segmentation).into_iter().next()?;
+    let rest = free.start..free.end.min(loads);
+    if rest.len() < FEWEST {
+        return None;
+    }
     let (time, force) = (record.time(), record.force());
     let lasts = time[rest.end - 1] - time[rest.start];
     let together = rest.len().div_ceil(MOST);
@@ -31,15 +37,14 @@ pub(super) fn baseline_drifts(record: &Record, segmentation: &Segmentation) -> O
         return None;
     }
     let in_hold = |(number, hold): (usize, &Segment)| {
-        let held = &force[hold.fit_start..hold.end];
-        let last = &held[held.len() - (held.len() / 100).max(ENDS).min(held.len())..];
-        let fall = mean(&held[..ENDS.min(held.len())]) - mean(last);
-        let change = rate * (time[hold.end - 1] - time[hold.fit_start]);
-        // What the body relaxes is what the force falls, and the drift hides.
-        (number, change, (change / (fall + change)).abs())
+        let duration = time[hold.end - 1] - time[hold.fit_start];
+        let (change, relaxed) = (rate * duration, relaxation(&force[hold.fit_start..hold.end], rate * duration)?);
+        (lasts > SHORTEST * duration).then_some((number, change, (change / relaxed).abs()))
     };
-    let relaxes = |hold: &&Segment| !matches!(hold.mode, Some(HoldMode::ForceHeld | HoldMode::Neither));
-    let holds = (1..).zip(segmentation.holds()).filter(|(_, hold)| relaxes(hold)).map(in_hold);
+    let is_pressed = |hold: &&Segment| {
+        hold.after != Some(After::Unloading) && hold.mode.is_none_or(|mode| mode == HoldMode::DisplacementHeld)
+    };
+    let holds = (1..).zip(segmentation.holds()).filter(|(_, hold)| is_pressed(hold)).filter_map(in_hold);
     let (hold, change, share) = holds.max_by(|one, other| one.2.total_cmp(&other.2))?;
     (share > MATTERS).then_some(Finding::BaselineDrifts {
         rate,
@@ -49,6 +54,16 @@ pub(super) fn baseline_drifts(record: &Record, segmentation: &Segmentation) -> O
         change,
         share,
     })
+}
+
+/// What a body relaxes in a hold, N: what the force falls, and a drift hides; `None` where that is no more than noise.
+fn relaxation(force: &[f64], drift: f64) -> Option<f64> {
+    /// Samples at either end; a hundredth of all at its end.
+    const ENDS: usize = 3;
+    const OBSERVED: f64 = 6.0;
+    let last = (force.len() / 100).max(ENDS);
+    let relaxed = mean(force.get(..ENDS)?) - mean(force.get(force.len().checked_sub(last)?..)?) + drift;
+    (relaxed.abs() > OBSERVED * noise(force) / (ENDS as f64).sqrt()).then_some(relaxed)
 }
 
 /// The slope of a line, and half of its interval.
@@ -112,6 +127,17 @@ mod tests {
             sloped.corrections.baseline = Some(Baseline::Sloped);
             assert_eq!(drift(&drifting, &sloped), None);
         }
+    }
+
+    /// A jaw that stands free in the end had a "relaxation" of its noise, and the drift was thousands of per cent of it; so was that of an elastic body.
+    #[test]
+    fn a_drift_is_no_share_of_what_does_not_relax() {
+        let elastic = |t: f64| (2.0 * (t - 40.0)).clamp(0.0, 4.0) - (2.0 * (t - 100.0)).clamp(0.0, 4.0);
+        let mut random = Rng::new(5);
+        let time: Vec<f64> = (0..2800).map(|i| 0.05 * f64::from(i)).collect();
+        let jaw = time.iter().map(|t| 1e-3 * elastic(*t)).collect();
+        let force = time.iter().map(|t| 5.0 * elastic(*t) + 1e-4 * t + 5e-3 * random.normal()).collect();
+        assert_eq!(drift(&Record::new(time, Some(jaw), force).unwrap(), &AnalysisOptions::default()), None);
     }
 
     #[test]

@@ -166,7 +166,7 @@ impl Fitted {
         let freedom = counted.len() - solution.linear.len() - solution.nonlinear.len();
         solution.residual_square = dot(&counted, &counted);
         solution.residuals = counted;
-        solution.variance * freedom as f64 / solution.residual_square
+        solution.variance * freedom as f64 / solution.residual_square.max(f64::MIN_POSITIVE)
     }
 
     /// The curve of the present solution, in units of each sample's own deviation.
