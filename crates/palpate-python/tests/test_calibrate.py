@@ -191,7 +191,9 @@ def test_intervals_lie_in_each_other(material: palpate.Material) -> None:
     narrow = material.predict(SQUEEZE, at_s=[0.6, 5.0], confidence=0.5)
     assert np.all(narrow.force_high_n < prediction.force_high_n)
     half = (narrow.force_high_n - narrow.force_low_n) / 2
-    np.testing.assert_allclose(prediction.force_standard_error_n, half / 0.6745, rtol=1e-3)
+    # Neither side is nearer than the linear part, and a little curvature is left on one of them.
+    over = half / 0.6745 / prediction.force_standard_error_n
+    assert np.all((over > 0.9995) & (over < 1.003)), over
     # A force is a product of powers of its parameters, or nearly: more is left open above than below.
     above, below = prediction.force_high_n - prediction.force_n, prediction.force_n - prediction.force_low_n
     assert np.all((below < above) & (above < 1.1 * below))
