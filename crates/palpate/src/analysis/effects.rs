@@ -40,8 +40,8 @@ struct Changed {
 }
 
 impl<'a> Causes<'a> {
-    /// The stated quantities, the errors of first touch and of the zero of the force where the record shows them, and that of an estimated modulus; `None` where nothing is
-    /// stated.
+    /// The stated quantities, the errors of first touch and of the zero of the force where the record shows them, and that of an estimated modulus;
+    /// `None` where nothing is stated.
     pub(in crate::analysis) fn new(
         options: &'a AnalysisOptions,
         contact: &ContactPoint,

@@ -153,10 +153,9 @@ fn examined(
         None => ModulusSource::Given,
     });
     let causes = Causes::new(options, &contact, specimen.as_ref(), implied.as_ref());
-    let modulus = implied.as_ref().map(|implied| match (&causes, &options.geometry) {
-        (Some(causes), _) => causes.of_modulus(implied),
-        (None, Some(geometry)) => implied.estimate_beside(geometry, &contact),
-        (None, None) => implied.estimate(),
+    let modulus = implied.as_ref().zip(options.geometry.as_ref()).map(|(implied, geometry)| match &causes {
+        Some(causes) => causes.of_modulus(implied),
+        None => implied.estimate_beside(geometry, &contact),
     });
     findings.extend(modulus.iter().map(|modulus| Finding::ModulusEstimated {
         modulus: modulus.estimate.value,

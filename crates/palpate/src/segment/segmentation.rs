@@ -229,6 +229,11 @@ impl Segmentation {
         self.segments.iter().filter(|segment| segment.phase == Phase::Hold)
     }
 
+    /// The first loading ramp.
+    pub(crate) fn first_loading(&self) -> Option<&Segment> {
+        self.segments.iter().find(|segment| segment.phase == Phase::Loading)
+    }
+
     /// Whether the record is one hold from its first sample to its last.
     #[must_use]
     pub fn is_one_hold(&self) -> bool {

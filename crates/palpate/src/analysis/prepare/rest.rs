@@ -3,7 +3,7 @@
 use crate::analysis::Finding;
 use crate::fit::{Assessed, Scale};
 use crate::record::Record;
-use crate::segment::{After, HoldMode, Phase, Segment, Segmentation, free_samples};
+use crate::segment::{After, HoldMode, Segment, Segmentation, free_samples};
 use crate::statistics::{mean, noise};
 
 /// Fewest samples of a rest that tell a drift from noise.
@@ -22,7 +22,7 @@ const MATTERS: f64 = 5e-3;
 /// The line is one by least squares, with the error that the noise of its residuals gives it, slow noise too.
 pub(super) fn baseline_drifts(record: &Record, segmentation: &Segmentation) -> Option<Finding> {
     // A way through air may have a force of its own.
-    let loads = segmentation.segments.iter().find(|segment| segment.phase == Phase::Loading)?.start;
+    let loads = segmentation.first_loading()?.start;
     let free = free_samples(record, segmentation).into_iter().next()?;
     let rest = free.start..free.end.min(loads);
     if rest.len() < FEWEST {

@@ -2,7 +2,7 @@
 
 use crate::analysis::Finding;
 use crate::record::{Correction, Record};
-use crate::statistics::{bounds, median};
+use crate::statistics::{bounds, median, range};
 
 /// Share of the travel by which the displacement changes at the seam, at least.
 const JUMP: f64 = 0.1;
@@ -28,12 +28,8 @@ fn apart_at(record: &Record, from: f64) -> Option<Finding> {
     let (time, force, displacement) = (record.time(), record.force(), record.displacement()?);
     let next = time.partition_point(|time| *time < from);
     let last = next.checked_sub(1)?;
-    let range = |values: &[f64]| {
-        let (low, high) = bounds(values);
-        (low, high - low)
-    };
-    let (_, travel) = range(displacement);
-    let (least, pressed) = range(force);
+    let (travel, (least, most)) = (range(displacement), bounds(force));
+    let pressed = most - least;
     let jump = displacement.get(next)? - displacement[last];
     let speed = |row: usize| (displacement[row + 1] - displacement[row]).abs() / (time[row + 1] - time[row]);
     let elsewhere = (0..time.len() - 1).filter(|row| *row != last).map(speed).fold(0.0, f64::max);

@@ -242,24 +242,18 @@ fn wrong_zero(record: &Record, segmentation: &Segmentation) -> Option<Finding> {
     /// Fewest rows of a rest.
     const REST: usize = 10;
     let (force, displacement) = (record.force(), record.displacement()?);
-    let loads = segmentation
-        .segments
-        .iter()
-        .find(|segment| segment.phase == Phase::Loading)
-        .map_or(0, |ramp| ramp.start);
-    let rows = loads.saturating_sub(1);
+    let rows = segmentation.first_loading().map_or(0, |ramp| ramp.start).saturating_sub(1);
     // A ramp of few rows has left its beginning in the second.
-    let (first_force, first) = match rows >= REST {
-        true => (mean(&force[..rows]), median(&mut displacement[..rows].to_vec())),
-        false => (*force.first()?, *displacement.first()?),
+    let (first_force, first, share, error) = match rows >= REST {
+        true => {
+            let error = noise(&force[..rows]) / (rows as f64 / REST as f64).sqrt();
+            (mean(&force[..rows]), median(&mut displacement[..rows].to_vec()), PRESSED.1, error)
+        }
+        false => (*force.first()?, *displacement.first()?, PRESSED.0, noise(force)),
     };
     let farthest =
         |values: &[f64], from: f64| values.iter().fold(0.0, |most: f64, value| most.max((value - from).abs()));
     let (travel, largest) = (farthest(displacement, first), farthest(force, 0.0));
-    let (share, error) = match rows >= REST {
-        true => (PRESSED.1, noise(&force[..rows]) / (rows as f64 / REST as f64).sqrt()),
-        false => (PRESSED.0, noise(force)),
-    };
     if first > MOVED.0 * travel && first_force.abs() <= (PRESSED.1 * largest).max(3.0 * error) {
         return Some(Finding::DisplacementNotZero { start: first });
     }
