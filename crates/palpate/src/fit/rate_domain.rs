@@ -133,6 +133,7 @@ impl Scaled {
             roots: None,
             curve: None,
             times: None,
+            step: 0.0,
         };
         let assessed = Assessed::new(solution, &amplitudes[..size - 1], &ones[..size], self.fastest, &trust, effort)?;
         let estimate = |value: f64, weights: &[f64], scale: Scale, unit: f64| {

@@ -1,6 +1,7 @@
 //! The samples of a hold, checked and brought to units in which every hold looks alike.
 
 use super::error::FitError;
+use super::problem::step_between_levels;
 use crate::optimise::Target;
 use crate::vector::{all_finite, extremes, multiply, rises, shifted};
 
@@ -106,6 +107,8 @@ pub(crate) struct Scaled {
     pub(crate) duration: f64,
     pub(crate) center: f64,
     pub(crate) range: f64,
+    /// The step of values that were rounded to few levels, over the range; 0 where there is none.
+    pub(crate) step: f64,
 }
 
 impl Scaled {
@@ -139,6 +142,7 @@ impl Scaled {
             duration,
             center,
             range,
+            step: step_between_levels(values) / range,
         };
         scaled.values = scaled.in_units(values);
         Ok(scaled)
@@ -150,6 +154,7 @@ impl Scaled {
         let values = certain.as_ref().map_or(samples.values, |[_, values, _]| values);
         Self {
             values: self.in_units(values),
+            step: step_between_levels(values) / self.range,
             ..self.clone()
         }
     }

@@ -16,8 +16,8 @@ pub(crate) enum Noise {
     Walk(f64, f64),
     /// AR(1) of this correlation in proportion to the signal above 0.9.
     Proportional(f64),
-    /// White noise, and all rounded to five times its size.
-    Rounded,
+    /// White noise, and all rounded to so many times its size, on a grid of any phase.
+    Rounded(f64),
     /// White noise of a sensor so many times as slow, with straight lines between its readings.
     Interpolated(usize),
     /// Noise that fades within 0.1 s, and white noise of this size, at times evenly spaced in ln t.
@@ -25,7 +25,7 @@ pub(crate) enum Noise {
 }
 
 /// All kinds by their names.
-pub(crate) const KINDS: [(&str, Noise); 25] = [
+pub(crate) const KINDS: [(&str, Noise); 26] = [
     ("white", Noise::Filtered(&[], &[1.0], 1.0)),
     ("AR(1) 0.7", Noise::Filtered(&[0.7], &[1.0], 0.714)),
     ("AR(1) 0.9", Noise::Filtered(&[0.9], &[1.0], 0.436)),
@@ -47,7 +47,8 @@ pub(crate) const KINDS: [(&str, Noise); 25] = [
     ("walk 0.03 and white", Noise::Walk(0.03, 1.0)),
     ("proportional", Noise::Proportional(0.0)),
     ("proportional AR(1) 0.9", Noise::Proportional(0.9)),
-    ("rounded", Noise::Rounded),
+    ("rounded to 5 sd", Noise::Rounded(5.0)),
+    ("rounded to 8 sd", Noise::Rounded(8.0)),
     ("interpolated, 4 to 1", Noise::Interpolated(4)),
     ("interpolated, 10 to 1", Noise::Interpolated(10)),
     ("logarithmic times", Noise::LogarithmicTimes(0.0)),
@@ -179,7 +180,7 @@ impl Noise {
                 let between = |i: usize| (i / times, (i % times) as f64 / times as f64);
                 (0..count).map(between).map(|(i, share)| read[i] + share * (read[i + 1] - read[i])).collect()
             }
-            Self::Rounded => white(random),
+            Self::Rounded(_) => white(random),
             Self::LogarithmicTimes(beside) => {
                 let mut last = random.normal();
                 let mut next = |i: usize| {
@@ -193,7 +194,10 @@ impl Noise {
         };
         let values = clean.iter().zip(noise).map(|(y, noise): (&f64, f64)| y + size * noise);
         match self {
-            Self::Rounded => values.map(|value| (value / (5.0 * size)).round() * 5.0 * size).collect(),
+            Self::Rounded(ratio) => {
+                let (step, phase) = (ratio * size, random.uniform());
+                values.map(|value| ((value / step + phase).round() - phase) * step).collect()
+            }
             _ => values.collect(),
         }
     }

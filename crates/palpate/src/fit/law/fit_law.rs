@@ -1,6 +1,6 @@
 //! Any law fitted to a hold.
 
-use super::robust::{near, step_between_levels, without_far};
+use super::robust::{near, without_far};
 use crate::fit::{Fit, FitError, Fitted, IntervalMethod, LawOptions, Loss, SampleChoice, Samples, build, search};
 use crate::laws::Law;
 use crate::optimise::Effort;
@@ -92,7 +92,7 @@ impl Fitted {
                 let (model, nearer) = build(form, &Samples { values, ..*samples }, options)?;
                 let all = nearer.of(samples);
                 let near = near(&nearer, &all, model.linear() + model.free().len());
-                Self::resisting(&model, all, near.as_ref(), step_between_levels(samples.values), options, effort)?
+                Self::resisting(&model, all, near.as_ref(), options, effort)?
             }
         };
         fitted.arrange();

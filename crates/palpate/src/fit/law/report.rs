@@ -25,6 +25,7 @@ impl Fitted {
             roots: self.scaled.roots.as_deref(),
             curve: None,
             times: Some((&self.scaled.times, self.scaled.duration)),
+            step: self.scaled.step,
         };
         let assessed = Assessed::new(solution, &self.amplitudes(), &units, scale, &trust, effort)?;
         let loading = if matches!(law, Law::Latency { .. }) { None } else { options.loading.clone() };

@@ -43,7 +43,7 @@ impl Fitted {
     /// since outliers may have led the first search into the wrong valley. In the end the solution stands among all samples at
     /// their own weights; what they determine is judged by them as the loss counts them.
     ///
-    /// The scale is at least the `step` of values that were rounded: where most of them lie on one level, the median residual says nothing of their noise,
+    /// The scale is at least the step of values that were rounded: where most of them lie on one level, the median residual says nothing of their noise,
     /// and a sample one step beside it is no outlier. With step/√12, the deviation of rounding, 95 % intervals of the constant hold it in 64 % of holds.
     ///
     /// Where some samples are far from most, the first search is among the `near` ones too. The others may be outliers or a fast transient: of both fits
@@ -52,11 +52,10 @@ impl Fitted {
         model: &Model,
         base: Scaled,
         near: Option<&Scaled>,
-        step: f64,
         options: &LawOptions,
         effort: &mut Effort<'_>,
     ) -> Result<Self, FitError> {
-        let least = (step / base.range).max(FINEST);
+        let least = base.step.max(FINEST);
         let mut best: Option<(Self, f64)> = None;
         for start in near.into_iter().chain([&base]) {
             let Some(solution) = search(model, start, options.most_iterations, effort)? else {
@@ -247,34 +246,6 @@ pub(super) fn without_far(values: &[f64]) -> Option<Vec<f64>> {
     values.iter().any(is_far).then(|| values.iter().map(|value| value.clamp(low, high)).collect())
 }
 
-/// The step of values that were rounded to few levels, on which most of them lie; 0 where there is none. Values that occur once, as outliers do, do not
-/// count.
-pub(super) fn step_between_levels(values: &[f64]) -> f64 {
-    /// Fewest levels that show a step: a level and dropouts to zero are two.
-    const FEWEST: usize = 4;
-    let mut sorted = values.to_vec();
-    sorted.sort_unstable_by(f64::total_cmp);
-    let (mut levels, mut on_levels) = (Vec::new(), 0);
-    for same in sorted.chunk_by(|a, b| a == b).filter(|same| same.len() > 1) {
-        levels.push(same[0]);
-        on_levels += same.len();
-    }
-    let (Some(low), Some(high)) = (levels.first(), levels.last()) else {
-        return 0.0;
-    };
-    if levels.len() < FEWEST || 2 * on_levels <= values.len() {
-        return 0.0;
-    }
-    // Levels that differ by less are one, rounded.
-    let rounding = 1e-9 * low.abs().max(high.abs());
-    let step = levels
-        .windows(2)
-        .map(|pair| pair[1] - pair[0])
-        .filter(|step| *step > rounding)
-        .fold(f64::INFINITY, f64::min);
-    if step.is_finite() { step } else { 0.0 }
-}
-
 /// The samples of a fit of so many parameters without those that were brought nearer; `None` if there are none, or too few others.
 pub(super) fn near(nearer: &Scaled, measured: &Scaled, parameters: usize) -> Option<Scaled> {
     /// Samples for each parameter, of fewer a fit is nearly exact whichever are left out.
@@ -332,23 +303,6 @@ fn slope(loss: Loss, u: f64) -> f64 {
         Loss::Tukey => {
             let share = (u / TUKEY).powi(2);
             if share < 1.0 { (1.0 - share) * (1.0 - 5.0 * share) } else { 0.0 }
-        }
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::step_between_levels;
-
-    #[test]
-    fn levels_of_most_samples_show_a_step() {
-        let mut rounded: Vec<f64> = (0..60).map(|i| 0.2 * f64::from(i % 6)).collect();
-        rounded[10] = 7.77;
-        assert!((step_between_levels(&rounded) - 0.2).abs() < 1e-12);
-        let smooth: Vec<f64> = (0..60).map(|i| f64::from(i).sqrt()).collect();
-        let dropouts: Vec<f64> = (0..60).map(|i| if i % 9 == 0 { 0.0 } else { 50.0 }).collect();
-        for values in [smooth, dropouts, Vec::new()] {
-            assert_eq!(step_between_levels(&values), 0.0);
         }
     }
 }

@@ -28,6 +28,9 @@
 //! The fit keeps D as a course, which bands of further samples follow. Of samples with weights all this is of residuals times the roots of the
 //! weights; under a robust loss it is of residuals as the loss counts them.
 //!
+//! Values that were rounded to a step have an error that all samples at one value share where the noise does not dither it: its covariance is
+//! added to all, and the noise is sought in what the course of that error leaves of the residuals.
+//!
 //! | part | what |
 //! |---|---|
 //! | `model.rs` | how noise correlates; a noise that was found |

@@ -3,14 +3,16 @@
 use std::borrow::Cow;
 
 use super::columns::Columns;
+use super::rounding::Rounding;
 use super::sandwich::Sandwich;
-use super::uncertainty::{Scale, Uncertainty};
+use super::uncertainty::{Scale, Uncertainty, add};
 use super::uneven::leverages;
 use crate::fit::noise::course::NoiseCourse;
 use crate::fit::noise::model::Noise;
 use crate::fit::noise::portmanteau::{UNEXPLAINED, p_value};
 use crate::fit::noise::residuals::Residuals;
 use crate::fit::noise::spread::Spread;
+use crate::fit::problem::step_between_levels;
 use crate::fit::{Estimate, NoiseChoice, NoiseModel};
 use crate::optimise::{Cholesky, Effort, Few, Solution, Termination};
 use crate::statistics::dot;
@@ -49,6 +51,8 @@ pub(crate) struct Trust<'a> {
     pub(crate) curve: Option<&'a [f64]>,
     /// Times of the samples, and their unit in s.
     pub(crate) times: Option<(&'a [f64], f64)>,
+    /// The step that the values were rounded to, or 0.
+    pub(crate) step: f64,
 }
 
 impl Trust<'_> {
@@ -68,8 +72,17 @@ impl Trust<'_> {
         if !self.may_vary || self.noise == NoiseChoice::White {
             return None;
         }
-        let curve = self.curve.map_or_else(|| Cow::Owned(fitted(solution, self.roots)), Cow::Borrowed);
-        Spread::of(residuals.values, &curve, &residuals.partial, leverages)
+        Spread::of(residuals.values, &self.fitted(solution), &residuals.partial, leverages)
+    }
+
+    /// What rounding adds to the noise.
+    fn rounding(&self, solution: &Solution, counted: &[f64]) -> Option<Rounding> {
+        Rounding::new(&self.fitted(solution), counted, self.roots, self.step)
+    }
+
+    /// The fitted values.
+    fn fitted(&self, solution: &Solution) -> Cow<'_, [f64]> {
+        self.curve.map_or_else(|| Cow::Owned(fitted(solution, self.roots)), Cow::Borrowed)
     }
 }
 
@@ -87,9 +100,15 @@ impl Assessed {
         effort.hear()?;
         let columns: Vec<&[f64]> = solution.columns.iter().chain(&solution.derivatives).map(Vec::as_slice).collect();
         let inverse = solution.inverse_normal.as_deref().filter(|_| trust.known);
+        let counted = trust.counted.unwrap_or(&solution.residuals);
+        let rounding = (trust.step > 0.0).then(|| trust.rounding(solution, counted)).flatten();
+        let waves = rounding.iter().filter(|_| trust.noise == NoiseChoice::FromResiduals).flat_map(Rounding::waves);
+        let all: Vec<&[f64]> = columns.iter().copied().chain(waves).collect();
         // Merged terms have columns that are one another's multiples, beside which no noise has a likelihood.
-        let taken_up = if inverse.is_some() { columns.clone() } else { independent(&columns) };
-        let residuals = Residuals::of(trust.counted.unwrap_or(&solution.residuals), taken_up.len());
+        let is_known = inverse.is_some() && all.len() == columns.len();
+        let taken_up = if is_known { columns.clone() } else { independent(&all) };
+        let left = if all.len() > columns.len() { without(counted, &taken_up) } else { None };
+        let residuals = Residuals::of(left.as_deref().unwrap_or(counted), taken_up.len());
         let (times, time_unit) = trust.uneven_times();
         let taken = || inverse.map(|inverse| leverages(&columns, amplitudes, inverse));
         let spread = if times.is_none() { trust.spread(solution, &residuals, taken) } else { None };
@@ -118,7 +137,7 @@ impl Assessed {
         let correlates = noise.likely.iter().any(|likely| likely.model != NoiseModel::White);
         let in_size = views.as_ref().filter(|_| observed.is_some()).unwrap_or(&columns);
         let correlated = correlates.then(|| Columns::new(in_size, times));
-        let counted_square = trust.counted.map_or(solution.residual_square, |_| residuals.square);
+        let counted_square = trust.counted.map_or(solution.residual_square, |counted| dot(counted, counted));
         let ratio = solution.variance * (residuals.values.len() - units.len()) as f64 / counted_square;
         let fit = Sandwich {
             columns: &columns,
@@ -139,6 +158,9 @@ impl Assessed {
                 && let Some(covariance) = fit.by_blocks()
             {
                 uncertainty.widen(&covariance);
+            }
+            if let Some(rounding) = &rounding {
+                uncertainty.add(&fit.by_rounding(rounding));
             }
             assessed.uncertainty = Some(uncertainty).filter(|found| is_finite(&found.covariance));
         }
@@ -179,23 +201,15 @@ impl Assessed {
             roots: None,
             curve: Some(&curve),
             times: None,
+            step: step_between_levels(values),
         };
         Self::new(&solution, &[], &vec![1.0; size], 1.0, &trust, &Effort::default())
     }
 
     /// Adds a covariance of the parameters from another, independent cause.
     pub(crate) fn add(&mut self, covariance: &[Vec<f64>]) {
-        let add = |rows: &mut Vec<Vec<f64>>| {
-            for (row, by) in rows.iter_mut().zip(covariance) {
-                row.iter_mut().zip(by).for_each(|(entry, by)| *entry += by);
-            }
-        };
-        self.white.iter_mut().for_each(add);
-        if let Some(uncertainty) = &mut self.uncertainty {
-            add(&mut uncertainty.covariance);
-            uncertainty.models.iter_mut().for_each(|model| add(&mut model.covariance));
-            uncertainty.settle();
-        }
+        self.white.iter_mut().for_each(|white| add(white, covariance));
+        self.uncertainty.iter_mut().for_each(|uncertainty| uncertainty.add(covariance));
     }
 
     /// From a covariance for white noise of this `deviation`, intervals widened by a factor for samples that count as fewer.
@@ -301,6 +315,18 @@ fn fitted(solution: &Solution, roots: Option<&[f64]>) -> Vec<f64> {
         values.iter_mut().zip(roots).for_each(|(value, root)| *value /= root);
     }
     values
+}
+
+/// What columns leave of residuals.
+fn without(residuals: &[f64], columns: &[&[f64]]) -> Option<Vec<f64>> {
+    let size = columns.len();
+    let mut normal = vec![0.0; size * size];
+    cross_products(columns, columns, &mut normal);
+    let mut along: Vec<f64> = columns.iter().map(|column| dot(column, residuals)).collect();
+    Cholesky::new(&normal, size)?.solve(&mut along);
+    let mut left = residuals.to_vec();
+    columns.iter().zip(along).for_each(|(column, by)| add_multiple(&mut left, -by, column));
+    Some(left)
 }
 
 /// The columns that those before them do not span.

@@ -7,6 +7,7 @@
 //! | `columns.rs` | products of the columns of a fit with the correlations between them |
 //! | `uneven.rs` | noise whose size changes, by the squares of the residuals |
 //! | `blocks.rs` | how noise sums up over blocks of neighbours, where no model describes it |
+//! | `rounding.rs` | rounding that no noise dithers |
 //! | `uncertainty.rs` | covariances under all models that are likely |
 //! | `mixture.rs` | intervals of many numbers where several models are likely |
 
@@ -14,6 +15,7 @@ mod assessed;
 mod blocks;
 mod columns;
 mod mixture;
+mod rounding;
 mod sandwich;
 mod uncertainty;
 mod uneven;

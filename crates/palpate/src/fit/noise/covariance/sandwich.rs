@@ -4,6 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use super::blocks::by_blocks;
 use super::columns::Columns;
+use super::rounding::Rounding;
 use super::uneven::by_residuals;
 use crate::fit::NoiseModel;
 use crate::fit::noise::model::Likely;
@@ -70,6 +71,11 @@ impl Sandwich<'_> {
     pub(super) fn by_blocks(&self) -> Option<Vec<Vec<f64>>> {
         let filling = by_blocks(self.columns, self.residuals)?;
         Some(self.filled(&with_amplitudes(filling, self.amplitudes), self.ratio))
+    }
+
+    /// From values that were rounded.
+    pub(super) fn by_rounding(&self, rounding: &Rounding) -> Vec<Vec<f64>> {
+        self.filled(&with_amplitudes(rounding.quadratic(self.columns), self.amplitudes), 1.0)
     }
 
     /// (JᵀJ)⁻¹ M (JᵀJ)⁻¹ times a variance.

@@ -23,6 +23,13 @@ pub(crate) fn variance_of(gradient: &[f64], covariance: &[Vec<f64>]) -> f64 {
     covariance.iter().zip(gradient).map(|(entries, g)| g * row(entries)).sum()
 }
 
+/// Adds rows to rows.
+pub(super) fn add(rows: &mut [Vec<f64>], others: &[Vec<f64>]) {
+    for (row, by) in rows.iter_mut().zip(others) {
+        row.iter_mut().zip(by).for_each(|(entry, by)| *entry += by);
+    }
+}
+
 /// What intervals are made of: covariances of the searched parameters for noise that correlates.
 ///
 /// The fit is by least squares whatever the noise, so with J the Jacobian and V = σ² R the covariance of the noise that of
@@ -99,6 +106,13 @@ impl Uncertainty {
         for (row, one) in self.covariance.iter_mut().zip(&by) {
             row.iter_mut().zip(&by).for_each(|(entry, other)| *entry *= one * other);
         }
+    }
+
+    /// Adds a covariance of the parameters from another, independent cause.
+    pub(super) fn add(&mut self, covariance: &[Vec<f64>]) {
+        add(&mut self.covariance, covariance);
+        self.models.iter_mut().for_each(|model| add(&mut model.covariance, covariance));
+        self.settle();
     }
 
     /// Multiplies covariances by the mean ratio of these variances to those there are, where it is above 1.
