@@ -42,7 +42,7 @@ fn reported(message: impl Display, hint: Option<impl Display>) -> String {
 
 /// A text that names options as the command does, with keywords in their place.
 pub(crate) fn in_keywords(text: &str) -> String {
-    let known = ["⟨compare/creep⟩", "⟨compare/loss=huber⟩", "⟨fit_until⟩"];
+    let known = ["⟨compare/creep⟩", "⟨compare/loss=huber⟩", "⟨compare/ramps=measured⟩", "⟨fit_until⟩"];
     let text = known
         .iter()
         .fold(text.to_owned(), |text, option| text.replace(&with_flags(option), &spelled(option, &keyword)));

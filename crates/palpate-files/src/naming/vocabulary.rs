@@ -95,8 +95,9 @@ const OTHER: &str = "goal target set setpoint command commanded cmd demand desir
 /// Beginnings of German words for what was commanded, not measured: `Sollweg`, `Sollkraft`, `Sollwert`.
 pub(crate) const COMMANDED: &str = "soll vorgabe";
 
-/// Words of a stress on the section as it is and of a strain of the length as it is: true, Cauchy, Hencky, logarithmic.
-pub(crate) const TRUE_MEASURES: &str = "true cauchy hencky logarithmic log ln natural wahr wahre wahrer wahres logarithmisch logarithmische \
+/// Words of a stress on the section as it is and of a strain of the length as it is, or of another measure of large strain: true, Cauchy, Hencky,
+/// logarithmic, Green, Lagrange, Almansi.
+pub(crate) const TRUE_MEASURES: &str = "true cauchy hencky green lagrange lagrangian almansi logarithmic log ln natural wahr wahre wahrer wahres logarithmisch logarithmische \
     vrai vraie rationnelle logarithmique verdadero verdadera real logarítmica logaritmica vero vera reale истинное истинная истинные \
     логарифмическая";
 

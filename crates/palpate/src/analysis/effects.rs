@@ -41,7 +41,7 @@ struct Changed {
 
 impl<'a> Causes<'a> {
     /// The stated quantities, the errors of first touch and of the zero of the force where the record shows them, and that of an estimated modulus;
-    /// `None` where nothing is stated.
+    /// `None` where nothing is stated and the modulus is given.
     pub(in crate::analysis) fn new(
         options: &'a AnalysisOptions,
         contact: &ContactPoint,
@@ -54,11 +54,14 @@ impl<'a> Causes<'a> {
         let mut inputs: Vec<InputQuantity> = stated.into_iter().map(|input| input.uncertainty).collect();
         let error = implied.and_then(|implied| implied.standard_error);
         let error = error.and_then(|error| InputQuantity::standard("modulus, as estimated", "Pa", 0.0, error).ok());
+        if options.instrument.is_empty() && error.is_none() {
+            return None;
+        }
         if let Some(modulus) = error {
             inputs.push(modulus.type_a());
             quantities.push(Cause::EstimatedModulus);
         }
-        (!options.instrument.is_empty()).then_some(Self {
+        Some(Self {
             geometry: options.geometry.as_ref(),
             options,
             specimen,

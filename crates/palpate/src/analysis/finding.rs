@@ -425,6 +425,17 @@ pub enum Finding {
         /// By how much their information criteria are lower together.
         delta_bic: f64,
     },
+    /// The ramp before a hold lasted longer than the fastest term of its law takes to relax.
+    RampRelaxes {
+        /// The hold.
+        hold: usize,
+        /// How long the ramp took, s.
+        ramp: f64,
+        /// The shortest time constant, s.
+        time_constant: f64,
+        /// Its amplitude over that of a step.
+        share: f64,
+    },
     /// The fit was to end later than every hold does: all samples are fitted.
     UntilBeyondHolds {
         /// When it was to end, s after its start.

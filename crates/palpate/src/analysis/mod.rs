@@ -40,5 +40,6 @@ pub use prepare::{
 pub(crate) use prepare::{measured_motion, signal_findings};
 pub use stated::{HoldReport, StatedRelaxation};
 pub use together::{
-    Across, EstimatedModulus, JointAnalysis, JointHolds, LevelAgreement, LoadingModulus, ModulusSource, Overlay, Trend,
+    Across, EstimatedModulus, JointAnalysis, JointHolds, LevelAgreement, LoadingModulus, Misfit, ModulusSource,
+    Overlay, Trend,
 };

@@ -5,7 +5,7 @@ use super::holds::{HoldAnalysis, complete_hold, fit_exponents, forecast_holds, i
 use super::prepare::{ClockSkew, Prepared, corrected_watched, signal_findings};
 use super::together::{
     Across, EstimatedModulus, ImpliedModulus, LoadingModulus, ModulusSource, Overlay, across, changing_rate,
-    exponent_not_listed, implied_modulus, loading_modulus, overlay,
+    exponent_not_listed, implied_modulus, loading_modulus, overlay, ramp_relaxes,
 };
 use super::{AnalysisError, AnalysisOptions, Finding};
 use crate::budget::{Budget, Contribution, InputQuantity};
@@ -184,8 +184,11 @@ fn examined(
     forecast_holds(&mut holds, &loadings, options, watch)?;
     findings.extend(specimen.as_ref().and_then(|specimen| uncertain_touch(&contact, specimen, &holds)));
     let across = across(&holds, &exponents, options, 4.0 * segmentation.settings.tolerance, watch)?;
-    findings.extend(changing_rate(&across.joint));
-    findings.extend(exponent_not_listed(&holds, &across));
+    if !measured {
+        findings.extend(ramp_relaxes(&record, &segmentation, &holds));
+    }
+    findings.extend(changing_rate(&across));
+    findings.extend(exponent_not_listed(&holds, &across.evidence));
     let overlay = specimen.as_ref().filter(|_| !holds.is_empty()).and_then(|specimen| {
         let result = overlay(&record, &segmentation, specimen, &holds, across.common_exponent, options);
         result.map_err(|reason| findings.push(Finding::NoOverlay { reason })).ok()

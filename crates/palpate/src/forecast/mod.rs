@@ -32,3 +32,4 @@ pub use result::{Certainty, Comparison, Ranking, Reservation, Row, Verdict};
 pub(crate) use sentence::listed;
 pub use sentence::name_in_words;
 pub use stacked::{Combination, ForecastMember, Forecasted, HoldForecast, TriedHold};
+pub(crate) use verdict::REFUTED;

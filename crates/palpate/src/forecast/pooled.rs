@@ -1,9 +1,9 @@
 //! The law for all holds of a record together.
 //!
-//! Holds are independent of each other, as stretches of one hold are not. For every law that was fitted on all of them, the mean logarithm of
-//! its mean square forecast errors on a hold is one number a hold (where nothing is held out on three holds, its difference of BIC), and the
-//! paired test of `confidence_set.rs` over these numbers says which laws are worse than the best beyond chance; by BIC the sum of the differences
-//! has to exceed 6 too, as on one hold.
+//! Holds are independent of each other, as stretches of one hold are not. For every law that was fitted on all of them, and on most to an optimum
+//! inside its range, the mean logarithm of its mean square forecast errors on a hold is one number a hold (where nothing is held out on three
+//! holds, its difference of BIC), and the paired test of `confidence_set.rs` over these numbers says which laws are worse than the best beyond
+//! chance; by BIC the sum of the differences has to exceed 6 too, as on one hold.
 
 use super::confidence_set::{MARGIN, is_worse, losses};
 use super::result::{Comparison, Ranking, Row};
@@ -26,7 +26,8 @@ pub struct PooledVerdict {
     pub holds: usize,
 }
 
-/// Judges laws by all holds together; `None` for fewer than three holds, or where fewer than two laws were fitted on all of them.
+/// Judges laws by all holds together; `None` for fewer than three holds, or where fewer than two laws were fitted on all of them, and on most to an optimum
+/// inside their range.
 ///
 /// ```
 /// use palpate::fit::Samples;
@@ -65,8 +66,12 @@ pub fn pooled<'a>(comparisons: &[&'a Comparison]) -> Option<PooledVerdict> {
         (!known.is_empty()).then(|| mean(&known))
     };
     let pooled = counted[0].rows.iter().filter_map(|first| {
-        let fitted = |hold: &&'a Comparison| hold.rows.iter().find(|row| row.law == first.law && row.is_good());
+        let fitted = |hold: &&'a Comparison| hold.rows.iter().find(|row| row.law == first.law && row.was_fitted());
         let rows: Vec<&Row> = counted.iter().map(fitted).collect::<Option<_>>()?;
+        // A hold may be too short, or relax too little, to show every term of the law of all others.
+        if 2 * rows.iter().filter(|row| row.is_good()).count() <= rows.len() {
+            return None;
+        }
         let figures: Option<Vec<f64>> = counted.iter().zip(&rows).map(|(hold, row)| figure(hold, row)).collect();
         let evidence: f64 = rows.iter().filter_map(|row| row.delta_bic).sum();
         let refuted = rows.iter().filter(|row| row.delta_bic.is_none_or(|bic| bic > REFUTED)).count();

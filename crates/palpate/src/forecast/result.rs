@@ -44,6 +44,11 @@ impl Row {
     pub fn is_good(&self) -> bool {
         self.spectrum.is_some() || self.fit.as_ref().is_ok_and(|fit| fit.termination.is_good())
     }
+
+    /// Whether the law was fitted, wherever the fit ended.
+    pub(super) fn was_fitted(&self) -> bool {
+        self.spectrum.is_some() || self.fit.is_ok()
+    }
 }
 
 /// Laws compared on one hold.

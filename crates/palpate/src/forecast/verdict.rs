@@ -11,7 +11,7 @@ use crate::laws::Law;
 pub(super) const EVIDENCE: f64 = 6.0;
 
 /// A difference of BIC beyond which a law is refuted ("very strong" evidence in the scale of Kass and Raftery).
-pub(super) const REFUTED: f64 = 10.0;
+pub(crate) const REFUTED: f64 = 10.0;
 
 /// A law whose forecasts miss by more than this share of the change predicts nothing.
 const UNPREDICTIVE: f64 = 1.0 / 3.0;

@@ -9,6 +9,7 @@ mod damage;
 mod exponents;
 mod grip;
 mod instrument;
+mod linear_body;
 mod measured_motion;
 mod observe;
 mod phases;

@@ -86,6 +86,8 @@ fn true_stress_and_strain_are_no_force_and_displacement() {
         ("wahre Dehnung (%)", "wahre Spannung (kPa)"),
         ("Hencky strain (-)", "Cauchy stress (kPa)"),
         ("log strain (mm/mm)", "Cauchy-Spannung (kPa)"),
+        ("Green-Lagrange strain (%)", "Cauchy stress (kPa)"),
+        ("Green strain [%]", "True stress (kPa)"),
         ("Déformation logarithmique (%)", "Contrainte vraie (kPa)"),
         ("Deformación verdadera (%)", "Esfuerzo verdadero (kPa)"),
         ("истинная деформация (%)", "истинное напряжение (kPa)"),

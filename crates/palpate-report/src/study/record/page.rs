@@ -244,11 +244,15 @@ fn holds_word(count: usize) -> String {
     }
 }
 
+/// Of a trend of v by a law that the holds refute.
+const MISFIT: &str = "the law at this exponent misses these holds, so that v, and its trend, are those of the misfit";
+
 /// Whether v is one number, from the holds after loading at the common exponent.
 fn joint_sentence(analysis: &Analysis) -> Option<String> {
     let joint = analysis.across.joint.first().filter(|joint| joint.which == JointHolds::Loading)?;
     let trend = joint.comparison.trend.as_ref()?;
     let verdict = match joint.comparison.verdict {
+        _ if analysis.across.misfit.is_some() => MISFIT,
         TrendVerdict::Constant => "one v describes them all",
         TrendVerdict::FallsWithStrain => "v falls with the equilibrium strain, as the paper reports",
         TrendVerdict::RisesWithStrain => "v rises with the equilibrium strain",
@@ -267,7 +271,9 @@ fn joint_sentence(analysis: &Analysis) -> Option<String> {
 fn trend_sentence(analysis: &Analysis) -> Option<String> {
     let trend = analysis.across.trend?;
     let (low, high) = trend.interval?;
-    let verdict = if low > 0.0 {
+    let verdict = if analysis.across.misfit.is_some() {
+        MISFIT
+    } else if low > 0.0 {
         "v rises with the equilibrium strain"
     } else if high < 0.0 {
         "v falls with the equilibrium strain, as the paper reports"

@@ -613,6 +613,24 @@ impl Finding {
                     "use the fits with a free exponent, or list an exponent in between",
                 )
             }
+            Self::RampRelaxes {
+                hold,
+                ramp,
+                time_constant,
+                share,
+            } => (
+                "ramp_relaxes",
+                Info,
+                format!(
+                    "the ramp before hold {hold} took {} s, and the shortest time constant is {} s: after a ramp of even speed its amplitude is {} % of \
+                     that of a step",
+                    significant(*ramp, 3),
+                    significant(*time_constant, 3),
+                    significant(100.0 * share, 2),
+                ),
+                "the amplitudes and the start of the hold are those after this ramp, and no instantaneous ones",
+                "⟨compare/ramps=measured⟩ gives the amplitudes of a step",
+            ),
             Self::UntilBeyondHolds { until, longest } => caution(
                 "until_beyond_holds",
                 format!(

@@ -2,9 +2,11 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::joint::{JointAnalysis, joint};
+use super::joint::{JointAnalysis, JointHolds, Misfit, joint};
 use crate::analysis::{AnalysisOptions, Finding, HoldAnalysis, Signal};
-use crate::fit::LatencyFit;
+use crate::fit::{ExponentChoice, LatencyFit, TrendVerdict};
+use crate::forecast::{Comparison, REFUTED};
+use crate::laws::Law;
 use crate::segment::After;
 use crate::statistics::{coverage_factor, range};
 use crate::watch::{Cancelled, Watch};
@@ -55,6 +57,8 @@ pub struct Across {
     pub joint: Vec<JointAnalysis>,
     /// Agreement of equilibria.
     pub agreements: Vec<LevelAgreement>,
+    /// What stands against a trend of v at the common exponent.
+    pub misfit: Option<Misfit>,
 }
 
 pub(in crate::analysis) fn across(
@@ -71,9 +75,14 @@ pub(in crate::analysis) fn across(
     };
     // Holds at one level show no trend: between them v has nothing to go with.
     let levels_differ = levels_differ(holds, displacement_tolerance);
+    let misfit = match exponent_not_listed(holds, &evidence) {
+        _ if refutes_latency(holds) => Some(Misfit::Law),
+        found => found.map(|_| Misfit::Exponents),
+    };
     Ok(Across {
         trend: if levels_differ { trend(holds, fit) } else { None },
-        joint: joint(holds, common_exponent, levels_differ, options, watch)?,
+        joint: joint(holds, common_exponent, (levels_differ, misfit), options, watch)?,
+        misfit,
         agreements: agreements(holds, fit, displacement_tolerance),
         common_exponent,
         evidence,
@@ -102,12 +111,9 @@ fn summed_evidence(holds: &[HoldAnalysis], exponents: &[f64]) -> Vec<(f64, f64)>
     sums.into_iter().map(|(n, sum)| (n, sum - lowest)).collect()
 }
 
-/// Difference of the criterion beyond which a law is refuted.
-const REFUTED: f64 = 10.0;
-
 /// A finding if a free exponent refutes the best of the listed ones.
-pub(in crate::analysis) fn exponent_not_listed(holds: &[HoldAnalysis], across: &Across) -> Option<Finding> {
-    let best = across.evidence.iter().min_by(|a, b| a.1.total_cmp(&b.1))?.0;
+pub(in crate::analysis) fn exponent_not_listed(holds: &[HoldAnalysis], evidence: &[(f64, f64)]) -> Option<Finding> {
+    let best = evidence.iter().min_by(|a, b| a.1.total_cmp(&b.1))?.0;
     let better = holds.iter().filter_map(|hold| {
         let candidates = &hold.order.as_ref()?.candidates;
         let (free, listed) =
@@ -119,6 +125,41 @@ pub(in crate::analysis) fn exponent_not_listed(holds: &[HoldAnalysis], across: &
         best,
         delta_bic: better.iter().map(|(_, _, delta)| delta).sum(),
         free: better.iter().map(|(hold, exponent, _)| (*hold, *exponent)).collect(),
+    })
+}
+
+/// Whether most of the holds on which laws were compared refute the latency law with any exponent, and not every other law.
+fn refutes_latency(holds: &[HoldAnalysis]) -> bool {
+    let least = |comparison: &Comparison, of: &dyn Fn(Law) -> bool| {
+        let rows = comparison.rows.iter().filter(|row| row.is_good() && of(row.law));
+        rows.filter_map(|row| row.delta_bic).fold(f64::INFINITY, f64::min)
+    };
+    let is_latency = |law: Law| matches!(law, Law::Latency { .. });
+    let (mut compared, mut refuting) = (0, 0);
+    for comparison in holds.iter().filter_map(|hold| hold.comparison.as_ref()) {
+        let others = least(comparison, &|law| !is_latency(law) && law != Law::Spectrum);
+        compared += 1;
+        refuting += usize::from(others <= REFUTED && least(comparison, &is_latency) > REFUTED);
+    }
+    2 * refuting > compared
+}
+
+/// What the holds after loading say of v, unless it is that v is constant, or that it has no meaning: at the common exponent, or at the free one where
+/// that refutes every listed exponent.
+pub(in crate::analysis) fn changing_rate(across: &Across) -> Option<Finding> {
+    let free = match across.misfit {
+        None => false,
+        Some(Misfit::Exponents) => true,
+        Some(Misfit::Law) => return None,
+    };
+    let requested = |one: &&JointAnalysis| (one.choice == ExponentChoice::Free) == free;
+    let found = across.joint.iter().filter(|one| one.which == JointHolds::Loading).find(requested)?;
+    let trend = found.comparison.trend.as_ref()?;
+    (found.comparison.verdict != TrendVerdict::Constant).then_some(Finding::RateCoefficientTrend {
+        verdict: found.comparison.verdict,
+        holds: trend.points.len(),
+        slope: trend.slope,
+        interval: trend.interval,
     })
 }
 

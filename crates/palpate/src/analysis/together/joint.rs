@@ -2,8 +2,8 @@
 
 use serde::{Deserialize, Serialize};
 
+use crate::analysis::AnalysisOptions;
 use crate::analysis::holds::{HoldAnalysis, Signal};
-use crate::analysis::{AnalysisOptions, Finding};
 use crate::fit::{
     ExponentChoice, HoldWeights, JointComparison, JointFit, JointOptions, Samples, TrendVerdict, compare_joint_watched,
     fit_joint_watched, fitted,
@@ -20,6 +20,16 @@ pub enum JointHolds {
     Loading,
     /// Those after loading and after unloading.
     All,
+}
+
+/// Why a trend of v over the holds has no meaning: it would be that of a misfit.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Misfit {
+    /// A free exponent refutes every listed one.
+    Exponents,
+    /// Most holds refute the latency law with any exponent, and not every other law.
+    Law,
 }
 
 /// The latency law with one v (and n) for several holds.
@@ -44,7 +54,7 @@ pub struct JointAnalysis {
 pub(super) fn joint(
     holds: &[HoldAnalysis],
     common: Option<f64>,
-    levels_differ: bool,
+    (levels_differ, misfit): (bool, Option<Misfit>),
     options: &AnalysisOptions,
     watch: &mut dyn Watch,
 ) -> Result<Vec<JointAnalysis>, Cancelled> {
@@ -63,6 +73,10 @@ pub(super) fn joint(
             let mut analysis = together(which, &holds, choice, options, watch)?;
             if let Some(analysis) = analysis.as_mut().filter(|_| !levels_differ && which == JointHolds::Loading) {
                 analysis.comparison.without_trend();
+            }
+            let is_free = choice == ExponentChoice::Free;
+            if misfit.is_some_and(|misfit| misfit == Misfit::Law || !is_free) {
+                analysis.iter_mut().for_each(|analysis| analysis.comparison.verdict = TrendVerdict::Undecided);
             }
             found.extend(analysis);
         }
@@ -94,16 +108,4 @@ fn together(
         fit,
         comparison,
     }))
-}
-
-/// What the holds after loading say of v at the common exponent, unless it is that v is constant.
-pub(in crate::analysis) fn changing_rate(joint: &[JointAnalysis]) -> Option<Finding> {
-    let first = joint.first().filter(|first| first.which == JointHolds::Loading)?;
-    let trend = first.comparison.trend.as_ref()?;
-    (first.comparison.verdict != TrendVerdict::Constant).then_some(Finding::RateCoefficientTrend {
-        verdict: first.comparison.verdict,
-        holds: trend.points.len(),
-        slope: trend.slope,
-        interval: trend.interval,
-    })
 }

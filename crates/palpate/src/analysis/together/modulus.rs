@@ -4,8 +4,10 @@ use serde::{Deserialize, Serialize};
 
 use crate::analysis::options::{AnalysisOptions, Geometry};
 use crate::contact::Specimen;
-use crate::fit::{ErrorParts, Estimate, ExponentChoice, LatencyFit, fit_hold, select_order};
+use crate::fit::{ErrorParts, Estimate, ExponentChoice, Fit, IntervalMethod, LawOptions, Samples, fit_law};
+use crate::forecast::criteria;
 use crate::instrument::{Deviation, Instrument, InstrumentInput};
+use crate::laws::Law;
 use crate::record::Record;
 use crate::segment::{After, ContactPoint, Phase, Segment, Segmentation};
 use crate::statistics::{median, noise};
@@ -36,7 +38,15 @@ pub(in crate::analysis) struct ImpliedModulus {
     pub(in crate::analysis) value: f64,
     /// Its standard error, Pa; `None` where no fit gave the equilibrium forces.
     pub(in crate::analysis) standard_error: Option<f64>,
-    /// The forces that it follows from.
+    /// The forces that it follows from, by each law that may be that of the body.
+    laws: Vec<ByLaw>,
+}
+
+/// The equilibrium forces of the holds by one law.
+#[derive(Debug, Clone, PartialEq)]
+struct ByLaw {
+    /// Probability of the law.
+    weight: f64,
     forces: Vec<RelaxedForce>,
 }
 
@@ -56,15 +66,23 @@ struct RelaxedHold {
     displacement: f64,
     last: f64,
     after_loading: bool,
-    fits: Vec<LatencyFit>,
+    /// A law each; `None` where it could not be fitted.
+    fits: Vec<Option<Fit>>,
 }
+
+/// Laws that end at an equilibrium, besides the latency law.
+const OTHERS: [Law; 4] = [Law::StandardLinearSolid, Law::Prony { terms: 2 }, Law::Prony { terms: 3 }, Law::Stretched];
+
+/// A law of a smaller probability is left out.
+const LEAST: f64 = 1e-3;
 
 /// E from the holds: weighted least squares of F_e = E g(u₁), with g the equilibrium force of the body at 1 Pa: A(u₁) u₁/depth in
 /// equation (11).
 ///
-/// F_e is where the force of each hold tends to by the law with the exponent that all holds have in common; it needs no E,
-/// since force and strain of a hold differ by a factor. Holds whose fit did not end well do not count; the others count by
-/// the standard error of their F_e, and the error of E is widened where they scatter by more. Where nothing can be fitted
+/// F_e is where the force of each hold tends to by a law that all holds have in common; it needs no E, since force and strain of a hold differ by
+/// a factor. The laws are the latency law with the exponents of the options, and series of exponentials and the stretched one; each counts by exp(−½ Σ ΔBIC) over
+/// the holds, and its E and their scatter between laws are those of the mixture (Buckland, Burnham and Augustin 1997). Holds whose fit did not end well do
+/// not count; the others count by the standard error of their F_e, and the error of E is widened where they scatter by more. Where nothing can be fitted
 /// (a body that does not relax) the last forces of the holds after loading stand in. `None` if no hold has an area, or the
 /// forces are negative.
 pub(in crate::analysis) fn implied_modulus(
@@ -75,39 +93,83 @@ pub(in crate::analysis) fn implied_modulus(
 ) -> Option<ImpliedModulus> {
     let body = geometry.specimen(1.0).ok()?;
     let displacement = record.displacement()?;
+    let latency = options.choices().map(|exponent| Law::Latency { exponent });
+    let laws: Vec<Law> = latency.chain(OTHERS).collect();
     let holds: Vec<RelaxedHold> = segmentation
         .holds()
-        .filter_map(|hold| relaxed_hold(record, displacement, hold, &body, options))
+        .filter_map(|hold| relaxed_hold(record, displacement, (hold, &laws), &body, options))
         .collect();
-    let common = common_choice(&holds, options);
-    let relaxed = |hold: &RelaxedHold| {
-        let fit = hold.fits.iter().find(|fit| Some(fit.choice()) == common)?;
-        let error = fit.equilibrium().standard_error.filter(|_| fit.termination.is_good())?;
-        // Noise-free holds leave rounding only, which is no measure of their weight.
-        let floor = 1e-9 * (fit.equilibrium().value.abs() + fit.amplitude().value.abs());
-        Some(RelaxedForce {
+    let by_law = |(law, weight): (usize, f64)| {
+        let forces: Vec<RelaxedForce> = holds.iter().filter_map(|hold| hold.tends_to(law)).collect();
+        weighted(&forces, &body).map(|found| (found, ByLaw { weight, forces }))
+    };
+    let found: Vec<((f64, f64), ByLaw)> =
+        probabilities(&holds, laws.len()).into_iter().enumerate().filter_map(by_law).collect();
+    let likeliest = found.iter().fold(0.0, |most: f64, (_, law)| most.max(law.weight));
+    let found: Vec<((f64, f64), ByLaw)> = found.into_iter().filter(|(_, law)| law.weight > LEAST * likeliest).collect();
+    if found.is_empty() {
+        let last = |hold: &RelaxedHold| RelaxedForce {
             displacement: hold.displacement,
-            force: fit.equilibrium().value,
-            error: error.max(floor),
-        })
+            force: hold.last,
+            error: 1.0,
+        };
+        let forces: Vec<RelaxedForce> = holds.iter().filter(|hold| hold.after_loading).map(last).collect();
+        let (value, _) = weighted(&forces, &body)?;
+        return Some(ImpliedModulus {
+            value,
+            standard_error: None,
+            laws: vec![ByLaw { weight: 1.0, forces }],
+        });
+    }
+    let all: f64 = found.iter().map(|(_, law)| law.weight).sum();
+    let mean = |of: &dyn Fn(f64, f64) -> f64| {
+        found.iter().map(|((value, error), law)| law.weight * of(*value, *error)).sum::<f64>() / all
     };
-    let forces: Vec<RelaxedForce> = holds.iter().filter_map(relaxed).collect();
-    let is_fitted = !forces.is_empty();
-    let last = |hold: &RelaxedHold| RelaxedForce {
-        displacement: hold.displacement,
-        force: hold.last,
-        error: 1.0,
-    };
-    let forces = match is_fitted {
-        true => forces,
-        false => holds.iter().filter(|hold| hold.after_loading).map(last).collect(),
-    };
-    let (value, error) = weighted(&forces, &body)?;
+    let value = mean(&|value, _| value);
+    let variance = mean(&|of_law, error| error * error + (of_law - value).powi(2));
     Some(ImpliedModulus {
         value,
-        standard_error: is_fitted.then_some(error),
-        forces,
+        standard_error: Some(variance.sqrt()),
+        laws: found.into_iter().map(|(_, law)| law).collect(),
     })
+}
+
+impl RelaxedHold {
+    /// The force that the hold tends to by a law; `None` where its fit did not end well.
+    fn tends_to(&self, law: usize) -> Option<RelaxedForce> {
+        let fit = self.fits[law].as_ref().filter(|fit| fit.termination.is_good())?;
+        let equilibrium = fit.estimate("equilibrium")?;
+        // Noise-free holds leave rounding only, which is no measure of their weight.
+        let floor = 1e-9 * fit.predict(0.0).abs().max(equilibrium.value.abs());
+        Some(RelaxedForce {
+            displacement: self.displacement,
+            force: equilibrium.value,
+            error: equilibrium.standard_error?.max(floor),
+        })
+    }
+
+    /// BIC of each law at the effective number of samples, infinite where it was not fitted.
+    fn criteria(&self) -> Option<Vec<f64>> {
+        let fits = || self.fits.iter().flatten();
+        let closest = fits().min_by(|a, b| a.residual_square.total_cmp(&b.residual_square))?;
+        // Noise-free records leave rounding only; below this share of the signal all residuals are equal.
+        let floor = (1e-9 * closest.predict(0.0)).powi(2) * closest.samples as f64;
+        let effective = closest.effective_samples();
+        let share = effective / closest.samples as f64;
+        let of =
+            |fit: &Fit| criteria(fit.residual_square.max(floor) * share, effective, fit.free_parameters() as f64).bic;
+        Some(self.fits.iter().map(|fit| fit.as_ref().map_or(f64::INFINITY, of)).collect())
+    }
+}
+
+/// Probabilities of so many laws by the sums of their BIC over the holds, up to a factor.
+fn probabilities(holds: &[RelaxedHold], laws: usize) -> Vec<f64> {
+    let mut sums = vec![0.0; laws];
+    for criteria in holds.iter().filter_map(RelaxedHold::criteria) {
+        sums.iter_mut().zip(criteria).for_each(|(sum, of_hold)| *sum += of_hold);
+    }
+    let least = sums.iter().copied().fold(f64::INFINITY, f64::min);
+    sums.iter().map(|sum| if sum.is_finite() { (-0.5 * (sum - least)).exp() } else { 0.0 }).collect()
 }
 
 impl ImpliedModulus {
@@ -145,8 +207,12 @@ impl ImpliedModulus {
             force: deviation.force(found.force),
             ..*found
         };
-        let forces: Vec<RelaxedForce> = self.forces.iter().map(changed).collect();
-        Some(weighted(&forces, &body)?.0)
+        let all: f64 = self.laws.iter().map(|law| law.weight).sum();
+        let of_law = |law: &ByLaw| {
+            let forces: Vec<RelaxedForce> = law.forces.iter().map(changed).collect();
+            Some(law.weight / all * weighted(&forces, &body)?.0)
+        };
+        self.laws.iter().map(of_law).sum()
     }
 }
 
@@ -176,7 +242,7 @@ fn unit_force(body: &Specimen, displacement: f64) -> f64 {
 fn relaxed_hold(
     record: &Record,
     displacement: &[f64],
-    hold: &Segment,
+    (hold, laws): (&Segment, &[Law]),
     body: &Specimen,
     options: &AnalysisOptions,
 ) -> Option<RelaxedHold> {
@@ -194,31 +260,23 @@ fn relaxed_hold(
         return None;
     }
     let until = options.fitted(&times);
-    let fit = |choice| fit_hold(&times[..until], &force[..until], choice, &options.fit).ok();
+    let samples = Samples::new(&times[..until], &force[..until]);
+    let fit = |law: &Law| {
+        let exponent = match law {
+            Law::Latency { exponent } => *exponent,
+            _ => ExponentChoice::Fixed(1.0),
+        };
+        // Standard errors are those of curvature anyway.
+        let fitting = LawOptions {
+            intervals: IntervalMethod::Curvature,
+            ..options.fit.of_latency(exponent)
+        };
+        fit_law(&samples, *law, &fitting).ok()
+    };
     Some(RelaxedHold {
         displacement,
         last: *force.last()?,
         after_loading,
-        fits: options.choices().filter_map(fit).collect(),
+        fits: laws.iter().map(fit).collect(),
     })
-}
-
-/// The lowest listed exponent whose criteria, summed over the holds, are within 2 of the lowest sum; a free one where that
-/// beats all listed ones by more than 2.
-fn common_choice(holds: &[RelaxedHold], options: &AnalysisOptions) -> Option<ExponentChoice> {
-    let requested: Vec<ExponentChoice> = options.choices().collect();
-    let mut sums = vec![0.0; requested.len()];
-    let mut counted = 0;
-    for hold in holds.iter().filter(|hold| hold.fits.len() == requested.len()) {
-        counted += 1;
-        let order = select_order(&hold.fits);
-        sums.iter_mut().zip(&order.candidates).for_each(|(sum, candidate)| *sum += candidate.delta_bic);
-    }
-    let lowest = sums.iter().copied().fold(f64::INFINITY, f64::min);
-    let good = requested.iter().zip(&sums).filter(|(_, sum)| counted > 0 && **sum - lowest <= 2.0);
-    let number = |choice: &ExponentChoice| match choice {
-        ExponentChoice::Fixed(n) => *n,
-        ExponentChoice::Free => f64::INFINITY,
-    };
-    good.map(|(choice, _)| *choice).min_by(|a, b| number(a).total_cmp(&number(b)))
 }
