@@ -125,6 +125,12 @@ pub(super) fn are_systematic(noise: NoiseModel, relative: f64) -> bool {
     relative > 5e-3 && noise.correlations(1).first().is_some_and(|correlation| *correlation > 0.9)
 }
 
+/// Whether residuals go so slowly that few of them are independent, and are so large that they matter.
+fn are_slow(made: &Calibration) -> bool {
+    let samples = made.simulated.len();
+    made.relative > 5e-4 && made.noise.effective_samples(samples) < 0.02 * samples as f64
+}
+
 /// The remark where no instrument is described: what the intervals contain that was found in the record, and what counts as exact.
 fn exact(instrument: &Instrument) -> Option<String> {
     // Others were stated.
@@ -185,6 +191,11 @@ fn remarks_of(made: &Calibration) -> Vec<String> {
     if are_systematic(made.noise, made.relative) {
         remarks.push(format!(
             "The residuals ({} % of the peak) are systematic: the law does not describe all of the record. Standard errors and intervals account for their correlation, not for a law of another form; --fit-until reports a held-out error.",
+            significant(100.0 * made.relative, 2)
+        ));
+    } else if are_slow(made) {
+        remarks.push(format!(
+            "The residuals ({} % of the peak) go slowly: the law misses part of the record, or the force drifts, as of a body that swells. Standard errors and intervals account for their correlation, neither for a law of another form nor for a drift.",
             significant(100.0 * made.relative, 2)
         ));
     }

@@ -3,7 +3,7 @@
 use crate::analysis::Finding;
 use crate::fit::{Assessed, Scale};
 use crate::record::Record;
-use crate::segment::{After, HoldMode, Segment, Segmentation, free_samples};
+use crate::segment::{After, HoldMode, Phase, Segment, Segmentation, free_samples};
 use crate::statistics::{mean, noise};
 
 /// Fewest samples of a rest that tell a drift from noise.
@@ -21,8 +21,9 @@ const MATTERS: f64 = 5e-3;
 ///
 /// The line is one by least squares, with the error that the noise of its residuals gives it, slow noise too.
 pub(super) fn baseline_drifts(record: &Record, segmentation: &Segmentation) -> Option<Finding> {
-    // A way through air may have a force of its own.
-    let loads = segmentation.first_loading()?.start;
+    // A way through air may have a force of its own, and where columns count the other way round a hold comes before all loading.
+    let is_pressed = |segment: &&Segment| matches!(segment.phase, Phase::Loading | Phase::Hold);
+    let loads = segmentation.segments.iter().find(is_pressed)?.start;
     let free = free_samples(record, segmentation).into_iter().next()?;
     let rest = free.start..free.end.min(loads);
     if rest.len() < FEWEST {
@@ -41,10 +42,10 @@ pub(super) fn baseline_drifts(record: &Record, segmentation: &Segmentation) -> O
         let (change, relaxed) = (rate * duration, relaxation(&force[hold.fit_start..hold.end], rate * duration)?);
         (lasts > SHORTEST * duration).then_some((number, change, (change / relaxed).abs()))
     };
-    let is_pressed = |hold: &&Segment| {
+    let counts = |hold: &&Segment| {
         hold.after != Some(After::Unloading) && hold.mode.is_none_or(|mode| mode == HoldMode::DisplacementHeld)
     };
-    let holds = (1..).zip(segmentation.holds()).filter(|(_, hold)| is_pressed(hold)).filter_map(in_hold);
+    let holds = (1..).zip(segmentation.holds()).filter(|(_, hold)| counts(hold)).filter_map(in_hold);
     let (hold, change, share) = holds.max_by(|one, other| one.2.total_cmp(&other.2))?;
     (share > MATTERS).then_some(Finding::BaselineDrifts {
         rate,
@@ -138,6 +139,18 @@ mod tests {
         let jaw = time.iter().map(|t| 1e-3 * elastic(*t)).collect();
         let force = time.iter().map(|t| 5.0 * elastic(*t) + 1e-4 * t + 5e-3 * random.normal()).collect();
         assert_eq!(drift(&Record::new(time, Some(jaw), force).unwrap(), &AnalysisOptions::default()), None);
+    }
+
+    /// Columns of compression that count down: "before first touch" lasted 63 s and contained two holds, and drifted by 180 % of the relaxation.
+    #[test]
+    fn holds_of_columns_that_count_down_are_no_rest() {
+        for seed in 0..3 {
+            let up = record(0.0, 5e-3, 0.0, seed);
+            let down = |values: &[f64]| values.iter().map(|value| -value).collect::<Vec<f64>>();
+            let jaw = down(up.displacement().unwrap());
+            let turned = Record::new(up.time().to_vec(), Some(jaw), down(up.force())).unwrap();
+            assert_eq!(drift(&turned, &AnalysisOptions::default()), None, "{seed}");
+        }
     }
 
     #[test]
