@@ -241,6 +241,18 @@ pub(crate) fn coverage_factor(level: f64, freedom: f64) -> f64 {
     factor
 }
 
+/// Effective degrees of freedom of a combined standard uncertainty by Welch and Satterthwaite (JCGM 100, G.2b), of parts with their own; endless
+/// where all parts are known.
+pub(crate) fn effective_freedom(combined: f64, parts: impl IntoIterator<Item = (f64, f64)>) -> f64 {
+    let sum: f64 = parts.into_iter().map(|(part, freedom)| part.powi(4) / freedom).sum();
+    if sum == 0.0 { f64::INFINITY } else { combined.powi(4) / sum }
+}
+
+/// Student's factor of effective degrees of freedom, truncated (JCGM 100, G.4.1).
+pub(crate) fn effective_factor(level: f64, freedom: f64) -> f64 {
+    coverage_factor(level, freedom.floor().max(1.0))
+}
+
 /// The factor of a bound that holds on one side with a probability of `level`: below 0 for a level below a half.
 pub(crate) fn one_sided_factor(level: f64, freedom: f64) -> f64 {
     let factor = coverage_factor((2.0 * level - 1.0).abs(), freedom);

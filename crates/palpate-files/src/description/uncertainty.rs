@@ -1,6 +1,6 @@
 //! Names of distributions and of evaluations of an uncertainty, as descriptions and materials write them.
 
-use palpate::budget::{Distribution, Evaluation};
+use palpate::budget::{Cause, Distribution, Evaluation};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -67,5 +67,37 @@ impl From<Evaluation> for EvaluationName {
             Evaluation::A => Self::A,
             Evaluation::B => Self::B,
         }
+    }
+}
+
+/// Which records have an error in common: "record" (none, each has its own), or the name of its cause.
+#[derive(Debug, Clone, PartialEq, Eq, Deserialize, Serialize, JsonSchema)]
+#[serde(transparent)]
+#[schemars(rename = "Cause")]
+pub(crate) struct CauseText(String);
+
+/// The text where each record has its own error.
+const EACH_RECORD: &str = "record";
+
+impl CauseText {
+    /// The text of a cause; `None` of one that is not stated.
+    pub(crate) fn of(cause: &Cause) -> Option<Self> {
+        match cause {
+            Cause::AsStated => None,
+            Cause::EachRecord => Some(Self(EACH_RECORD.to_owned())),
+            Cause::Named(name) => Some(Self(name.clone())),
+        }
+    }
+
+    pub(crate) fn cause(text: Option<&Self>) -> Cause {
+        match text {
+            None => Cause::AsStated,
+            Some(Self(text)) if text == EACH_RECORD => Cause::EachRecord,
+            Some(Self(name)) => Cause::Named(name.clone()),
+        }
+    }
+
+    pub(crate) fn text(&self) -> &str {
+        &self.0
     }
 }

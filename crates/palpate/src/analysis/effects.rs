@@ -5,10 +5,9 @@ use super::options::{AnalysisOptions, Geometry};
 use super::together::{EstimatedModulus, ImpliedModulus};
 use crate::budget::InputQuantity;
 use crate::contact::Specimen;
-use crate::fit::{ErrorParts, Fit, LatencyFit, Parameter, ParameterKind, ParameterRole, ParameterUnit};
+use crate::fit::{ErrorParts, Estimate, Fit, LatencyFit, Parameter, ParameterKind, ParameterRole, ParameterUnit};
 use crate::instrument::{Deviation, InstrumentQuantity};
 use crate::segment::ContactPoint;
-use crate::statistics::normal_factor;
 
 /// The quantities off their estimates, and what they have an effect on.
 pub(in crate::analysis) struct Causes<'a> {
@@ -109,13 +108,15 @@ impl<'a> Causes<'a> {
             effects: self.quantities.iter().zip(&self.inputs).map(effect).collect(),
         };
         EstimatedModulus {
-            estimate: implied.estimate().estimate.beside(parts.variance(), self.factor()),
+            estimate: self.beside(implied.estimate().estimate, f64::INFINITY, &parts),
             parts: Some(parts),
         }
     }
 
-    fn factor(&self) -> f64 {
-        normal_factor(self.options.fit.confidence)
+    /// An estimate of this many degrees of freedom with the effects of all inputs.
+    fn beside(&self, estimate: Estimate, freedom: f64, parts: &ErrorParts) -> Estimate {
+        let of_inputs = parts.effects.iter().zip(&self.inputs).map(|(effect, input)| (*effect, input.freedom));
+        estimate.beside(freedom, of_inputs, self.options.fit.confidence)
     }
 
     /// The modulus of the body at the test with a cause off its estimate by `by`, Pa.
@@ -163,6 +164,7 @@ impl<'a> Causes<'a> {
     fn with_effects(&self, fit: &Fit, changed: &[Option<[Changed; 2]>]) -> Fit {
         let mut with = fit.clone();
         let exponent = fit.value("exponent").unwrap_or(1.0);
+        let freedom = fit.uncertainty.as_ref().map_or(f64::INFINITY, |uncertainty| uncertainty.freedom);
         // What the signal tends to, which terms of Fung's laws are shares of.
         let end = fit.predict(1e9 * fit.duration);
         let effect = |parameter: &Parameter, sides: &Option<[Changed; 2]>| {
@@ -174,7 +176,7 @@ impl<'a> Causes<'a> {
                 scatter: parameter.estimate.standard_error,
                 effects: changed.iter().map(|sides| effect(parameter, sides).unwrap_or(0.0)).collect(),
             };
-            parameter.estimate = parameter.estimate.beside(parts.variance(), self.factor());
+            parameter.estimate = self.beside(parameter.estimate, freedom, &parts);
             parameter.parts = Some(parts);
         }
         with

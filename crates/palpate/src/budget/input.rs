@@ -40,6 +40,19 @@ impl Distribution {
     }
 }
 
+/// Which records have the error of an input quantity in common, where several are evaluated together.
+#[derive(Debug, Clone, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Cause {
+    /// Those that state the same of it, to the last digit.
+    #[default]
+    AsStated,
+    /// None: each record has its own error.
+    EachRecord,
+    /// Those that name this cause of the quantity, whatever its size in each.
+    Named(String),
+}
+
 /// An input quantity X of a measurement: its estimate x and the uncertainty of x.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct InputQuantity {
@@ -58,6 +71,9 @@ pub struct InputQuantity {
     pub distribution: Distribution,
     /// How u(x) was evaluated.
     pub evaluation: Evaluation,
+    /// Which records have the error in common.
+    #[serde(default)]
+    pub cause: Cause,
 }
 
 /// A statement of uncertainty that is none.
@@ -105,6 +121,7 @@ impl InputQuantity {
             freedom: f64::INFINITY,
             distribution: Distribution::Normal,
             evaluation: Evaluation::B,
+            cause: Cause::AsStated,
         })
     }
 
@@ -152,6 +169,32 @@ impl InputQuantity {
         Self {
             evaluation: Evaluation::A,
             ..self
+        }
+    }
+
+    /// The same with a statement of which records have its error in common.
+    #[must_use]
+    pub fn with_cause(self, cause: Cause) -> Self {
+        Self { cause, ..self }
+    }
+
+    /// Whether the errors of this input and of that of another record are one, as that of one load cell is.
+    ///
+    /// ```
+    /// use palpate::budget::{Cause, InputQuantity};
+    /// let gain = |share| InputQuantity::standard("gain of the force", "1", 0.0, share);
+    /// assert!(gain(0.02)?.has_cause_of(&gain(0.02)?) && !gain(0.02)?.has_cause_of(&gain(0.0201)?));
+    /// let of_cell = |share, cell: &str| gain(share).map(|gain| gain.with_cause(Cause::Named(cell.to_owned())));
+    /// assert!(of_cell(0.02, "cell 1")?.has_cause_of(&of_cell(0.0201, "cell 1")?));
+    /// assert!(!of_cell(0.02, "cell 1")?.has_cause_of(&of_cell(0.02, "cell 2")?));
+    /// # Ok::<(), palpate::budget::InputError>(())
+    /// ```
+    #[must_use]
+    pub fn has_cause_of(&self, other: &Self) -> bool {
+        match (&self.cause, &other.cause) {
+            (Cause::AsStated, Cause::AsStated) => self == other,
+            (Cause::Named(one), Cause::Named(another)) => one == another && self.name == other.name,
+            _ => false,
         }
     }
 

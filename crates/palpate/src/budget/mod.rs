@@ -10,6 +10,6 @@ mod input;
 mod monte_carlo;
 mod propagation;
 
-pub use input::{Distribution, Evaluation, InputError, InputQuantity};
+pub use input::{Cause, Distribution, Evaluation, InputError, InputQuantity};
 pub use monte_carlo::{MonteCarlo, MonteCarloError, monte_carlo};
 pub use propagation::{Budget, BudgetError, Contribution, Correlation, budget};

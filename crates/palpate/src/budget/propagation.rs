@@ -2,8 +2,8 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::{Distribution, Evaluation, InputQuantity};
-use crate::statistics::coverage_factor;
+use super::{Cause, Distribution, Evaluation, InputQuantity};
+use crate::statistics::{effective_factor, effective_freedom};
 
 /// What one input quantity contributes to the uncertainty of a result.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -166,6 +166,7 @@ impl Budget {
             freedom,
             distribution: Distribution::Normal,
             evaluation: Evaluation::A,
+            cause: Cause::EachRecord,
         };
         let scatter = Contribution { input, effect: scatter };
         Self {
@@ -200,15 +201,14 @@ impl Budget {
     /// Effective degrees of freedom by Welch and Satterthwaite (JCGM 100, G.2b); infinite where all uncertainties are known.
     #[must_use]
     pub fn freedom(&self) -> f64 {
-        let fourth = |contribution: &Contribution| contribution.effect.powi(4) / contribution.input.freedom;
-        let sum: f64 = self.contributions.iter().map(fourth).sum();
-        if sum == 0.0 { f64::INFINITY } else { self.combined().powi(4) / sum }
+        let parts = self.contributions.iter().map(|contribution| (contribution.effect, contribution.input.freedom));
+        effective_freedom(self.combined(), parts)
     }
 
     /// Coverage factor k_p = t_p(ν_eff), the effective degrees of freedom truncated (JCGM 100, G.4.1).
     #[must_use]
     pub fn coverage_factor(&self, confidence: f64) -> f64 {
-        coverage_factor(confidence, self.freedom().floor().max(1.0))
+        effective_factor(confidence, self.freedom())
     }
 
     /// Expanded uncertainty U_p = k_p u_c.

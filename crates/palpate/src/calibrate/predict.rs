@@ -4,11 +4,11 @@ use serde::{Deserialize, Serialize};
 
 use super::extrapolation::{Beyond, Extrapolation};
 use super::range::Span;
-use super::{CalibrateError, CalibrationData, Material};
+use super::{CalibrateError, CalibrationData, Material, MaterialUncertainty, SystematicEffect};
 use crate::analysis::{AnalysisOptions, Geometry};
 use crate::record::Record;
 use crate::simulate::{Contact, Drive, ProgramStep, Sampling, SimulateError, Trajectory, simulate_watched};
-use crate::statistics::{coverage_factor, normal_factor};
+use crate::statistics::{coverage_factor, effective_factor, normal_factor};
 use crate::watch::{Cancelled, Stages, Unwatched, Watch};
 
 /// A predicted course with its uncertainty; SI units.
@@ -31,7 +31,8 @@ pub struct Prediction {
     pub noise: f64,
     /// Coverage of the intervals.
     pub confidence: f64,
-    /// How many standard deviations they are wide, on either side.
+    /// How many standard deviations they are wide, on either side; those of the force and of the displacement have Student's factor of their own
+    /// degrees of freedom where inputs of the instrument have few.
     pub factor: f64,
     /// What was requested beyond the test.
     pub extrapolations: Vec<Extrapolation>,
@@ -82,7 +83,8 @@ impl Material {
     /// exact for a product of powers of lognormal parameters, and farther on one side than on the other where parameters spread widely (Nadolsky &
     /// Sullivan 2001, arXiv:hep-ph/0110378, combine sides so). Parameters that one hold leaves in a curved valley raise f on both sides of a straight
     /// line through it: neither side is nearer than half of their difference. Where f is not positive, or doubles in a direction, f itself stands for
-    /// ln f, and 0 for that half.
+    /// ln f, and 0 for that half. z is Student's factor of the degrees of freedom of the scatter; where inputs of the instrument have few, widths are
+    /// those of the effective ones of each sample (Welch and Satterthwaite).
     ///
     /// # Errors
     /// As for [`simulate`](crate::simulate::simulate()).
@@ -149,7 +151,7 @@ impl Material {
         watch: &mut dyn Watch,
     ) -> Result<Prediction, SimulateError> {
         let best = self.contact();
-        let directions = self.directions();
+        let directions = self.directions_of_freedom();
         let share = 1.0 / (1.0 + 2.0 * directions.len() as f64);
         let mut stages = Stages::new("predicting".to_owned(), watch);
         stages.enter(share);
@@ -161,7 +163,7 @@ impl Material {
         let times = Sampling::Times(trajectory.time.clone());
         let longer = continued(drive, &trajectory);
         let others = longer.as_ref().map_or(drive, Drive::from);
-        for direction in directions {
+        for (direction, apart) in directions {
             let mut course = |contact: &Contact| {
                 stages.enter(share);
                 match simulate_watched(others, contact, &times, &mut stages) {
@@ -170,8 +172,8 @@ impl Material {
                 }
             };
             if let Some((high, low, share)) = both_sides(self, &direction, factor, &mut course)? {
-                force.add(&high.force, &low.force, share);
-                displacement.add(&high.displacement, &low.displacement, share);
+                force.add(&high.force, &low.force, (share, apart));
+                displacement.add(&high.displacement, &low.displacement, (share, apart));
             }
         }
         let beyond = Beyond::of(self, (drive, force_held), &trajectory, &mut stages)?;
@@ -180,6 +182,7 @@ impl Material {
             [(force, &beyond.force), (displacement, &beyond.displacement)].map(|(spreads, beyond)| {
                 // A judgement is no sample: few degrees of freedom of the calibration do not widen it.
                 let normal = normal_factor(confidence);
+                let spreads = spreads.at_confidence(confidence, freedom);
                 self.uncertainty().map(|_| spreads.widened(beyond, normal * normal, factor)).unzip()
             });
         Ok(Prediction {
@@ -199,20 +202,38 @@ impl Material {
     /// uncertain: independent directions, each one standard deviation long.
     #[must_use]
     pub fn directions(&self) -> Vec<Vec<f64>> {
+        self.uncertainty().map_or_else(Vec::new, |uncertainty| root(&joint(uncertainty, |_| true)))
+    }
+
+    /// The same, with each input of finite degrees of freedom a direction of its own, beside these degrees of freedom.
+    fn directions_of_freedom(&self) -> Vec<(Vec<f64>, Option<f64>)> {
         let Some(uncertainty) = self.uncertainty() else {
             return Vec::new();
         };
-        let mut joint = uncertainty.covariance.clone();
-        let known = joint.len();
-        let size = uncertainty.systematic.first().map_or(known, |effect| effect.logs.len());
-        joint.iter_mut().for_each(|row| row.resize(size, 0.0));
-        joint.resize(size, vec![0.0; size]);
-        for effect in &uncertainty.systematic {
-            let beyond = (0..size).flat_map(|i| (0..size).map(move |j| (i, j))).filter(|(i, j)| *i.max(j) >= known);
-            beyond.for_each(|(i, j)| joint[i][j] += effect.logs[i] * effect.logs[j]);
-        }
-        root(&joint)
+        let is_known = |effect: &SystematicEffect| effect.input.freedom.is_infinite();
+        let known = root(&joint(uncertainty, is_known)).into_iter().map(|direction| (direction, None));
+        let others = uncertainty.systematic.iter().filter(|effect| !is_known(effect));
+        known.chain(others.map(|effect| (effect.logs.clone(), Some(effect.input.freedom)))).collect()
     }
+}
+
+/// The covariance of the logarithms of the parameters and of the dimensions of the body, from the scatter and from these effects.
+fn joint(uncertainty: &MaterialUncertainty, counts: impl Fn(&SystematicEffect) -> bool) -> Vec<Vec<f64>> {
+    let mut joint = uncertainty.covariance.clone();
+    let known = joint.len();
+    let size = uncertainty.systematic.first().map_or(known, |effect| effect.logs.len());
+    joint.iter_mut().for_each(|row| row.resize(size, 0.0));
+    joint.resize(size, vec![0.0; size]);
+    let places = || (0..size).flat_map(|i| (0..size).map(move |j| (i, j)));
+    for effect in &uncertainty.systematic {
+        let product = |(i, j): (usize, usize)| effect.logs[i] * effect.logs[j];
+        if counts(effect) {
+            places().filter(|(i, j)| *i.max(j) >= known).for_each(|(i, j)| joint[i][j] += product((i, j)));
+        } else {
+            places().filter(|(i, j)| *i.max(j) < known).for_each(|(i, j)| joint[i][j] -= product((i, j)));
+        }
+    }
+    joint
 }
 
 /// A program with its last hold going on: steps that end at a force end earlier with other parameters, and samples must not lie behind.
@@ -246,6 +267,9 @@ struct Squares {
     off: [f64; 2],
     /// The same of logarithms; infinite where some value is not positive, or its ratio is large.
     log: [f64; 2],
+    /// The part of `even` of inputs of finite degrees of freedom, and the squares of its terms over these.
+    apart: f64,
+    fourths: f64,
 }
 
 impl<'a> Spreads<'a> {
@@ -256,14 +280,20 @@ impl<'a> Spreads<'a> {
         }
     }
 
-    /// Adds the courses on both sides of a direction, which lie `share` of the way to the ends.
-    fn add(&mut self, high: &[f64], low: &[f64], share: f64) {
+    /// Adds the courses on both sides of a direction, which lie `share` of the way to the ends; `apart` are the degrees of freedom of an input that
+    /// has others than the scatter.
+    fn add(&mut self, high: &[f64], low: &[f64], (share, apart): (f64, Option<f64>)) {
         let below_and_above = |high: f64, low: f64| [(-high).max(-low).max(0.0), high.max(low).max(0.0)];
         let add =
             |sums: &mut [f64; 2], off: [f64; 2]| sums.iter_mut().zip(off).for_each(|(sum, off)| *sum += off * off);
         for ((squares, course), (high, low)) in self.squares.iter_mut().zip(self.course).zip(high.iter().zip(low)) {
             let [up, down] = [high, low].map(|side| (side - course) / share);
-            squares.even += (0.5 * (up - down)).powi(2);
+            let square = (0.5 * (up - down)).powi(2);
+            squares.even += square;
+            if let Some(freedom) = apart {
+                squares.apart += square;
+                squares.fourths += square * square / freedom;
+            }
             add(&mut squares.off, below_and_above(up, down));
             let logs = [high, low].map(|side| (side / course).ln() / share);
             // A logarithm that does not exist is not near.
@@ -272,6 +302,18 @@ impl<'a> Spreads<'a> {
             let off = below_and_above(logs[0], logs[1]).map(|off| off.max(even));
             add(&mut squares.log, if is_near { off } else { [f64::INFINITY; 2] });
         }
+    }
+
+    /// The same at the ends of intervals of the effective degrees of freedom of each sample (Welch and Satterthwaite), in place of those of the
+    /// scatter, `freedom`.
+    fn at_confidence(mut self, confidence: f64, freedom: f64) -> Self {
+        for squares in self.squares.iter_mut().filter(|squares| squares.apart > 0.0) {
+            let scatter = (squares.even - squares.apart).max(0.0);
+            let effective = squares.even.powi(2) / (scatter.powi(2) / freedom + squares.fourths);
+            let scale = effective_factor(confidence, effective) / coverage_factor(confidence, freedom);
+            squares.off.iter_mut().chain(&mut squares.log).for_each(|square| *square *= scale * scale);
+        }
+        self
     }
 
     /// Standard errors, and half widths below and above, with the variances `beyond` of judgements whose intervals reach the root of `normal`
@@ -348,7 +390,7 @@ mod tests {
         let course = [5.0, 0.0, 1.0];
         let mut spreads = Spreads::new(&course);
         for log in [0.3_f64, 0.4] {
-            spreads.add(&[5.0 * log.exp(), 1.0, 1.5], &[5.0 * (-log).exp(), -0.5, -0.5], 1.0);
+            spreads.add(&[5.0 * log.exp(), 1.0, 1.5], &[5.0 * (-log).exp(), -0.5, -0.5], (1.0, None));
         }
         let (errors, widths) = spreads.widened(&[0.0; 3], 4.0, 2.0);
         let (below, above) = widths[0];

@@ -7,6 +7,7 @@ use serde::{Deserialize, Serialize};
 
 use super::error::FitError;
 use crate::laws::{Form, name_of_term, term_of_name};
+use crate::statistics::{coverage_factor, effective_factor, effective_freedom};
 
 /// What a parameter of a law is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -206,18 +207,28 @@ pub struct Estimate {
 }
 
 impl Estimate {
-    /// The same with the uncertainty of another, independent cause in quadrature: `variance` in squares of its unit, and `factor` standard
-    /// deviations to either side of it inside the interval. An estimate without an error keeps none.
+    /// The same with other, independent causes in quadrature: the changes by one standard uncertainty of each, in its unit, with the degrees of
+    /// freedom of that; `freedom` are those of this estimate. The interval has Student's factor of the effective degrees of freedom by Welch and
+    /// Satterthwaite, as the [budget](crate::budget::Budget) has. An estimate without an error keeps none.
     #[must_use]
-    pub(crate) fn beside(self, variance: f64, factor: f64) -> Self {
-        let by = factor * variance.sqrt();
+    pub(crate) fn beside(self, freedom: f64, others: impl IntoIterator<Item = (f64, f64)>, confidence: f64) -> Self {
+        let others: Vec<(f64, f64)> = others.into_iter().filter(|(effect, _)| *effect != 0.0).collect();
+        if others.is_empty() {
+            return self;
+        }
+        let variance: f64 = others.iter().map(|(effect, _)| effect * effect).sum();
+        let scatter = self.standard_error.unwrap_or(0.0);
+        let parts = others.iter().copied().chain([(scatter, freedom)]);
+        let factor = effective_factor(confidence, effective_freedom(scatter.hypot(variance.sqrt()), parts));
+        let (by, share) = (factor * variance.sqrt(), factor / coverage_factor(confidence, freedom));
         let ends = |(low, high): (f64, f64)| {
             if low > 0.0 && self.value > 0.0 {
                 // A parameter that cannot change sign.
-                let end = |end: f64| (end / self.value).ln().hypot(by / self.value);
+                let end = |end: f64| (share * (end / self.value).ln()).hypot(by / self.value);
                 (self.value * (-end(low)).exp(), self.value * end(high).exp())
             } else {
-                (self.value - (self.value - low).hypot(by), self.value + (high - self.value).hypot(by))
+                let end = |end: f64| (share * (end - self.value)).hypot(by);
+                (self.value - end(low), self.value + end(high))
             }
         };
         Self {

@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::budget::InputQuantity;
+use crate::budget::{Cause, InputQuantity};
 use crate::contact::{Shape, ShapeDimension};
 
 /// A quantity of the instrument or of the body that is known with an uncertainty. Each is one number for a whole record: an error that all
@@ -124,7 +124,7 @@ impl Instrument {
             let uncertainty = InputQuantity::standard(title, quantity.unit(), 0.0, error).ok()?;
             Some(InstrumentInput {
                 quantity,
-                uncertainty: uncertainty.type_a(),
+                uncertainty: uncertainty.type_a().with_cause(Cause::EachRecord),
             })
         }));
         with

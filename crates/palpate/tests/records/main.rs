@@ -3,6 +3,7 @@
 #[path = "../any_state/mod.rs"]
 mod any_state;
 mod calibrate;
+mod causes;
 mod corrections;
 mod curve_modulus;
 mod damage;

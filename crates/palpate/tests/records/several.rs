@@ -14,7 +14,7 @@ use palpate::test_problems::{Rng, paper_ball};
 use palpate::watch::{Cancelled, Progress, Unwatched};
 
 /// A specimen of the paper's ball with another radius (m), modulus (Pa) and layer thickness (m).
-fn specimen(radius: f64, modulus: f64, thickness: f64) -> ContactModel {
+pub(crate) fn specimen(radius: f64, modulus: f64, thickness: f64) -> ContactModel {
     let ball = paper_ball(Separation::Unilateral);
     let specimen = Specimen::new(Shape::Ball { radius }, modulus, ball.specimen.sides()).unwrap();
     let layers = Layers::of_thickness(thickness, specimen.depth()).unwrap();
@@ -25,7 +25,7 @@ fn specimen(radius: f64, modulus: f64, thickness: f64) -> ContactModel {
     }
 }
 
-fn squeezes() -> Motion {
+pub(crate) fn squeezes() -> Motion {
     let step = |to: f64| ProtocolStep {
         to,
         rate: 0.5 / 60.0,
@@ -34,7 +34,7 @@ fn squeezes() -> Motion {
     protocol(&[step(0.004), step(0.008), step(0.004)]).unwrap()
 }
 
-fn record(name: &str, model: &ContactModel, rate_hz: f64, noise: f64, random: &mut Rng) -> BatchRecord {
+pub(crate) fn record(name: &str, model: &ContactModel, rate_hz: f64, noise: f64, random: &mut Rng) -> BatchRecord {
     let motion = squeezes();
     let times: Vec<f64> = (0..).map(|i| f64::from(i) / rate_hz).take_while(|t| *t <= motion.end()).collect();
     let forces = simulate_force(&motion, model, &times).unwrap();
@@ -51,19 +51,19 @@ fn record(name: &str, model: &ContactModel, rate_hz: f64, noise: f64, random: &m
     }
 }
 
-fn together(records: &[BatchRecord], law: &str, shared: &str) -> Result<SeveralCalibration, SeveralError> {
+pub(crate) fn together(records: &[BatchRecord], law: &str, shared: &str) -> Result<SeveralCalibration, SeveralError> {
     let candidate = Candidate::new(law.parse().unwrap(), EquilibriumLaw::UniformStrain);
     calibrate_several(records, candidate, &shared.parse().unwrap(), 0.95, &mut Unwatched)
 }
 
-fn shared(found: &SeveralCalibration, name: &str) -> (Estimate, Option<f64>) {
+pub(crate) fn shared(found: &SeveralCalibration, name: &str) -> (Estimate, Option<f64>) {
     match found.parameter(name) {
         Some(Between::Shared { estimate, one_value_p }) => (*estimate, *one_value_p),
         other => panic!("{name}: {other:?}"),
     }
 }
 
-fn own(found: &SeveralCalibration, name: &str) -> (Estimate, Spread) {
+pub(crate) fn own(found: &SeveralCalibration, name: &str) -> (Estimate, Spread) {
     match found.parameter(name) {
         Some(Between::Own { mean, spread }) => (*mean, *spread),
         other => panic!("{name}: {other:?}"),

@@ -262,6 +262,7 @@ fn systematic(
             freedom: freedom.unwrap_or(f64::INFINITY),
             distribution: table.distribution.into(),
             evaluation: table.evaluation.into(),
+            cause: CauseText::cause(table.cause.as_ref()),
         },
         logs: table.logs.clone(),
     })

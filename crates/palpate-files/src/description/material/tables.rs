@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 use crate::description::{
     body::tables::{ContactTable, LawTable, SpecimenTable},
     text::quantity::QuantityText,
-    uncertainty::{DistributionName, EvaluationName},
+    uncertainty::{CauseText, DistributionName, EvaluationName},
 };
 
 /// A calibrated body: a protocol's specimen, law and contact, and the same parameters with their errors.
@@ -87,6 +87,8 @@ pub(crate) struct SystematicTable {
     /// How it was evaluated.
     #[serde(rename = "type")]
     pub(crate) evaluation: EvaluationName,
+    /// The cause that it was stated to have; "record" where each record has its own error.
+    pub(crate) cause: Option<CauseText>,
     /// Change of the natural logarithm of each parameter, then of each size of the body, by one standard uncertainty.
     pub(crate) logs: Vec<f64>,
 }

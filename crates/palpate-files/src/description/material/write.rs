@@ -14,7 +14,7 @@ use super::{
 };
 use crate::description::{
     text::quoted,
-    uncertainty::{DistributionName, EvaluationName},
+    uncertainty::{CauseText, DistributionName, EvaluationName},
 };
 
 impl MaterialFile {
@@ -188,6 +188,9 @@ impl MaterialFile {
             );
             if input.freedom.is_finite() {
                 out += &format!("freedom = {:?}\n", input.freedom);
+            }
+            if let Some(cause) = CauseText::of(&input.cause) {
+                out += &format!("cause = {}\n", quoted(cause.text()));
             }
             out += &format!(
                 "distribution = \"{}\"\ntype = \"{}\"\nlogs = {logs:?}\n",

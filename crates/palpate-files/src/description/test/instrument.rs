@@ -18,7 +18,7 @@ use serde::{
 use crate::description::{
     body::tables::{ShapeName, SpecimenTable},
     text::{error::DescriptionError, quantity::QuantityText, source::Source},
-    uncertainty::{DistributionName, EvaluationName},
+    uncertainty::{CauseText, DistributionName, EvaluationName},
 };
 
 /// The uncertainty of the instrument and of the body, each an error that all samples have in common; what is left out counts as exact. A text
@@ -90,6 +90,9 @@ struct UncertaintyTable {
     /// Evaluation: by the statistics of observations (A) or by other means (B, the default).
     #[serde(rename = "type")]
     evaluation: Option<EvaluationName>,
+    /// Where several records are calibrated together: "record" (each has its own error), or the name of a cause, such as "load cell 1", which records
+    /// that name it have in common. Default: records that state the same have it in common.
+    cause: Option<CauseText>,
     /// Of temperature: relative change of the modulus per kelvin, such as "-0.4 %/K".
     modulus_per_k: Option<QuantityText>,
     /// Of temperature: relative change of all rates of relaxation per kelvin.
@@ -370,6 +373,7 @@ impl UncertaintyTable {
         Ok(InputQuantity {
             freedom,
             evaluation: self.evaluation.map_or(Evaluation::B, Evaluation::from),
+            cause: CauseText::cause(self.cause.as_ref()),
             ..input
         })
     }

@@ -1,11 +1,12 @@
 //! Several records to the parameters of a batch.
 
+use super::causes::{CauseOfErrors, Sizes};
 use super::covariance::Covariance;
 use super::joint::{Joint, Member, Optimum};
 use super::result::{BatchParameter, BatchRecord, Between, CalibratedSpecimen, SeveralCalibration};
 use super::sharing::Layout;
 use super::specimen::{Another, range_of};
-use super::spread::{Spread, one_value_p};
+use super::spread::{Differences, Spread, one_value_p};
 use super::start::{is_determined, log_of, log_variance, start};
 use super::{SeveralError, Sharing};
 use crate::analysis::Finding;
@@ -18,7 +19,7 @@ use crate::calibrate::{
 };
 use crate::fit::Estimate;
 use crate::simulate::simulate_force;
-use crate::statistics::{coverage_factor, median, normal_factor};
+use crate::statistics::{coverage_factor, median};
 use crate::watch::{Stages, Watch};
 
 /// Share of the work that the calibrations of the single records are.
@@ -115,6 +116,7 @@ pub fn calibrate_several(
         optimum: &optimum,
         covariance: &covariance,
         another: &another,
+        causes: CauseOfErrors::all(&joint, &optimum, &alone),
         alone: &alone,
     };
     let found = SeveralCalibration {
@@ -167,11 +169,6 @@ fn estimate(log: f64, variance: f64, white: f64, factor: f64) -> Estimate {
     }
 }
 
-/// What the instrument adds to a record calibrated alone.
-fn effects_of(made: &Calibration) -> &[SystematicEffect] {
-    made.material.uncertainty().map_or(&[], |uncertainty| &uncertainty.systematic)
-}
-
 /// All that results are made of.
 struct Batch<'a> {
     candidate: Candidate,
@@ -181,6 +178,7 @@ struct Batch<'a> {
     optimum: &'a Optimum,
     covariance: &'a Covariance,
     another: &'a Another,
+    causes: Vec<CauseOfErrors<'a>>,
     alone: &'a [Calibration],
 }
 
@@ -197,14 +195,12 @@ impl Batch<'_> {
     }
 
     fn parameters(&self) -> Vec<BatchParameter> {
-        let (layout, common) = (&self.joint.layout, self.common_effects());
+        let (layout, common) = (&self.joint.layout, self.effects_on_means());
         let between = |index: usize| {
             if let Some(at) = layout.shared.iter().position(|shared| *shared == index) {
-                let determined = |made: &Calibration| Some((log_of(made, index), log_variance(made, index)?));
-                let (values, variances): (Vec<f64>, Vec<f64>) = self.alone.iter().filter_map(determined).unzip();
                 return Between::Shared {
-                    estimate: self.beside(index, self.estimate_at(at), &common),
-                    one_value_p: if values.len() < 2 { None } else { one_value_p(&values, &variances) },
+                    estimate: self.beside(index, self.estimate_at(at), self.freedom, &common),
+                    one_value_p: self.alone_apart(index).as_ref().and_then(one_value_p),
                 };
             }
             let Some(at) = layout.own.iter().position(|own| *own == index) else {
@@ -212,18 +208,14 @@ impl Batch<'_> {
                     value: self.joint.given[index],
                 };
             };
-            let places: Vec<usize> = (0..layout.records).map(|record| layout.own_places(record).start + at).collect();
-            let values: Vec<f64> = places.iter().map(|place| self.optimum.logs[*place]).collect();
-            let errors: Vec<f64> = places
-                .iter()
-                .flat_map(|i| places.iter().map(move |j| self.variance(&self.covariance.entries, *i, *j)))
-                .collect();
             let mean = layout.shared.len() + at;
             let variance = self.another.of_means[mean][mean];
-            let factor = coverage_factor(self.confidence, (layout.records - 1) as f64);
+            let freedom = (layout.records - 1) as f64;
+            let alone =
+                estimate(self.another.logs[mean], variance, variance, coverage_factor(self.confidence, freedom));
             Between::Own {
-                mean: self.beside(index, estimate(self.another.logs[mean], variance, variance, factor), &common),
-                spread: Spread::of(&values, &errors, self.confidence),
+                mean: self.beside(index, alone, freedom, &common),
+                spread: Spread::of(&self.own_apart(at), self.confidence),
             }
         };
         let names = Material::names(self.candidate, 0).into_iter().enumerate();
@@ -234,6 +226,31 @@ impl Batch<'_> {
                 between: between(index),
             })
             .collect()
+    }
+
+    /// How an own parameter differs between the records, with the errors of these differences.
+    fn own_apart(&self, at: usize) -> Differences {
+        let places = self.joint.layout.places_of_own(at);
+        let values: Vec<f64> = places.iter().map(|place| self.optimum.logs[*place]).collect();
+        let row = |i: &usize| places.iter().map(|j| self.variance(&self.covariance.entries, *i, *j)).collect();
+        let scatter: Vec<f64> = places.iter().flat_map::<Vec<f64>, _>(row).collect();
+        let causes: Vec<Vec<f64>> = self.causes.iter().map(|cause| cause.at(&places)).collect();
+        Differences::new(&values, &scatter, &causes)
+    }
+
+    /// How a parameter differs between the records calibrated alone that determine it; `None` of fewer than two.
+    fn alone_apart(&self, index: usize) -> Option<Differences> {
+        let determined = |record: &usize| log_variance(&self.alone[*record], index).is_some();
+        let records: Vec<usize> = (0..self.alone.len()).filter(determined).collect();
+        let values: Vec<f64> = records.iter().map(|record| log_of(&self.alone[*record], index)).collect();
+        let causes: Vec<Vec<f64>> = self.causes.iter().map(|cause| cause.of_records(&records, index)).collect();
+        let mut scatter = vec![0.0; records.len() * records.len()];
+        for (at, record) in records.iter().enumerate() {
+            let of_instruments: f64 = causes.iter().map(|logs| logs[at] * logs[at]).sum();
+            let all = log_variance(&self.alone[*record], index)?;
+            scatter[at * (records.len() + 1)] = (all - of_instruments).max(0.0);
+        }
+        (records.len() > 1).then(|| Differences::new(&values, &scatter, &causes))
     }
 
     /// The material of a record.
@@ -253,7 +270,7 @@ impl Batch<'_> {
             alone.material.clone().into_parts(),
             estimates,
             &covariance,
-            (self.freedom, effects_of(alone).to_vec()),
+            (self.freedom, self.effects_on(record)),
         )?;
         let rmse = (square / residuals.len() as f64).sqrt();
         Ok(CalibratedSpecimen {
@@ -304,32 +321,33 @@ impl Batch<'_> {
         parts.noise = noise;
         parts.range = range_of(ranges).unwrap_or(parts.range);
         let estimates = another.logs.iter().enumerate().map(of).collect();
-        Ok(Some(self.material(parts, estimates, &another.covariance, (freedom, self.common_effects()))?))
+        Ok(Some(self.material(parts, estimates, &another.covariance, (freedom, self.effects_on_means()))?))
     }
 
-    /// Effects of the instruments on the means over the records: an input that several records state alike is one cause of all of them.
-    fn common_effects(&self) -> Vec<SystematicEffect> {
-        let mut found: Vec<SystematicEffect> = Vec::new();
-        let share = 1.0 / self.alone.len() as f64;
-        for effect in self.alone.iter().flat_map(effects_of) {
-            let of_mean = effect.logs.iter().map(|log| share * log);
-            let same =
-                |other: &&mut SystematicEffect| other.input == effect.input && other.logs.len() == effect.logs.len();
-            match found.iter_mut().find(same) {
-                Some(known) => known.logs.iter_mut().zip(of_mean).for_each(|(sum, log)| *sum += log),
-                None => found.push(SystematicEffect {
-                    input: effect.input.clone(),
-                    logs: of_mean.collect(),
-                }),
-            }
+    fn sizes(&self, record: usize) -> Sizes {
+        Sizes {
+            parameters: self.joint.given.len(),
+            dimensions: self.alone[record].material.body().shape.dimensions().len(),
         }
-        found
     }
 
-    /// An estimate of a parameter with what the instrument adds.
-    fn beside(&self, index: usize, estimate: Estimate, effects: &[SystematicEffect]) -> Estimate {
-        let squares: f64 = effects.iter().map(|effect| effect.logs[index].powi(2)).sum();
-        estimate.beside(estimate.value.powi(2) * squares, normal_factor(self.confidence))
+    /// Effects of the instruments on a record.
+    fn effects_on(&self, record: usize) -> Vec<SystematicEffect> {
+        self.causes
+            .iter()
+            .filter_map(|cause| cause.on_record(self.joint, record, self.sizes(record)))
+            .collect()
+    }
+
+    /// Effects of the instruments on the means over the records, with the body of the first.
+    fn effects_on_means(&self) -> Vec<SystematicEffect> {
+        self.causes.iter().filter_map(|cause| cause.on_means(self.joint, self.sizes(0))).collect()
+    }
+
+    /// An estimate of a parameter, of this many degrees of freedom, with what the instrument adds.
+    fn beside(&self, index: usize, estimate: Estimate, freedom: f64, effects: &[SystematicEffect]) -> Estimate {
+        let of_instrument = effects.iter().map(|effect| (estimate.value * effect.logs[index], effect.input.freedom));
+        estimate.beside(freedom, of_instrument, self.confidence)
     }
 
     /// A body with estimates in the order of [`Layout::parameters`] and their covariance, with degrees of freedom and what the instrument adds.
@@ -356,7 +374,7 @@ impl Batch<'_> {
             })
             .collect();
         for (index, estimate) in order.into_iter().zip(estimates) {
-            parameters[index].estimate = self.beside(index, estimate, &systematic);
+            parameters[index].estimate = self.beside(index, estimate, freedom, &systematic);
         }
         systematic.iter().for_each(|effect| effect.add_to(&mut full));
         Ok(Material::new(MaterialParts {

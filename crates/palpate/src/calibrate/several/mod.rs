@@ -9,6 +9,7 @@
 //! | `start.rs` | where the search starts |
 //! | `joint.rs` | the parameters with the least weighted squares of all residuals |
 //! | `covariance.rs` | their covariance, for residuals that correlate as those of each record do |
+//! | `causes.rs` | errors of the instruments: which records have them in common, and what they move |
 //! | `spread.rs` | the standard deviation between specimens, with its interval |
 //! | `specimen.rs` | the material of another specimen |
 //! | `result.rs` | what comes out |
@@ -16,6 +17,7 @@
 //! | `error.rs` | why there is none |
 
 mod calibrate;
+mod causes;
 mod covariance;
 mod error;
 mod joint;

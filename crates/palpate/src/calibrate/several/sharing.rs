@@ -115,6 +115,11 @@ impl Layout {
         first..first + self.own.len()
     }
 
+    /// Where the own parameter number `at` of each record stands.
+    pub(super) fn places_of_own(&self, at: usize) -> Vec<usize> {
+        (0..self.records).map(|record| self.own_places(record).start + at).collect()
+    }
+
     /// Parameters of the material in the order of [`places`](Self::places).
     pub(super) fn parameters(&self) -> Vec<usize> {
         self.shared.iter().chain(&self.own).copied().collect()

@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 use statrs::distribution::{ChiSquared, ContinuousCDF};
 
-use crate::calibrate::problem::dot;
+use crate::calibrate::problem::{dot, sum_of_squares};
 use crate::optimise::Cholesky;
 
 /// How much a parameter differs between specimens: τ, the standard deviation of its natural logarithm (0.1: by 10 %, to first order).
@@ -27,12 +27,12 @@ pub struct Spread {
 }
 
 impl Spread {
-    /// Of the logarithms `values` of one parameter with the covariance `errors` of their errors, row by row.
-    pub(super) fn of(values: &[f64], errors: &[f64], confidence: f64) -> Self {
-        let freedom = (values.len() - 1) as f64;
+    /// Of the logarithms of one parameter.
+    pub(super) fn of(apart: &Differences, confidence: f64) -> Self {
+        let freedom = apart.values.len() as f64;
         let quantile = |share: f64| ChiSquared::new(freedom).map_or(f64::NAN, |chi| chi.inverse_cdf(share));
         let tail = 0.5 * (1.0 - confidence);
-        let at = |target: f64| variance_at(values, errors, target).sqrt();
+        let at = |target: f64| apart.variance_at(target).sqrt();
         Self {
             deviation: at(freedom),
             interval: (at(quantile(1.0 - tail)), at(quantile(tail))),
@@ -51,60 +51,88 @@ impl Spread {
     }
 }
 
-/// The probability of estimates that differ as much as these, with these variances of their errors, if they were estimates of one value:
-/// Cochran's test.
-pub(super) fn one_value_p(values: &[f64], variances: &[f64]) -> Option<f64> {
-    let mut errors = vec![0.0; values.len() * values.len()];
-    variances.iter().enumerate().for_each(|(i, variance)| errors[i * (values.len() + 1)] = *variance);
-    let chi = ChiSquared::new(values.len().checked_sub(1)? as f64).ok()?;
-    let found = statistic(values, &errors, 0.0);
+/// The probability of estimates that differ as much as these, if they were estimates of one value: Cochran's test.
+pub(super) fn one_value_p(apart: &Differences) -> Option<f64> {
+    let chi = ChiSquared::new(apart.values.len() as f64).ok()?;
+    let found = apart.statistic(0.0);
     found.is_finite().then(|| chi.sf(found))
 }
 
-/// Q(τ²); without end where estimates without error differ.
-fn statistic(values: &[f64], errors: &[f64], variance: f64) -> f64 {
-    let size = values.len();
-    let mut total = errors.to_vec();
-    (0..size).for_each(|i| total[i * (size + 1)] += variance);
-    let Some(factor) = Cholesky::new(&total, size) else {
-        return f64::INFINITY;
-    };
-    let solved = |right: &[f64]| {
-        let mut right = right.to_vec();
-        factor.solve(&mut right);
-        right
-    };
-    // Differences from the mean give the same, with fewer digits lost.
-    let mean = values.iter().sum::<f64>() / size as f64;
-    let from_mean: Vec<f64> = values.iter().map(|value| value - mean).collect();
-    let (ones, weighted) = (solved(&vec![1.0; size]), solved(&from_mean));
-    let sum: f64 = weighted.iter().sum();
-    dot(&from_mean, &weighted) - sum * sum / ones.iter().sum::<f64>()
+/// How estimates y of k records differ: Ay with orthonormal rows of A that sum to 0 (Helmert's), and the covariance A V Aᵀ of its errors.
+///
+/// An error that all records have in common cancels here, before any matrix is inverted; what only one record has, or what one cause changes more in
+/// one than in another, stays. Then Q(τ²) = (Ay)ᵀ(A V Aᵀ + τ² I)⁻¹ Ay, which is yᵀP y.
+pub(super) struct Differences {
+    values: Vec<f64>,
+    /// Row by row.
+    errors: Vec<f64>,
 }
 
-/// τ² with Q(τ²) = target; 0 where Q is below it everywhere.
-fn variance_at(values: &[f64], errors: &[f64], target: f64) -> f64 {
-    let mean = values.iter().sum::<f64>() / values.len() as f64;
-    let square: f64 = values.iter().map(|value| (value - mean).powi(2)).sum();
-    // Errors that vanish against the spread, or all of it: Q ≤ square/τ².
-    let mut high = square / target;
-    if high <= 0.0 || statistic(values, errors, 0.0) <= target {
-        return 0.0;
-    }
-    // Estimates without any error: a share that rounding does not see.
-    let mut low = 1e-14 * high;
-    if statistic(values, errors, low) <= target {
-        return low;
-    }
-    // Q falls from low to high; halving the logarithm is exact enough and cannot fail.
-    while high / low > 1.0 + 1e-12 {
-        let middle = (low * high).sqrt();
-        if middle <= low || middle >= high {
-            break;
+impl Differences {
+    /// Of estimates with the covariance of their scatter, row by row, and what one standard uncertainty of each cause of further errors changes
+    /// of them.
+    pub(super) fn new(values: &[f64], scatter: &[f64], causes: &[Vec<f64>]) -> Self {
+        let size = values.len();
+        let rows: Vec<Vec<f64>> = scatter.chunks_exact(size).map(contrasts).collect();
+        let column = |j: usize| contrasts(&rows.iter().map(|row| row[j]).collect::<Vec<f64>>());
+        let mut errors: Vec<f64> = (0..size - 1).flat_map(column).collect();
+        for cause in causes.iter().map(|cause| contrasts(cause)) {
+            let products = cause.iter().flat_map(|a| cause.iter().map(move |b| a * b));
+            errors.iter_mut().zip(products).for_each(|(entry, product)| *entry += product);
         }
-        if statistic(values, errors, middle) > target { low = middle } else { high = middle }
+        Self {
+            values: contrasts(values),
+            errors,
+        }
     }
-    (low * high).sqrt()
+
+    /// Q(τ²); without end where estimates without error differ.
+    fn statistic(&self, variance: f64) -> f64 {
+        let size = self.values.len();
+        let mut total = self.errors.clone();
+        (0..size).for_each(|i| total[i * (size + 1)] += variance);
+        let Some(factor) = Cholesky::new(&total, size) else {
+            return f64::INFINITY;
+        };
+        let mut solved = self.values.clone();
+        factor.solve(&mut solved);
+        dot(&self.values, &solved)
+    }
+
+    /// τ² with Q(τ²) = target; 0 where Q is below it everywhere.
+    fn variance_at(&self, target: f64) -> f64 {
+        // Errors that vanish against the spread, or all of it: Q ≤ square/τ².
+        let mut high = sum_of_squares(&self.values) / target;
+        if high <= 0.0 || self.statistic(0.0) <= target {
+            return 0.0;
+        }
+        // Estimates without any error: a share that rounding does not see.
+        let mut low = 1e-14 * high;
+        if self.statistic(low) <= target {
+            return low;
+        }
+        // Q falls from low to high; halving the logarithm is exact enough and cannot fail.
+        while high / low > 1.0 + 1e-12 {
+            let middle = (low * high).sqrt();
+            if middle <= low || middle >= high {
+                break;
+            }
+            if self.statistic(middle) > target { low = middle } else { high = middle }
+        }
+        (low * high).sqrt()
+    }
+}
+
+/// A y: of each value but the first the difference from the mean of those before it, by √(i/(i + 1)) of variance 1.
+fn contrasts(values: &[f64]) -> Vec<f64> {
+    let mut mean = values[0];
+    let mut apart = Vec::with_capacity(values.len() - 1);
+    for (index, value) in values.iter().enumerate().skip(1) {
+        let before = index as f64;
+        apart.push((value - mean) * (before / (before + 1.0)).sqrt());
+        mean += (value - mean) / (before + 1.0);
+    }
+    apart
 }
 
 #[cfg(test)]
@@ -120,7 +148,7 @@ mod tests {
         let mean = values.iter().sum::<f64>() / 5.0;
         let square: f64 = values.iter().map(|value| (value - mean).powi(2)).sum();
         for errors in [vec![0.0; 25], (0..25).map(|at| if at % 6 == 0 { 1e-12 } else { 0.0 }).collect()] {
-            let found = Spread::of(&values, &errors, 0.95);
+            let found = Spread::of(&Differences::new(&values, &errors, &[]), 0.95);
             assert!((found.deviation - (square / 4.0).sqrt()).abs() < 1e-9, "{found:?}");
             assert!((found.interval.0 / (square / 11.143_287).sqrt() - 1.0).abs() < 1e-6, "{found:?}");
             assert!((found.interval.1 / (square / 0.484_419).sqrt() - 1.0).abs() < 1e-6, "{found:?}");
@@ -133,7 +161,10 @@ mod tests {
         let values = [1.0, 1.3, 0.7, 1.1, 1.05];
         let with =
             |common: f64| -> Vec<f64> { (0..25).map(|at| common + if at % 6 == 0 { 0.01 } else { 0.0 }).collect() };
-        let (without, beside) = (Spread::of(&values, &with(0.0), 0.95), Spread::of(&values, &with(0.5), 0.95));
+        let (without, beside) = {
+            let of = |common: f64| Spread::of(&Differences::new(&values, &with(common), &[]), 0.95);
+            (of(0.0), of(0.5))
+        };
         assert!((without.deviation - beside.deviation).abs() < 1e-8, "{without:?} {beside:?}");
         assert!((without.interval.1 - beside.interval.1).abs() < 1e-8);
     }
@@ -147,7 +178,7 @@ mod tests {
         let mut covered = 0;
         for _ in 0..2000 {
             let values: Vec<f64> = deviations.iter().map(|error| tau * rng.normal() + error * rng.normal()).collect();
-            let found = Spread::of(&values, &errors, 0.95);
+            let found = Spread::of(&Differences::new(&values, &errors, &[]), 0.95);
             covered += usize::from(found.interval.0 <= tau && tau <= found.interval.1);
         }
         // 95 % of 2000 ± 3 standard deviations of the count.
@@ -157,11 +188,11 @@ mod tests {
     #[test]
     fn estimates_within_their_errors_have_no_spread() {
         let errors: Vec<f64> = (0..9).map(|at| if at % 4 == 0 { 0.04 } else { 0.0 }).collect();
-        let found = Spread::of(&[1.0, 1.05, 0.98], &errors, 0.95);
+        let found = Spread::of(&Differences::new(&[1.0, 1.05, 0.98], &errors, &[]), 0.95);
         assert_eq!((found.deviation, found.is_distinguishable()), (0.0, false));
         assert!(found.interval.1 > 0.1);
         // (0.0, 0.05, −0.02)²/0.04 about their mean: Q = 0.065, and exp(−Q/2) for two degrees of freedom.
-        let p = one_value_p(&[1.0, 1.05, 0.98], &[0.04; 3]).unwrap();
+        let p = one_value_p(&Differences::new(&[1.0, 1.05, 0.98], &errors, &[])).unwrap();
         assert!((p - (-0.5 * 0.0026 / 0.04_f64).exp()).abs() < 1e-9, "{p}");
     }
 }

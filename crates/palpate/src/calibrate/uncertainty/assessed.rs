@@ -8,7 +8,6 @@ use crate::calibrate::{
     CalibrateError, CalibrationData, Material, MaterialParameter, MaterialUncertainty, SystematicEffect,
 };
 use crate::fit::{Assessed, Estimate, NoiseModel, Scale, Termination};
-use crate::statistics::normal_factor;
 use crate::watch::Stages;
 
 /// Distance from the best value, as a logarithm, beyond which an end counts as open: a factor of a million.
@@ -99,9 +98,10 @@ impl<'a> AssessedMaterial<'a> {
         let Some(assessed) = self.found().filter(|_| !is_given) else {
             return Estimate::fixed(value);
         };
-        let of_instrument: f64 = self.systematic.iter().map(|effect| (value * effect.logs[index]).powi(2)).sum();
+        let of_instrument = self.systematic.iter().map(|effect| (value * effect.logs[index], effect.input.freedom));
+        let freedom = assessed.uncertainty.as_ref().map_or(f64::INFINITY, |uncertainty| uncertainty.freedom);
         let estimate = assessed.estimate(value, &self.gradients[index], Scale::Log);
-        let estimate = estimate.beside(of_instrument, normal_factor(self.confidence));
+        let estimate = estimate.beside(freedom, of_instrument, self.confidence);
         match estimate.interval {
             Some((_, high)) if (high / value).ln() < FARTHEST => estimate,
             _ => Estimate::fixed(value),
