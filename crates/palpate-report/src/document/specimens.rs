@@ -38,7 +38,7 @@ documents! {
         mean: f64 = found.sample.mean,
         /// Standard deviation between specimens; `null` for one.
         standard_deviation: Option<f64> = found.sample.standard_deviation,
-        /// Confidence interval of the mean by Student's distribution; `null` for one specimen.
+        /// Confidence interval of the mean by Student's distribution, without errors that all specimens have in common; `null` for one specimen.
         interval: Option<[f64; 2]> = found.sample.interval.map(|(low, high)| [low, high]),
     }
 

@@ -125,7 +125,7 @@ fn between_table(results: &SpecimenResults) -> Option<Table> {
     let severe = (!found.is_empty()).then(|| format!("Records with findings count as others: {}.", found.join(", ")));
     let notes: String = mixed.into_iter().chain(twice).chain(severe).map(|note| format!(" {note}")).collect();
     let caption = format!(
-        "Parameters{law} between specimens: mean, standard deviation, coefficient of variation, and {share} interval of the mean by Student\u{2019}s distribution; of rates and times by their logarithms (geometric).{notes}"
+        "Parameters{law} between specimens: mean, standard deviation, coefficient of variation, and {share} interval of the mean by Student\u{2019}s distribution, from the scatter between specimens alone: an error of the instrument that all of them have in common is not in it; of rates and times by their logarithms (geometric).{notes}"
     );
     const ONE: &str = "one specimen";
     let number = |value: Option<f64>| Cell::number_or(value, 4, ONE);

@@ -137,7 +137,7 @@ impl<'a> Causes<'a> {
             Cause::EstimatedModulus => Deviation::default(),
         };
         let (gain, zero) = (deviation.force(1.0) - deviation.force(0.0), deviation.force(0.0));
-        let rate = 1.0 / (1.0 + deviation.rate_at_temperature);
+        let rate = 1.0 / deviation.time(1.0 + deviation.rate_at_temperature);
         if hold.signal == Signal::Force {
             return Some(Changed {
                 scale: gain,

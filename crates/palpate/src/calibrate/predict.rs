@@ -414,7 +414,7 @@ mod tests {
     #[test]
     fn an_interval_has_two_sides_where_a_valley_is_curved() {
         let mut spreads = Spreads::new(&[1.0]);
-        spreads.add(&[0.03_f64.exp()], &[0.01_f64.exp()], 1.0);
+        spreads.add(&[0.03_f64.exp()], &[0.01_f64.exp()], (1.0, None));
         let (_, widths) = spreads.widened(&[0.0], 4.0, 2.0);
         let (below, above) = widths[0];
         assert!((below + (-0.01_f64).exp_m1()).abs() < 1e-14, "{below}");

@@ -11,6 +11,7 @@ pub(crate) struct Deviation {
     displacement: f64,
     displacement_gain: f64,
     compliance: f64,
+    clock: f64,
     dimension: Option<(ShapeDimension, f64)>,
     modulus: f64,
     /// Relative changes at the stated temperature.
@@ -34,6 +35,7 @@ impl Deviation {
                 ..none
             },
             InstrumentQuantity::Compliance => Self { compliance: by, ..none },
+            InstrumentQuantity::Clock => Self { clock: by, ..none },
             InstrumentQuantity::Body { dimension } => Self {
                 dimension: Some((dimension, by)),
                 ..none
@@ -58,6 +60,11 @@ impl Deviation {
     /// The displacement since first touch where `measured` was read under a force, m.
     pub(crate) fn displacement(&self, measured: f64, force: f64) -> f64 {
         measured * (1.0 + self.displacement_gain) + self.displacement - self.compliance * force
+    }
+
+    /// The time where `measured` was read, s.
+    pub(crate) fn time(&self, measured: f64) -> f64 {
+        measured * (1.0 + self.clock)
     }
 
     /// The shape.

@@ -22,6 +22,8 @@ pub enum InstrumentQuantity {
     Compliance,
     /// First touch, m.
     Touch,
+    /// Gain of the clock, a share of all times.
+    Clock,
     /// A length or area of the body, m or m².
     Body {
         /// Which.
@@ -49,6 +51,7 @@ impl InstrumentQuantity {
             Self::DisplacementGain => "displacement_gain",
             Self::Compliance => "compliance",
             Self::Touch => "touch",
+            Self::Clock => "clock",
             Self::Body { dimension } => dimension.name(),
             Self::Modulus => "modulus",
             Self::Temperature { .. } => "temperature",
@@ -64,6 +67,7 @@ impl InstrumentQuantity {
             Self::Displacement => "zero of the displacement",
             Self::DisplacementGain => "gain of the displacement",
             Self::Touch => "first touch",
+            Self::Clock => "gain of the clock",
             _ => self.name(),
         }
     }
@@ -73,7 +77,7 @@ impl InstrumentQuantity {
     pub fn unit(self) -> &'static str {
         match self {
             Self::Force => "N",
-            Self::ForceGain | Self::DisplacementGain => "1",
+            Self::ForceGain | Self::DisplacementGain | Self::Clock => "1",
             Self::Displacement | Self::Touch => "m",
             Self::Compliance => "m/N",
             Self::Body { dimension } => dimension.unit(),
@@ -108,8 +112,8 @@ pub struct Instrument {
 }
 
 impl Instrument {
-    /// The same with the errors of first touch (m) and of the zero of the force (N) as they were found in the record; a zero that is stated is that
-    /// of the tare, and found no more.
+    /// The same with the errors of first touch (m) and of the zero of the force (N) as they were found in the record. A zero of the force that is
+    /// stated is that of the tare, and found no more. That of the displacement has no effect where first touch was found: it moves with it.
     #[must_use]
     pub(crate) fn with_found(&self, touch: Option<f64>, force: Option<f64>) -> Self {
         let found = [
@@ -119,6 +123,7 @@ impl Instrument {
         let is_stated = self.inputs.iter().any(|input| input.quantity == InstrumentQuantity::Force);
         let found = found.into_iter().filter(|(quantity, ..)| !(is_stated && *quantity == InstrumentQuantity::Force));
         let mut with = self.clone();
+        with.inputs.retain(|input| touch.is_none() || input.quantity != InstrumentQuantity::Displacement);
         with.inputs.extend(found.filter_map(|(quantity, title, error)| {
             let error = error.filter(|error| *error > 0.0)?;
             let uncertainty = InputQuantity::standard(title, quantity.unit(), 0.0, error).ok()?;
@@ -134,5 +139,25 @@ impl Instrument {
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.inputs.is_empty()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A zero of 0.5 mm was added to the error of a first touch that moves with it.
+    #[test]
+    fn a_zero_of_the_displacement_has_no_effect_where_touch_is_found() {
+        let quantity = InstrumentQuantity::Displacement;
+        let uncertainty = InputQuantity::standard(quantity.title(), quantity.unit(), 0.0, 5e-4).unwrap();
+        let stated = Instrument {
+            inputs: vec![InstrumentInput { quantity, uncertainty }],
+        };
+        let quantities = |touch| -> Vec<InstrumentQuantity> {
+            stated.with_found(touch, None).inputs.iter().map(|input| input.quantity).collect()
+        };
+        assert_eq!(quantities(Some(1e-5)), [InstrumentQuantity::Touch]);
+        assert_eq!(quantities(None), [quantity]);
     }
 }

@@ -171,3 +171,25 @@ fn a_wrong_radius_does_not_blur_what_the_test_has_shown() {
     let (scatter, _) = error(&[]);
     assert!(force < scatter + 5e-3, "{force} {scatter}");
 }
+
+/// The clock could not be stated, though a rate is wrong by as much as it is.
+#[test]
+fn rates_are_as_uncertain_as_the_clock() {
+    let measured = record(0.035, (0.0, 0.0, 0.0), 0.02, 7);
+    let (stated, by) = (instrument(&[(InstrumentQuantity::Clock, 0.03)]), 0.03 / 3f64.sqrt());
+    let found = calibrated(&measured, 0.035, stated.clone()).material;
+    let [modulus, exponent, rate, thickness] = found.uncertainty().unwrap().systematic[0].logs[..4] else {
+        unreachable!()
+    };
+    assert!((rate + by).abs() < 2e-3 * by, "{rate}");
+    assert!(
+        [modulus, exponent, thickness].into_iter().all(|log| log.abs() < 1e-3 * by),
+        "{modulus} {exponent} {thickness}"
+    );
+    let held = analyze(&measured, &options(0.035, Some(28e3), stated)).unwrap();
+    let fit = held.holds[1].fit_with(5.0).unwrap();
+    let named =
+        |name: &str| fit.parameters.iter().find(|parameter| parameter.name.to_string().starts_with(name)).unwrap();
+    let effect = |name: &str| named(name).parts.as_ref().unwrap().effects[0] / named(name).estimate.value;
+    assert!((effect("rate_coefficient") + by).abs() < 1e-3 * by && effect("equilibrium") == 0.0);
+}

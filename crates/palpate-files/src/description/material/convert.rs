@@ -32,6 +32,7 @@ use crate::description::{
         quantity::QuantityText,
         source::{self, Source},
     },
+    uncertainty::CauseText,
 };
 
 /// Reads and checks the material in the file at `path`.

@@ -39,6 +39,8 @@ pub(crate) struct InstrumentTable {
     compliance: Option<Uncertain>,
     /// First touch, as far as the record does not show it.
     touch: Option<Uncertain>,
+    /// Gain of the clock, a share of all times, such as "0.1 %".
+    clock: Option<Uncertain>,
     /// Radius of a ball, pad, spherical tip or flat punch.
     radius: Option<Uncertain>,
     /// Diameter of a cylinder.
@@ -168,7 +170,7 @@ pub(super) fn checked(
     let thickness = section(specimen.and_then(|table| table.thickness.as_ref()).filter(|_| is_flat), "thickness", 1.0)?;
     let diameter = section(specimen.and_then(|table| table.diameter.as_ref()), "diameter", 2.0)?;
     let of_thickness = if is_flat { ShapeDimension::Area } else { ShapeDimension::Thickness };
-    let entries: [(&Option<Uncertain>, Key); 16] = [
+    let entries: [(&Option<Uncertain>, Key); 17] = [
         (&table.force, ("force", InstrumentQuantity::Force, Dimension::Force, 1.0)),
         (&table.force_gain, ("force_gain", InstrumentQuantity::ForceGain, Dimension::Share, 1.0)),
         (&table.displacement, ("displacement", InstrumentQuantity::Displacement, Dimension::Length, 1.0)),
@@ -178,6 +180,7 @@ pub(super) fn checked(
         ),
         (&table.compliance, ("compliance", InstrumentQuantity::Compliance, Dimension::Compliance, 1.0)),
         (&table.touch, ("touch", InstrumentQuantity::Touch, Dimension::Length, 1.0)),
+        (&table.clock, ("clock", InstrumentQuantity::Clock, Dimension::Share, 1.0)),
         (&table.radius, ("radius", body(ShapeDimension::Radius), Dimension::Length, 1.0)),
         (&table.diameter, ("diameter", body(ShapeDimension::Area), Dimension::Length, diameter)),
         (&table.width, ("width", body(ShapeDimension::Area), Dimension::Length, width)),
@@ -218,6 +221,7 @@ fn believable(
         InstrumentQuantity::ForceGain
         | InstrumentQuantity::DisplacementGain
         | InstrumentQuantity::Compliance
+        | InstrumentQuantity::Clock
         | InstrumentQuantity::Displacement
         | InstrumentQuantity::Touch => Some(1.0),
         InstrumentQuantity::Temperature { .. } => Some(1e3),

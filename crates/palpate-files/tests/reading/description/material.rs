@@ -3,7 +3,7 @@
 
 use std::path::Path;
 
-use palpate::budget::{Distribution, InputQuantity};
+use palpate::budget::{Cause, Distribution, InputQuantity};
 use palpate::calibrate::{
     Body, CalibrationRange, Candidate, EquilibriumLaw, Material, MaterialParameter, MaterialParts, MaterialUncertainty,
     MaterialUnit, RateLaw, SystematicEffect,
@@ -159,9 +159,15 @@ fn what_the_instrument_adds_is_written_and_read() {
         input,
         logs: vec![third, -third, 0.0, 1e-3 * third, 0.5 * third],
     };
-    let touch = limits("first \"touch\"", "m", 1e-4 / 3.0).type_a().with_freedom(7.5).unwrap();
-    parts.uncertainty.as_mut().unwrap().systematic =
-        vec![effect(touch, 1.0 / 3.0), effect(limits("radius", "m", 0.0), 0.0)];
+    let touch = limits("first \"touch\"", "m", 1e-4 / 3.0)
+        .type_a()
+        .with_cause(Cause::EachRecord)
+        .with_freedom(7.5)
+        .unwrap();
+    parts.uncertainty.as_mut().unwrap().systematic = vec![
+        effect(touch, 1.0 / 3.0),
+        effect(limits("radius", "m", 0.0).with_cause(Cause::Named("gauge".to_owned())), 0.0),
+    ];
     file.material = Material::new(parts).unwrap();
     let text = file.to_toml();
     assert_eq!(parse_material(&text, Path::new("m.toml")).unwrap(), file, "{text}");

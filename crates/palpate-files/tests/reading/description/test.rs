@@ -2,7 +2,7 @@
 
 use palpate::{
     analysis::LayersChoice,
-    budget::Evaluation,
+    budget::{Cause, Evaluation},
     contact::{Equilibrium, Shape, Sides},
     instrument::InstrumentQuantity,
     segment::{ContactChoice, GivenHold, HoldMode, HoldStart},
@@ -278,7 +278,8 @@ fn an_instrument_is_read_with_its_distributions() {
         force = "0.2 N"
         force_gain = { limits = "0.5 %", distribution = "triangular" }
         displacement = "1e-3 mm"
-        touch = { standard = "0.05 mm", type = "A", freedom = 9 }
+        touch = { standard = "0.05 mm", type = "A", freedom = 9, cause = "record" }
+        clock = { standard = "0.1 %", cause = "clock 2" }
         radius = { limits = "0.1 mm", distribution = "arcsine" }
         modulus = { expanded = "1 kPa", coverage_factor = 2 }
         temperature = { standard = "0.5 K", modulus_per_k = "-0.4 %/K" }
@@ -289,6 +290,7 @@ fn an_instrument_is_read_with_its_distributions() {
         ("force_gain", 0.005 / 6f64.sqrt()),
         ("displacement", 1e-6 / 3f64.sqrt()),
         ("touch", 5e-5),
+        ("clock", 1e-3),
         ("radius", 1e-4 / 2f64.sqrt()),
         ("modulus", 500.0),
         ("temperature", 0.5),
@@ -303,7 +305,9 @@ fn an_instrument_is_read_with_its_distributions() {
         modulus_per_k: -0.004,
         rate_per_k: 0.0,
     };
-    assert_eq!(inputs[6].quantity, effects);
+    assert_eq!(inputs[7].quantity, effects);
+    let causes = [2, 3, 4].map(|index: usize| inputs[index].uncertainty.cause.clone());
+    assert_eq!(causes, [Cause::AsStated, Cause::EachRecord, Cause::Named("clock 2".to_owned())]);
     // The section of a cylinder follows from its diameter: u(A) = 2 A/d u(d).
     let cylinder = r#"
         specimen = { shape = "cylinder", diameter = "20 mm", length = "30 mm" }

@@ -60,9 +60,11 @@ impl Side {
         let prepared = problem.prepared.with_shape(deviation.shape(&problem.prepared.body.shape))?;
         let motion = moved(data, deviation)?;
         let forces: Vec<f64> = problem.forces.iter().map(|force| deviation.force(*force)).collect();
+        let times: Vec<f64> = problem.times.iter().map(|time| deviation.time(*time)).collect();
         let residuals = Problem {
             prepared: &prepared,
             motion: &motion,
+            times: &times,
             forces: &forces,
             ..*problem
         }
@@ -94,9 +96,9 @@ fn logs(prepared: &Prepared, theta: &[f64], deviation: &Deviation) -> Vec<f64> {
 /// The motion of the jaw with a quantity off its estimate. A touch that was earlier prolongs the first ramp back to it.
 fn moved(data: &CalibrationData, deviation: &Deviation) -> Option<Motion> {
     let motion = data.motion();
-    let mut times = motion.times().to_vec();
     let displaced = |(time, place): (&f64, &f64)| deviation.displacement(*place, data.force_at(*time));
-    let mut places: Vec<f64> = times.iter().zip(motion.displacements()).map(displaced).collect();
+    let mut places: Vec<f64> = motion.times().iter().zip(motion.displacements()).map(displaced).collect();
+    let mut times: Vec<f64> = motion.times().iter().map(|time| deviation.time(*time)).collect();
     let (start, speed) = (motion.displacements()[0], (places[1] - places[0]) / (times[1] - times[0]));
     if places[0] > start && speed > 0.0 {
         times.insert(0, times[0] - (places[0] - start) / speed);
