@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use super::software::Software;
-use crate::result::{BetweenSpecimens, Input, LeftOut, SpecimenResult, SpecimenResults};
+use crate::result::{BetweenSpecimens, Input, LeftOut, SpecimenResult, SpecimenResults, word};
 
 documents! {
     /// A record of the set.
@@ -26,6 +26,8 @@ documents! {
         hold: Option<usize> = found.hold,
         /// What these holds have in common.
         condition: String = found.condition.clone(),
+        /// `strain` or `force`: what the law was fitted to on these holds; `null` for a modulus.
+        quantity: Option<String> = found.quantity.map(word),
         /// Name of the parameter.
         parameter: String = found.name.clone(),
         /// Its unit, `1` of a dimensionless parameter.
@@ -57,6 +59,8 @@ documents! {
         /// The parameters of that law between specimens.
         between_specimens: Vec<BetweenSpecimensDocument> =
             results.between().iter().map(BetweenSpecimensDocument::new).collect(),
+        /// What is not averaged, and why, in sentences.
+        apart: Vec<String> = results.apart(),
         /// Records with the same samples as an earlier one, which count again, each with that.
         repeated: Vec<[String; 2]> = results.repeated().into_iter().map(|pair| pair.map(Input::called)).collect(),
         /// Codes of findings that need care, with the number of records that have them and count all the same.

@@ -44,8 +44,8 @@ pub use parameters::{
     MIXED_EXPONENTS, PARAMETER_COLUMNS, ParameterColumn, ParameterDocument, ParameterRow, Parameters,
     depends_on_exponent, parameter_title, parameters_of, parameters_of_material, parameters_table, si_unit,
 };
+pub(crate) use specimens::is_scale;
 pub use specimens::{BetweenSpecimens, SpecimenHold, SpecimenResult, SpecimenResults};
-pub(crate) use specimens::{is_of_interest, is_scale};
 pub use tried::TriedSqueeze;
 pub(crate) use words::{hold_start_word, percent};
 pub use words::{mode_word, slips_word};

@@ -6,14 +6,14 @@ use std::collections::{BTreeMap, BTreeSet, HashMap};
 use std::hash::{Hash, Hasher};
 
 use palpate::analysis::{Analysis, Severity};
-use palpate::fit::ParameterRole;
+use palpate::fit::{Fit, ParameterKind, ParameterName, ParameterRole};
 use palpate::record::Record;
 use palpate::segment::After;
 use palpate::statistics::SampleMean;
 use palpate::units::quantity;
 
 use super::answer::Answer;
-use super::compared::{ComparedHold, ComparedRecord, LeftOut};
+use super::compared::{ComparedHold, ComparedRecord, LeftOut, Quantity};
 use super::input::Input;
 use super::parameters::{ParameterDocument, Parameters, depends_on_exponent, parameters_of};
 use super::words::condition;
@@ -53,7 +53,18 @@ pub struct SpecimenHold {
     after: Option<String>,
     /// The displacement that was held, m.
     level: Option<f64>,
-    laws: Vec<(String, Parameters)>,
+    /// What its laws were fitted to.
+    quantity: Quantity,
+    laws: Vec<FittedLaw>,
+}
+
+/// A law on a hold with the parameters that can be compared with those of others.
+#[derive(Debug, Clone, PartialEq)]
+struct FittedLaw {
+    law: String,
+    parameters: Parameters,
+    /// Terms merge or vanish: amplitudes and times of terms are left out, as the numbers of terms do not correspond with those of others.
+    has_redundant_terms: bool,
 }
 
 /// The specimens of a set, and the records that gave none.
@@ -74,6 +85,8 @@ pub struct BetweenSpecimens {
     pub hold: Option<usize>,
     /// What those holds have in common.
     pub condition: String,
+    /// What the law was fitted to on those holds; `None` for what a whole record has.
+    pub quantity: Option<Quantity>,
     /// Name of the parameter.
     pub name: String,
     /// Its unit, `1` of a dimensionless parameter.
@@ -104,8 +117,11 @@ impl SpecimenResult {
                 .iter()
                 .zip(&record.holds)
                 .map(|(hold, compared)| {
-                    let plain =
-                        hold.fits.iter().map(|fit| (fit.law.to_string(), parameters_of(fit, compared.quantity)));
+                    let plain = hold.fits.iter().map(|fit| FittedLaw {
+                        law: fit.law.to_string(),
+                        parameters: parameters_of(fit, compared.quantity),
+                        has_redundant_terms: false,
+                    });
                     SpecimenHold::new(compared, plain.collect())
                 })
                 .collect(),
@@ -122,22 +138,45 @@ impl SpecimenResult {
 
 impl SpecimenHold {
     /// With the laws of the comparison before those that were fitted besides.
-    fn new(hold: &ComparedHold, others: Vec<(String, Parameters)>) -> Self {
+    fn new(hold: &ComparedHold, others: Vec<FittedLaw>) -> Self {
         let rows = hold.comparison.iter().flat_map(|found| &found.rows);
-        let compared =
-            rows.filter_map(|row| Some((row.law.to_string(), parameters_of(row.fit.as_ref().ok()?, hold.quantity))));
+        let compared = rows.filter_map(|row| Some(FittedLaw::new(row.fit.as_ref().ok()?, hold.quantity)));
         Self {
             number: hold.number,
             after: hold.after.map(word),
             level: hold.level,
+            quantity: hold.quantity,
             laws: compared.chain(others).collect(),
         }
     }
 
-    /// The parameters of a law on it.
+    fn fitted(&self, law: &str) -> Option<&FittedLaw> {
+        self.laws.iter().find(|fitted| fitted.law == law)
+    }
+
+    /// The parameters of a law on it that can be compared with those of others.
     #[must_use]
     pub fn parameters(&self, law: &str) -> Option<&Parameters> {
-        self.laws.iter().find(|(name, _)| name == law).map(|(_, parameters)| parameters)
+        self.fitted(law).map(|fitted| &fitted.parameters)
+    }
+
+    /// What its laws were fitted to.
+    #[must_use]
+    pub fn quantity(&self) -> Quantity {
+        self.quantity
+    }
+}
+
+impl FittedLaw {
+    fn new(fit: &Fit, quantity: Quantity) -> Self {
+        let has_redundant_terms = fit.has_redundant_terms();
+        let mut parameters = parameters_of(fit, quantity);
+        parameters.retain(|name, _| !(has_redundant_terms && is_of_term(name)));
+        Self {
+            law: fit.law.to_string(),
+            parameters,
+            has_redundant_terms,
+        }
     }
 }
 
@@ -180,14 +219,72 @@ impl SpecimenResults {
         self.specimens.iter().map(|specimen| specimen.holds.len()).max().unwrap_or(0)
     }
 
+    /// Holds of this number to which the law of all records was fitted, by what it was fitted to: strains and forces have no common mean.
+    fn alike(&self, number: usize) -> Vec<Vec<(&SpecimenHold, &Parameters)>> {
+        let Some(law) = self.law() else { return Vec::new() };
+        let holds = self.specimens.iter().flat_map(|specimen| &specimen.holds).filter(|hold| hold.number == number);
+        let mut groups: Vec<Vec<(&SpecimenHold, &Parameters)>> = Vec::new();
+        for (hold, parameters) in holds.filter_map(|hold| Some((hold, hold.parameters(law)?))) {
+            match groups.iter_mut().find(|group| group[0].0.quantity == hold.quantity) {
+                Some(group) => group.push((hold, parameters)),
+                None => groups.push(vec![(hold, parameters)]),
+            }
+        }
+        groups
+    }
+
     /// Whether the exponent of that law differs between records on some hold: parameters [whose unit depends on it](depends_on_exponent) are
     /// then left out between specimens.
     #[must_use]
     pub fn mixes_exponents(&self) -> bool {
-        let holds = || self.specimens.iter().flat_map(|specimen| &specimen.holds);
-        let of_number = |number| holds().filter(move |hold| hold.number == number);
-        let exponents = |number| of_number(number).filter_map(|hold| Some(exponent(hold.parameters(self.law()?)?)));
-        (1..=self.most_holds()).any(|number| !all_equal(exponents(number)))
+        (1..=self.most_holds()).flat_map(|number| self.alike(number)).any(|group| !is_one_exponent(&group))
+    }
+
+    /// The records that have a hold with that law for which `which` holds.
+    fn called(&self, which: impl Fn(&SpecimenHold, &FittedLaw) -> bool) -> Vec<String> {
+        let Some(law) = self.law() else { return Vec::new() };
+        let has = |specimen: &&SpecimenResult| {
+            specimen.holds.iter().any(|hold| hold.fitted(law).is_some_and(|fitted| which(hold, fitted)))
+        };
+        self.specimens.iter().filter(has).map(|specimen| specimen.input.called()).collect()
+    }
+
+    /// What is to be known of the rows of [`between`](Self::between): values that have no common mean.
+    #[must_use]
+    pub fn apart(&self) -> Vec<String> {
+        let fitted_to = |quantity| self.called(|hold, _| hold.quantity == quantity);
+        let (strains, forces) = (fitted_to(Quantity::Strain), fitted_to(Quantity::Force));
+        let quantities = (!strains.is_empty() && !forces.is_empty()).then(|| {
+            format!(
+                "The law was fitted to the strain of {} and to the force of {}: each of the two has rows of its own. State the body of all of these records, or of none, to compare them.",
+                listed(&strains),
+                listed(&forces)
+            )
+        });
+        let merged = self.called(|_, fitted| fitted.has_redundant_terms);
+        let terms = (!merged.is_empty()).then(|| {
+            format!(
+                "Amplitudes and times of terms leave out holds of {}, on which terms merge or vanish.",
+                listed(&merged)
+            )
+        });
+        quantities.into_iter().chain(terms).collect()
+    }
+
+    /// The parameters of that law that are compared between specimens: what it was fitted to, name and unit.
+    #[must_use]
+    pub fn parameters(&self) -> Vec<(Quantity, &str, &str)> {
+        let is_mixed = self.mixes_exponents();
+        let groups: Vec<_> = (1..=self.most_holds()).flat_map(|number| self.alike(number)).collect();
+        let of = |quantity| {
+            let holds = groups.iter().flatten().filter(move |(hold, _)| hold.quantity == quantity);
+            let named = holds.flat_map(|(_, parameters)| parameters.iter());
+            let compared =
+                named.filter(|(name, one)| is_of_interest(name, one) && !(is_mixed && depends_on_exponent(name)));
+            let units: BTreeMap<&str, &str> = compared.map(|(name, one)| (name.as_str(), one.unit.as_str())).collect();
+            units.into_iter().map(move |(name, unit)| (quantity, name, unit))
+        };
+        [Quantity::Strain, Quantity::Force].into_iter().flat_map(of).collect()
     }
 
     /// The parameters of that law between specimens, hold by hold, and the moduli of their first ramps.
@@ -204,6 +301,7 @@ impl SpecimenResults {
             found.extend(SampleMean::of(&moduli, self.confidence).map(|sample| BetweenSpecimens {
                 hold: None,
                 condition: condition.to_owned(),
+                quantity: None,
                 name: name.to_owned(),
                 unit: "Pa".to_owned(),
                 sample,
@@ -213,15 +311,14 @@ impl SpecimenResults {
         let is_geometry = self.specimens.iter().any(|specimen| specimen.strain_is_geometry);
         let says_nothing =
             |name: &str, parameter: &ParameterDocument| is_geometry && name == "equilibrium" && parameter.unit == "1";
-        let Some(law) = self.law() else { return found };
-        for number in 1..=self.most_holds() {
-            let holds = self.specimens.iter().flat_map(|specimen| &specimen.holds).filter(|hold| hold.number == number);
-            let fitted: Vec<(&SpecimenHold, &Parameters)> =
-                holds.filter_map(|hold| Some((hold, hold.parameters(law)?))).collect();
-            let exponents = fitted.iter().map(|(_, parameters)| exponent(parameters));
-            let is_one_exponent = all_equal(exponents);
-            for (name, parameter) in fitted.iter().take(1).flat_map(|(_, parameters)| parameters.iter()) {
-                let values = fitted.iter().filter_map(|(_, parameters)| parameters.get(name)?.value);
+        for (number, group) in
+            (1..=self.most_holds()).flat_map(|number| self.alike(number).into_iter().map(move |group| (number, group)))
+        {
+            let is_one_exponent = is_one_exponent(&group);
+            let names: BTreeMap<&String, &ParameterDocument> =
+                group.iter().rev().flat_map(|(_, parameters)| parameters.iter()).collect();
+            for (name, parameter) in names {
+                let values = group.iter().filter_map(|(_, parameters)| parameters.get(name)?.value);
                 let values: Vec<f64> = values.collect();
                 let geometric = SampleMean::geometric(&values, self.confidence).filter(|_| is_scale(&parameter.unit));
                 let sample = geometric.or_else(|| SampleMean::of(&values, self.confidence));
@@ -230,7 +327,8 @@ impl SpecimenResults {
                     && !says_nothing(name, parameter);
                 found.extend(sample.filter(|_| of_interest).map(|sample| BetweenSpecimens {
                     hold: Some(number),
-                    condition: common_condition(&fitted),
+                    condition: common_condition(&group),
+                    quantity: Some(group[0].0.quantity),
                     name: name.clone(),
                     unit: parameter.unit.clone(),
                     sample,
@@ -257,13 +355,31 @@ fn exponent(parameters: &Parameters) -> Option<f64> {
         .value
 }
 
+fn is_one_exponent(group: &[(&SpecimenHold, &Parameters)]) -> bool {
+    all_equal(group.iter().map(|(_, parameters)| exponent(parameters)))
+}
+
+/// Whether it is the amplitude or the time of a term.
+fn is_of_term(name: &str) -> bool {
+    let kind = name.parse().map(|name: ParameterName| name.kind);
+    matches!(kind, Ok(ParameterKind::Amplitude | ParameterKind::Time))
+}
+
+/// "a", "a and b", "a, b and c".
+fn listed(names: &[String]) -> String {
+    match names.split_last() {
+        Some((last, [_, ..])) => format!("{} and {last}", names[..names.len() - 1].join(", ")),
+        _ => names.concat(),
+    }
+}
+
 fn all_equal(mut values: impl Iterator<Item = Option<f64>>) -> bool {
     let first = values.next();
     values.all(|value| Some(value) == first)
 }
 
 /// Whether a parameter is estimated, or the rate coefficient, which follows from those.
-pub(crate) fn is_of_interest(name: &str, parameter: &ParameterDocument) -> bool {
+fn is_of_interest(name: &str, parameter: &ParameterDocument) -> bool {
     parameter.role == word(ParameterRole::Estimated) || name.starts_with("rate_coefficient")
 }
 
@@ -295,7 +411,10 @@ fn common_condition(holds: &[(&SpecimenHold, &Parameters)]) -> String {
 }
 
 #[cfg(test)]
+#[allow(clippy::unwrap_used, reason = "in a test a panic is the verdict")]
 mod tests {
+    use palpate::fit::{LawOptions, Samples};
+
     use super::*;
 
     fn specimen(path: &str, law: &str, exponent: f64, findings: &[(&'static str, Severity)]) -> SpecimenResult {
@@ -336,7 +455,12 @@ mod tests {
                 number: 1,
                 after: None,
                 level: None,
-                laws: vec![(law.to_owned(), parameters.map(|(name, one)| (name.to_owned(), one)).into())],
+                quantity: Quantity::Force,
+                laws: vec![FittedLaw {
+                    law: law.to_owned(),
+                    parameters: parameters.map(|(name, one)| (name.to_owned(), one)).into(),
+                    has_redundant_terms: false,
+                }],
             }],
             loading_modulus: None,
             equilibrium_modulus: None,
@@ -352,6 +476,61 @@ mod tests {
             left_out: Vec::new(),
             confidence: 0.95,
         }
+    }
+
+    /// The times 0.05 s, of a term that the data do not have, and 1 s had a mean with the interval 2e-9 s to 3e7 s.
+    #[test]
+    fn terms_that_the_data_do_not_have_enter_no_mean() {
+        let times: Vec<f64> = (0..400).map(|i| 0.05 * f64::from(i)).collect();
+        // One term, and noise that alternates.
+        let values: Vec<f64> = times
+            .iter()
+            .zip([1e-3, -1e-3].iter().cycle())
+            .map(|(t, noise)| 2.0 + (-t / 3.0).exp() + noise)
+            .collect();
+        let fitted = |terms| {
+            let law = palpate::laws::Law::Prony { terms };
+            let fit = palpate::fit::fit_law(&Samples::new(&times, &values), law, &LawOptions::default()).unwrap();
+            FittedLaw::new(&fit, Quantity::Force)
+        };
+        let (sound, merged) = (fitted(1), fitted(2));
+        assert!(!sound.has_redundant_terms && sound.parameters.keys().any(|name| is_of_term(name)));
+        assert!(merged.has_redundant_terms && !merged.parameters.keys().any(|name| is_of_term(name)));
+        assert!(merged.parameters.contains_key("equilibrium"));
+        let mut found = specimen("a.csv", "prony:2", 2.0, &[]);
+        found.holds[0].laws = vec![merged];
+        assert!(results(vec![found]).apart()[0].contains("leave out holds of a.csv"));
+    }
+
+    /// An equilibrium strain of 0.0509 and an equilibrium force of 2.000 N had the mean 1.0254.
+    #[test]
+    fn strains_and_forces_have_no_common_mean() {
+        let of = |path: &str, quantity: Quantity, value: f64| {
+            let mut found = specimen(path, "latency", 2.0, &[]);
+            let hold = &mut found.holds[0];
+            hold.quantity = quantity;
+            hold.laws[0].parameters.entry("equilibrium".to_owned()).and_modify(|parameter| {
+                (parameter.value, parameter.unit) = (Some(value), quantity.unit().to_owned());
+            });
+            found
+        };
+        let found = results(vec![
+            of("a.csv", Quantity::Strain, 0.0509),
+            of("b.csv", Quantity::Force, 2.0),
+            of("c.csv", Quantity::Force, 3.0),
+        ]);
+        let rows: Vec<_> = found.between().into_iter().filter(|row| row.name == "equilibrium").collect();
+        let means: Vec<_> = rows
+            .iter()
+            .map(|row| (row.quantity, row.unit.as_str(), row.sample.count, row.sample.mean))
+            .collect();
+        assert_eq!(means, [(Some(Quantity::Strain), "1", 1, 0.0509), (Some(Quantity::Force), "N", 2, 2.5)]);
+        let [sentence] = &found.apart()[..] else {
+            panic!("{:?}", found.apart())
+        };
+        assert!(sentence.contains("strain of a.csv and to the force of b.csv and c.csv"), "{sentence}");
+        let equilibria = found.parameters().into_iter().filter(|(_, name, _)| *name == "equilibrium");
+        assert_eq!(equilibria.map(|(.., unit)| unit).collect::<Vec<_>>(), ["1", "N"]);
     }
 
     /// The coefficient of variation of v over several exponents depended on the unit of the force.
@@ -373,7 +552,7 @@ mod tests {
         let of = |modulus: f64| {
             let mut found = specimen("a.csv", "latency", 2.0, &[]);
             (found.equilibrium_modulus, found.strain_is_geometry) = (Some(modulus), true);
-            for (_, parameters) in &mut found.holds[0].laws {
+            for FittedLaw { parameters, .. } in &mut found.holds[0].laws {
                 parameters.entry("equilibrium".to_owned()).and_modify(|parameter| parameter.unit = "1".to_owned());
             }
             found

@@ -11,8 +11,8 @@ use crate::figure::{Axis, Figure, Layer, Panel, Role, View};
 use crate::number::counted;
 use crate::page::{Block, Card, Page, Section};
 use crate::result::{
-    BetweenSpecimens, Input, LeftOut, MIXED_EXPONENTS, SpecimenHold, SpecimenResult, SpecimenResults,
-    depends_on_exponent, is_of_interest, is_scale, parameter_title, percent,
+    BetweenSpecimens, Input, LeftOut, MIXED_EXPONENTS, Quantity, SpecimenHold, SpecimenResult, SpecimenResults,
+    is_scale, parameter_title, percent, word,
 };
 use crate::table::{Cell, Table};
 use crate::word::capitalised;
@@ -123,7 +123,14 @@ fn between_table(results: &SpecimenResults) -> Option<Table> {
         .map(|(code, count)| format!("{code} in {}", counted(*count, "record")))
         .collect();
     let severe = (!found.is_empty()).then(|| format!("Records with findings count as others: {}.", found.join(", ")));
-    let notes: String = mixed.into_iter().chain(twice).chain(severe).map(|note| format!(" {note}")).collect();
+    let notes: String = results
+        .apart()
+        .into_iter()
+        .chain(mixed)
+        .chain(twice)
+        .chain(severe)
+        .map(|note| format!(" {note}"))
+        .collect();
     let caption = format!(
         "Parameters{law} between specimens: mean, standard deviation, coefficient of variation, and {share} interval of the mean by Student\u{2019}s distribution, from the scatter between specimens alone: an error of the instrument that all of them have in common is not in it; of rates and times by their logarithms (geometric).{notes}"
     );
@@ -133,6 +140,7 @@ fn between_table(results: &SpecimenResults) -> Option<Table> {
     Table::of("between_specimens", caption, &results.between())
         .column("Hold", "hold", "", |found| found.hold.map_or(Cell::text(""), |hold| Cell::Integer(hold as i64)))
         .column("Condition", "condition", "", |found| Cell::text(&found.condition))
+        .column("Fitted to", "quantity", "", |found| Cell::text(found.quantity.map(word).unwrap_or_default()))
         .column("Parameter", "parameter", "", |found| Cell::text(parameter_title(&found.name)))
         .column("Unit", "unit", "", |found| Cell::text(unit(found)))
         .column("Specimens", "specimens", "", |found| Cell::Integer(found.sample.count as i64))
@@ -164,25 +172,20 @@ fn records_table(results: &SpecimenResults) -> Table {
 /// Each parameter of the law of all records over the specimens, with its intervals; none for one specimen.
 fn by_specimen(results: &SpecimenResults) -> Vec<Figure> {
     let law = results.law().filter(|_| results.specimens.len() > 1);
-    let fitted = law.and_then(|law| {
-        results.specimens.iter().flat_map(|specimen| &specimen.holds).find_map(|hold| hold.parameters(law))
-    });
-    let is_mixed = results.mixes_exponents();
-    let named = fitted
-        .into_iter()
-        .flatten()
-        .filter(|(name, parameter)| is_of_interest(name, parameter) && !(is_mixed && depends_on_exponent(name)));
-    let parameters: Vec<(&String, String)> = named.map(|(name, parameter)| (name, parameter.unit.clone())).collect();
+    let parameters = law.map_or_else(Vec::new, |_| results.parameters());
+    let is_one_quantity = parameters.iter().all(|(quantity, ..)| *quantity == parameters[0].0);
     let most = results.specimens.iter().map(|specimen| specimen.holds.len()).max().unwrap_or(0).min(MOST_SERIES);
-    let panel = |(name, unit): &(&String, String)| {
-        let (axis_unit, title) = (if unit == "1" { "" } else { unit.as_str() }, capitalised(&parameter_title(name)));
+    let panel = |(quantity, name, unit): &(Quantity, &str, &str)| {
+        let fitted_to = if is_one_quantity { String::new() } else { format!(" ({})", word(*quantity)) };
+        let title = format!("{}{fitted_to}", capitalised(&parameter_title(name)));
+        let axis_unit = if *unit == "1" { "" } else { unit };
         let axis = if is_scale(unit) { Axis::log(title, axis_unit) } else { Axis::linear(title, axis_unit) };
         let end = results.specimens.len() as f64 + 0.5;
         let mut panel = Panel::new(Axis::linear("Specimen", "").range(0.5, end), axis);
         for number in 1..=most {
             // Holds of one specimen beside each other.
             let aside = 0.6 * ((number as f64 - 0.5) / most as f64 - 0.5);
-            let of_number = |hold: &&SpecimenHold| hold.number == number;
+            let of_number = |hold: &&SpecimenHold| hold.number == number && hold.quantity() == *quantity;
             let (mut x, mut y, mut low, mut high) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
             for (specimen, place) in results.specimens.iter().zip(1..) {
                 let hold = specimen.holds.iter().find(of_number).and_then(|hold| hold.parameters(law?)?.get(*name));

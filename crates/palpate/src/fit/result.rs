@@ -181,6 +181,12 @@ impl Parameter {
 }
 
 impl Fit {
+    /// Whether terms merge or vanish: their amplitudes and times are then no estimates of anything, and fewer terms suffice.
+    #[must_use]
+    pub fn has_redundant_terms(&self) -> bool {
+        matches!(self.termination, Termination::Singular | Termination::TermsMerged) || !self.redundant_terms.is_empty()
+    }
+
     /// A parameter.
     #[must_use]
     pub fn parameter(&self, name: impl Into<ParameterName>) -> Option<&Parameter> {

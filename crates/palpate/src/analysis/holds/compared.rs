@@ -31,9 +31,7 @@ pub(super) fn comparison_findings(comparison: &Comparison, interval: f64) -> Vec
         fits.filter(|fit| which(fit)).map(|fit| fit.law).collect()
     };
     let at_bound = laws(&|fit| matches!(fit.termination, Termination::RateAtBound | Termination::ExponentAtBound));
-    let merged = laws(&|fit| {
-        matches!(fit.termination, Termination::Singular | Termination::TermsMerged) || !fit.redundant_terms.is_empty()
-    });
+    let merged = laws(&Fit::has_redundant_terms);
     // A law that contains the chosen one predicts at least as well.
     let alike = comparison.verdict.as_ref().map_or_else(Vec::new, |verdict| {
         let alternatives = verdict.indistinguishable.iter().filter(|law| !law.contains(verdict.law));
