@@ -27,6 +27,8 @@ pub(super) struct Cut {
     /// How many corrections were made before.
     before: usize,
     found: Result<Segmentation, SegmentError>,
+    /// The description gives the holds.
+    are_given: bool,
     /// That the clocks differ, or a column lags, if they do.
     skewed: Vec<Finding>,
     /// What the columns are like where clocks that differ are put right.
@@ -48,6 +50,7 @@ impl Cut {
             signals: corrected.aligned(record).map(|(_, signals)| signals),
             record: corrected.record,
             before,
+            are_given: !options.given_holds.is_empty(),
             found: corrected.segmentation,
         })
     }
@@ -69,7 +72,7 @@ impl Cut {
     /// The cut as a figure; of a record without phases, its curves.
     pub(super) fn figure(&self) -> Figure {
         let segments = self.found().map_or(&[][..], |found| &found.segments);
-        cut_figure(&self.record, segments, "cut")
+        cut_figure(&self.record, segments, self.are_given, "cut")
     }
 
     /// What is wrong with the columns, as far as the phases show it.

@@ -129,9 +129,14 @@ impl ComparedHold {
     fn held(&self) -> Option<String> {
         self.level.map(|level| match self.quantity {
             Quantity::Displacement => quantity(level, "N", 3),
-            _ => quantity(level, "m", 4),
+            _ => held_at(level),
         })
     }
+}
+
+/// The displacement that a hold is held at, as titles have it.
+pub(crate) fn held_at(displacement: f64) -> String {
+    quantity(displacement, "m", 4)
 }
 
 impl ComparedRecord {

@@ -36,6 +36,7 @@ pub use answer::{Answer, HoldAnswer, formula};
 pub use budget::{BudgetedResult, budgets_of_analysis, budgets_of_material};
 pub use calibrated::{CalibratedRecord, formula_of_material};
 pub use calibrated_batch::CalibratedBatch;
+pub(crate) use compared::held_at;
 pub use compared::{ComparedHold, ComparedRecord, LeftOut, Quantity};
 pub(crate) use grip_sentences::{chance, lasted};
 pub use gripped::GrippedBody;

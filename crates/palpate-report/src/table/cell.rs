@@ -10,6 +10,8 @@ use crate::number::{exact, significant, with_interval};
 pub enum Cell {
     /// A number and the significant digits that people see.
     Number(f64, usize),
+    /// A number below which people see that it is smaller than the second one; machines get it as it is.
+    AtLeast(f64, f64),
     /// A value with its interval, which decides how many digits people see; machines get the standard error too.
     Estimate(Estimate),
     /// A count.
@@ -44,6 +46,8 @@ impl Cell {
     pub fn shown(&self, factor: f64) -> String {
         match self {
             Self::Number(value, digits) => significant(value * factor, *digits),
+            Self::AtLeast(value, least) if value < least => format!("< {}", significant(least * factor, 1)),
+            Self::AtLeast(value, _) => significant(value * factor, 2),
             Self::Estimate(estimate) => match estimate.interval {
                 Some((low, high)) => with_interval(estimate.value * factor, (low * factor, high * factor)),
                 None => significant(estimate.value * factor, 4),
@@ -59,7 +63,9 @@ impl Cell {
     pub fn stored(&self) -> String {
         match self {
             // Adding zero turns −0 into 0.
-            Self::Number(value, _) | Self::Estimate(Estimate { value, .. }) => exact(*value + 0.0),
+            Self::Number(value, _) | Self::AtLeast(value, _) | Self::Estimate(Estimate { value, .. }) => {
+                exact(*value + 0.0)
+            }
             Self::Integer(value) => value.to_string(),
             Self::Text(text) => text.clone(),
             Self::Missing(_) => String::new(),
@@ -81,7 +87,7 @@ impl Cell {
     /// The size of its value, if it has one.
     pub(crate) fn size(&self) -> Option<f64> {
         match self {
-            Self::Number(value, _) | Self::Estimate(Estimate { value, .. }) => {
+            Self::Number(value, _) | Self::AtLeast(value, _) | Self::Estimate(Estimate { value, .. }) => {
                 Some(value.abs()).filter(|v| v.is_finite())
             }
             _ => None,

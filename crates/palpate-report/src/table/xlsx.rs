@@ -152,7 +152,7 @@ fn write_cells(
     for row in 0..rows {
         let place = u32::try_from(row + 1).map_err(|_| XlsxError::RowColumnLimitError)?;
         match cell(row) {
-            Cell::Number(value, _) if value.is_finite() => {
+            Cell::Number(value, _) | Cell::AtLeast(value, _) if value.is_finite() => {
                 // Adding zero turns −0 into 0.
                 sheet.write_number_with_format(place, at, value + 0.0, &number)?;
                 widest = widest.max(10);
@@ -185,6 +185,7 @@ fn number_format(rows: usize, cell: impl Fn(usize) -> Cell) -> Format {
     const LOOKED_AT: usize = 1000;
     let sizes = (0..rows.min(LOOKED_AT)).filter_map(|row| match cell(row) {
         Cell::Number(value, digits) => Some((value.abs(), digits)),
+        Cell::AtLeast(value, _) => Some((value.abs(), 2)),
         Cell::Estimate(estimate) => Some((estimate.value.abs(), DIGITS)),
         _ => None,
     });

@@ -9,12 +9,12 @@ use crate::study::grid::displacement_panel;
 /// Holds whose numbers are readable beside each other.
 pub(super) const MOST_NAMED: usize = 12;
 
-/// Displacement and force over time; the holds that were found are shaded and numbered.
+/// Displacement and force over time; the holds, which were found or are given by a description, are shaded and numbered.
 ///
 /// Both panels show the same cut, so that a person sees at once whether it is right: a hold that begins too early
 /// takes a piece of a ramp, which shows in the displacement; one that begins too late misses the peak of the force.
 #[must_use]
-pub fn cut_figure(record: &Record, segments: &[Segment], name: &str) -> Figure {
+pub fn cut_figure(record: &Record, segments: &[Segment], are_given: bool, name: &str) -> Figure {
     let time = record.time();
     let found = segments.iter().filter(|segment| segment.phase == Phase::Hold);
     let holds: Vec<(usize, f64, f64)> =
@@ -27,10 +27,15 @@ pub fn cut_figure(record: &Record, segments: &[Segment], name: &str) -> Figure {
     });
     let caption = match holds.len() {
         0 => "No hold was detected.".to_owned(),
-        1 => "Shaded: the detected hold.".to_owned(),
-        count => format!("Shaded: the {count} detected holds."),
+        1 => format!("Shaded: the {} hold.", known_as(are_given)),
+        count => format!("Shaded: the {count} {} holds.", known_as(are_given)),
     };
     Figure::new(name, caption).panel(force).panels(jaw)
+}
+
+/// How holds are known: those that a description gives were not detected.
+pub(super) fn known_as(are_given: bool) -> &'static str {
+    if are_given { "stated" } else { "detected" }
 }
 
 /// The panel with holds, given by number, start and end, shaded, and numbered while there are few.

@@ -5,9 +5,9 @@ use palpate::fit::{ExponentChoice, LatencyFit};
 use palpate::forecast::Row;
 use palpate::segment::After;
 
-use super::cut::{MOST_NAMED, shaded};
+use super::cut::{MOST_NAMED, known_as, shaded};
 use crate::figure::{Arrangement, Axis, Figure, Layer, Panel, Role};
-use crate::result::ComparedRecord;
+use crate::result::{ComparedRecord, held_at};
 use crate::study::first_page::panel_of_hold;
 use crate::study::grid::{by_hold, displacement_panel, grid};
 
@@ -44,7 +44,8 @@ pub(super) fn record(analysis: &Analysis, name: &str) -> Figure {
     }
     let numbered = if analysis.holds.len() <= MOST_NAMED { ", with their numbers" } else { "" };
     let quantities = if analysis.record.displacement().is_some() { "Force and displacement" } else { "Force" };
-    let mut caption = format!("{quantities} over time. Shaded: the detected holds{numbered}.");
+    let known = known_as(!analysis.options.given_holds.is_empty());
+    let mut caption = format!("{quantities} over time. Shaded: the {known} holds{numbered}.");
     if analysis.overlay.is_some() {
         caption.push_str(
             " The simulated curve follows the measured displacement with the parameters fitted to the holds.",
@@ -76,7 +77,8 @@ pub(super) fn summary(analysis: &Analysis, record: &ComparedRecord, name: &str) 
         let panel = Panel::new(Axis::linear("Displacement", "mm"), Axis::linear("Force", "N")).layer(layer);
         Some((panel, "Force against displacement.".to_owned()))
     };
-    let shaded = if analysis.holds.is_empty() { "" } else { " Shaded: the detected holds." };
+    let known = known_as(!analysis.options.given_holds.is_empty());
+    let shaded = if analysis.holds.is_empty() { String::new() } else { format!(" Shaded: the {known} holds.") };
     match panel_of_hold(record).or_else(of_fit).or_else(loading) {
         Some((second, what)) => Figure::new(name, format!("(a) Force over time.{shaded} (b) {what}"))
             .panel(force)
@@ -133,7 +135,7 @@ fn rate_panel(holds: &[&HoldAnalysis], n: f64) -> (Panel, usize) {
         let role = Role::Series(series as u8);
         panel = panel.layer(Layer::points(hold.rates.strain.clone(), hold.rates.rate.clone(), role));
         let label = match hold.displacement {
-            Some(d) => format!("{}: {} mm", hold.number, fixed(d * 1e3)),
+            Some(d) => format!("{}: {}", hold.number, held_at(d)),
             None => format!("{}", hold.number),
         };
         if let Some((strain, rate)) = curve {
@@ -141,11 +143,6 @@ fn rate_panel(holds: &[&HoldAnalysis], n: f64) -> (Panel, usize) {
         }
     }
     (panel, outside)
-}
-
-/// One decimal place, without a sign on zero.
-fn fixed(value: f64) -> String {
-    format!("{:.1}", (value * 10.0).round() / 10.0 + 0.0).replace('-', "−")
 }
 
 /// A range without the few strays that would flatten everything else; `None` where there are no such strays.
@@ -195,7 +192,7 @@ fn hold_panel(analysis: &Analysis, hold: &HoldAnalysis) -> Panel {
     let visible = hold.times.partition_point(|t| *t <= 0.0);
     let (times, values) = (hold.times[visible..].to_vec(), hold.values[visible..].to_vec());
     let (first, last) = (times.first().copied().unwrap_or(1.0), times.last().copied().unwrap_or(1.0));
-    let held = hold.displacement.map_or_else(String::new, |d| format!(", {} mm", fixed(d * 1e3)));
+    let held = hold.displacement.map_or_else(String::new, |d| format!(", {}", held_at(d)));
     let law = recommended(hold).map_or_else(String::new, |row| format!(": {}", row.law));
     let mut panel = Panel::new(Axis::log("Time", "s"), y)
         .title(format!("Hold {}{held}{law}", hold.number))

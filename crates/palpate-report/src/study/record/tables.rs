@@ -72,11 +72,11 @@ pub(super) fn holds(analysis: &Analysis) -> Table {
                 RelaxationType::None => "none",
             })
         })
-        .column("p", "p_value", "", |hold| Cell::Number(hold.relaxation.p_value.max(LEAST_P), 2))
+        .column("p", "p_value", "", |hold| Cell::AtLeast(hold.relaxation.p_value, LEAST_P))
         .table()
         .note("Held: the displacement (the force relaxes), the force (the displacement creeps) or neither.")
         .note("Type I: the force falls; Type II: it rises. The laws are fitted from the time “Fit from” on, which may lie after the start of the hold.")
-        .note("p: probability of such a change of the force, from the first twentieth of the hold to its last fifth, by noise that correlates as that fifth shows; 10⁻⁶ stands for anything below. A drift or a random walk exceeds it more often.")
+        .note("p: probability of such a change of the force, from the first twentieth of the hold to its last fifth, by noise that correlates as that fifth shows; people read no less than 10⁻⁶, files have the number of the test. A drift or a random walk exceeds it more often.")
 }
 
 /// The displacement that was held.
