@@ -11,7 +11,7 @@ use super::{
 use crate::{
     description::TestDescription,
     naming::Quantity,
-    table::{Part, recognise},
+    table::{ColumnInfo, ColumnRef, Part, recognise},
 };
 
 /// The columns to read and how to make a record of them.
@@ -27,15 +27,33 @@ pub(super) struct Plan {
     pub(super) shear_rate: Option<(NamedColumn, f64)>,
 }
 
+/// The columns that may be recognised by their names: all but those that a description does not use.
+fn open_columns(part: &Part, unused: &[ColumnRef]) -> Result<Vec<ColumnInfo>, ColumnError> {
+    let numbers = unused.iter().map(|named| Ok(named_column(part, "columns.unused", named)?.number));
+    let numbers = numbers.collect::<Result<Vec<usize>, ColumnError>>()?;
+    Ok(part.columns.iter().filter(|column| !numbers.contains(&column.number)).cloned().collect())
+}
+
+/// The column that is named under a key.
+pub(super) fn named_column<'a>(part: &'a Part, key: &str, named: &ColumnRef) -> Result<&'a ColumnInfo, ColumnError> {
+    part.column_of(named).ok_or_else(|| ColumnError::NoSuchColumn {
+        key: key.to_owned(),
+        found: named.clone(),
+        columns: part.columns.clone(),
+    })
+}
+
 /// Chooses the columns of one test.
 pub(super) fn choose(part: &Part, test: &TestDescription) -> Result<Plan, ColumnError> {
+    let stated = &test.columns;
+    let open = open_columns(part, &stated.unused)?;
     let chooser = Chooser {
         part,
+        open: &open,
         torsion: conversion::torsion(test, &part.metadata),
     };
-    let stated = &test.columns;
     let is_stated = stated.stated(Quantity::is_load).is_some() || stated.stated(Quantity::is_travel).is_some();
-    if let Some(column) = recognise::storage_modulus(&part.columns).filter(|_| !is_stated) {
+    if let Some(column) = recognise::storage_modulus(&open).filter(|_| !is_stated) {
         return Err(ColumnError::Oscillation(column.into()));
     }
     let load = chooser.load(test)?;
@@ -88,8 +106,6 @@ pub(super) fn choose(part: &Part, test: &TestDescription) -> Result<Plan, Column
         conversion,
         rate,
         // Who names the columns decides.
-        shear_rate: recognise::shear_rate(&part.columns)
-            .filter(|_| !is_stated)
-            .map(|(column, factor)| (column.into(), factor)),
+        shear_rate: recognise::shear_rate(&open).filter(|_| !is_stated).map(|(column, factor)| (column.into(), factor)),
     })
 }

@@ -76,7 +76,7 @@ impl Chooser<'_> {
                 && recognise::may_be(column, Quantity::Displacement)
                 && found.iter().all(|found| found.column.number != column.number)
         };
-        let mut free = self.part.columns.iter().filter(|_| !travels).filter(is_free);
+        let mut free = self.open.iter().filter(|_| !travels).filter(is_free);
         free.next().filter(|_| free.next().is_none()).map(NamedColumn::from)
     }
 

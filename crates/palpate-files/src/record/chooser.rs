@@ -3,6 +3,7 @@
 use palpate::units::{self, Dimension};
 
 use super::{
+    choose::named_column,
     column_use::{ColumnUse, Role},
     error::{ColumnError, UnitProblem},
     named::NamedColumn,
@@ -97,6 +98,8 @@ fn spring_constant_of(part: &Part) -> Option<f64> {
 #[derive(Clone, Copy)]
 pub(super) struct Chooser<'a> {
     pub(super) part: &'a Part,
+    /// Its columns that may be recognised by their names.
+    pub(super) open: &'a [ColumnInfo],
     /// What makes force and displacement of torque and angle, where that is known.
     pub(super) torsion: Option<Torsion>,
 }
@@ -111,10 +114,10 @@ impl<'a> Chooser<'a> {
         let named = choice.and_then(|choice| choice.column.as_ref());
         let column = match named {
             Some(named) => Some(self.named(&format!("columns.{quantity}.column"), named)?),
-            None => match recognise::candidates(&self.part.columns, quantity)[..] {
+            None => match recognise::candidates(self.open, quantity)[..] {
                 // The unit that is stated is that of a strain without one.
                 [] if quantity == Quantity::Strain && choice.is_some_and(|choice| choice.unit.is_some()) => {
-                    match recognise::strains_without_unit(&self.part.columns)[..] {
+                    match recognise::strains_without_unit(self.open)[..] {
                         [only] => Some(only),
                         _ => None,
                     }
@@ -136,8 +139,7 @@ impl<'a> Chooser<'a> {
     /// Whether a displacement that nobody named stands in the columns of another test than the time that was named: with a time before it, and a
     /// load of its own.
     pub(super) fn is_of_another(&self, time: &ColumnRef, load: Option<&Found<'a>>, displacement: &Found<'a>) -> bool {
-        let numbers =
-            |quantity| recognise::candidates(&self.part.columns, quantity).into_iter().map(|found| found.number);
+        let numbers = |quantity| recognise::candidates(self.open, quantity).into_iter().map(|found| found.number);
         let times: Vec<usize> = numbers(Quantity::Time).collect();
         let owner = |number: usize| times.iter().rfind(|time| **time <= number);
         let Ok(time) = self.named("columns.time.column", time) else {
@@ -188,7 +190,7 @@ impl<'a> Chooser<'a> {
             return Ok(None);
         };
         let has_force = || {
-            let is_there = |quantity| !recognise::candidates(&self.part.columns, quantity).is_empty();
+            let is_there = |quantity| !recognise::candidates(self.open, quantity).is_empty();
             stated.stated(Quantity::is_load).is_some() || is_there(Quantity::Force) || is_there(Quantity::Stress)
         };
         let of_file = || if has_force() { None } else { spring_constant_of(self.part) };
@@ -225,16 +227,12 @@ impl<'a> Chooser<'a> {
     }
 
     fn named(&self, key: &str, named: &ColumnRef) -> Result<&'a ColumnInfo, ColumnError> {
-        self.part.column_of(named).ok_or_else(|| ColumnError::NoSuchColumn {
-            key: key.to_owned(),
-            found: named.clone(),
-            columns: self.part.columns.clone(),
-        })
+        named_column(self.part, key, named)
     }
 
     /// No column holds a quantity; perhaps one is named after it, but its unit is one of another.
     pub(super) fn missing(&self, quantity: Quantity) -> ColumnError {
-        if let Some((column, unit)) = recognise::misfits(&self.part.columns, quantity).next() {
+        if let Some((column, unit)) = recognise::misfits(self.open, quantity).next() {
             let unit = unit.to_owned();
             let is_deflection =
                 column.name.as_deref() == Some(UNCALIBRATED) && unit_factor(&unit, Dimension::Length).is_some();
@@ -250,7 +248,7 @@ impl<'a> Chooser<'a> {
         if let Some(error) = self.multiples(quantity) {
             return error;
         }
-        if let Some(column) = recognise::text_named(&self.part.columns, quantity) {
+        if let Some(column) = recognise::text_named(self.open, quantity) {
             return Self::as_text(column, quantity);
         }
         ColumnError::Missing(quantity, self.part.columns.clone())
@@ -258,15 +256,15 @@ impl<'a> Chooser<'a> {
 
     /// A column whose name says multiples of a quantity.
     fn multiples(&self, quantity: Quantity) -> Option<ColumnError> {
-        let column = recognise::multiples(&self.part.columns, quantity)?;
+        let column = recognise::multiples(self.open, quantity)?;
         Some(ColumnError::unit(column, format!("columns.{quantity}.unit"), UnitProblem::Multiples(quantity)))
     }
 
     /// Stress and strain of a file are true ones.
     pub(super) fn true_measures(&self) -> ColumnError {
         let of = |quantity| {
-            let column = recognise::true_measure(&self.part.columns, quantity)?;
-            recognise::candidates(&self.part.columns, quantity).is_empty().then(|| (quantity, column.into()))
+            let column = recognise::true_measure(self.open, quantity)?;
+            recognise::candidates(self.open, quantity).is_empty().then(|| (quantity, column.into()))
         };
         ColumnError::TrueMeasures([Quantity::Stress, Quantity::Strain].into_iter().filter_map(of).collect())
     }
@@ -274,7 +272,7 @@ impl<'a> Chooser<'a> {
     /// The number of a column of heights of a cantilever's base, a measured one before others.
     fn height(&self) -> Option<usize> {
         let name = |column: &ColumnInfo| column.name.as_ref().map_or_else(String::new, |name| name.to_lowercase());
-        let heights = || self.part.columns.iter().filter(|column| name(column).contains("height"));
+        let heights = || self.open.iter().filter(|column| name(column).contains("height"));
         let measured = heights().find(|column| name(column).contains("measured"));
         measured.or_else(|| heights().next()).map(|column| column.number)
     }
@@ -295,23 +293,21 @@ impl<'a> Chooser<'a> {
         if let Some(error) = self.multiples(Quantity::Displacement) {
             return Err(error);
         }
-        if let Some((column, unit)) =
-            recognise::share_of_displacement(&self.part.columns).filter(|(column, _)| free(column))
-        {
+        if let Some((column, unit)) = recognise::share_of_displacement(self.open).filter(|(column, _)| free(column)) {
             let problem = UnitProblem::Unknown(Quantity::Displacement, unit.to_owned());
             return Err(ColumnError::unit(column, "columns.displacement.unit".to_owned(), problem));
         }
         // The gap of a rheometer is no travel.
         let is_force = used.iter().any(|used| used.role == Role::Values(Quantity::Force));
         let gap = |column: &&ColumnInfo| !is_force && recognise::is_gap(column);
-        let possible = recognise::possible_displacements(&self.part.columns).filter(free).filter(|column| !gap(column));
+        let possible = recognise::possible_displacements(self.open).filter(free).filter(|column| !gap(column));
         let candidates: Vec<NamedColumn> = possible.map(NamedColumn::from).collect();
         if !candidates.is_empty() {
             let columns = self.part.columns.clone();
             return Err(ColumnError::Unclear { candidates, columns });
         }
         // What begins with a digit was meant as a number.
-        let text = recognise::text_named(&self.part.columns, Quantity::Displacement);
+        let text = recognise::text_named(self.open, Quantity::Displacement);
         match text.filter(|column| number::looks_numeric(&column.sample)) {
             Some(column) => Err(Self::as_text(column, Quantity::Displacement)),
             None => Ok(()),

@@ -40,16 +40,14 @@ impl<'a> Chooser<'a> {
                 return Ok(Some(found));
             }
         }
-        if recognise::true_measure(&self.part.columns, Quantity::Stress).is_some() {
+        if recognise::true_measure(self.open, Quantity::Stress).is_some() {
             return Err(self.true_measures());
         }
         // A creep under a stress that is constant, and perhaps not given.
         let creeps = [Quantity::Compliance, Quantity::Strain].map(|quantity| self.find(quantity, None));
         match test.columns.strain.is_some() || creeps.into_iter().any(|found| matches!(found, Ok(Some(_)))) {
             true => Ok(None),
-            false if recognise::true_measure(&self.part.columns, Quantity::Strain).is_some() => {
-                Err(self.true_measures())
-            }
+            false if recognise::true_measure(self.open, Quantity::Strain).is_some() => Err(self.true_measures()),
             false => Err(self.missing(Quantity::Force)),
         }
     }
@@ -84,12 +82,12 @@ impl<'a> Chooser<'a> {
             is_named && load.role.measured() == Quantity::Force
         });
         let may_be_strain = beside.contains(&Quantity::Strain) && !is_force_named;
-        if may_be_strain && recognise::true_measure(&self.part.columns, Quantity::Strain).is_some() {
+        if may_be_strain && recognise::true_measure(self.open, Quantity::Strain).is_some() {
             return Err(self.true_measures());
         }
         // A fraction or per cent: its unit is requested, unless a column of another name may be the displacement.
-        let strains = recognise::strains_without_unit(&self.part.columns);
-        let is_unclear = || recognise::possible_displacements(&self.part.columns).next().is_some();
+        let strains = recognise::strains_without_unit(self.open);
+        let is_unclear = || recognise::possible_displacements(self.open).next().is_some();
         Ok(match strains[..] {
             [strain] if may_be_strain && !is_unclear() => Some(Found::of(Role::Values(Quantity::Strain), strain, None)),
             _ => None,
@@ -107,7 +105,7 @@ impl<'a> Chooser<'a> {
             return Ok(Time::Column(found));
         }
         let rate = rate::of_rows(&self.part.metadata).ok_or_else(|| self.missing(Quantity::Time))?;
-        let counting = self.part.columns.iter().find(|column| rate::counts_samples(column));
+        let counting = self.open.iter().find(|column| rate::counts_samples(column));
         Ok(counting.map_or(Time::Rows(rate), |column| {
             Time::Column(Found {
                 rate: Some(rate),

@@ -49,6 +49,9 @@ pub(crate) struct ColumnsTable {
     angle: Option<ColumnTable>,
     /// Deflection of the cantilever of an AFM, subtracted from the displacement, which is then that of the cantilever's base.
     deflection: Option<DeflectionTable>,
+    /// Numbers, from 1, or names of columns that are not used, whatever their names say.
+    #[serde(default)]
+    unused: Vec<ColumnRef>,
 }
 
 /// The column of the time.
@@ -169,7 +172,7 @@ impl ColumnsTable {
         let measured = |table: Option<ColumnTable>, key, quantity| {
             table.map(|table| table.checked(source, machine, key, quantity)).transpose()
         };
-        Ok(ColumnChoices {
+        let choices = ColumnChoices {
             time,
             displacement: self.displacement.map(|table| table.checked(source, machine)).transpose()?,
             force: measured(self.force, "force", Quantity::Force)?,
@@ -184,7 +187,14 @@ impl ColumnsTable {
                 Some(_) if !names_height => return Err(source.missing("columns.displacement", HEIGHT)),
                 deflection => measured(deflection, "deflection", Quantity::Displacement)?,
             },
-        })
+            unused: self.unused,
+        };
+        let is_unused =
+            |choice: &ColumnChoice| choice.column.as_ref().is_some_and(|column| choices.unused.contains(column));
+        match choices.all().into_iter().find(|(_, choice)| is_unused(choice)) {
+            Some((quantity, _)) => Err(source.both("columns.unused", format!("columns.{quantity}.column"))),
+            None => Ok(choices),
+        }
     }
 }
 

@@ -84,6 +84,8 @@ pub struct ColumnChoices {
     pub angle: Option<ColumnChoice>,
     /// Deflection of the cantilever, to be taken off the displacement.
     pub deflection: Option<ColumnChoice>,
+    /// Columns that are not used, whatever their names say.
+    pub unused: Vec<ColumnRef>,
     /// Spring constant of the cantilever, N/m: the force is that times its deflection.
     pub spring_constant: Option<f64>,
 }

@@ -34,6 +34,27 @@ fn the_description_goes_before_the_header() {
     assert_eq!(file.columns[2].sign, -1.0);
 }
 
+/// A column called displacement was used, whatever a description stated.
+#[test]
+fn a_column_that_is_not_used_is_not_recognised_by_its_name() {
+    for unused in ["2", "\"Displacement\""] {
+        let file = read(PRESS, &format!("[columns]\nunused = [{unused}]")).unwrap();
+        assert_eq!(file.record.displacement(), None);
+        let roles: Vec<Role> = file.columns.iter().map(|column| column.role).collect();
+        assert_eq!(roles, [Quantity::Time, Quantity::Force].map(Role::Values));
+    }
+    let error = read(PRESS, "[columns]\nunused = [3]").unwrap_err().to_string();
+    assert!(error.contains("force"), "{error}");
+    let error = read(PRESS, "[columns]\nunused = [\"Weg\"]").unwrap_err().to_string();
+    assert!(error.contains("Weg"), "{error}");
+    // Of two columns of one name the other is taken, which was ambiguous.
+    let twice = "Time (s),Force (N),Force (N)\n0,0,1\n0.5,12,13\n1,9,10\n";
+    assert_eq!(read(twice, "[columns]\nunused = [2]").unwrap().record.force(), [1.0, 13.0, 10.0]);
+    let both = "[columns]\nunused = [2]\nforce = { column = 2 }";
+    let error = parse_test(both, Path::new("test.toml")).unwrap_err().to_string();
+    assert!(error.contains("columns.unused") && error.contains("columns.force.column"), "{error}");
+}
+
 /// A cantilever of 0.04 N/m: by Hooke's law the force is 0.04 nN for each nm.
 #[test]
 fn a_deflection_times_the_spring_constant_is_the_force() {
