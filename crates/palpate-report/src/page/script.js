@@ -380,9 +380,11 @@
   // Tables: the number with which a text begins, or the text.
   const valued = (cell) => {
     const text = (cell?.textContent ?? "").trim().replaceAll("−", "-");
-    const found = /^[(<[]*\s*(-?\d[\d.]*)/.exec(text);
-    const power = /×10(-?\d+)/.exec(text);
-    return { text, number: found ? found[1] * 10 ** (power ? power[1] : 0) : NaN };
+    const found = /^([(<[]*)\s*(-?\d[\d.]*)(?:×10(-?\d+))?/.exec(text);
+    if (!found) return { text, number: NaN };
+    // One power behind the brackets is that of value and bounds; one within them is that of its bound alone.
+    const shared = found[1].includes("(") ? /\)×10(-?\d+)$/.exec(text) : null;
+    return { text, number: found[2] * 10 ** (found[3] ?? shared?.[1] ?? 0) };
   };
   const enlivenTable = (table) => {
     const body = table.tBodies[0];

@@ -230,6 +230,23 @@ def test_tables_sort_by_a_click(browser: Browser, reports: Reports) -> None:
     found.context.close()
 
 
+def test_a_power_of_ten_in_an_interval_is_not_that_of_the_value(browser: Browser, reports: Reports) -> None:
+    """A cell of 0.31 whose upper bound is 6.0×10⁸ was sorted as 3.1×10⁸."""
+    found = opened_whole(browser, reports.many)
+    order = found.page.evaluate("""() => {
+        const cells = ["0.31 [−0.12, 6.0×10⁸]", "(1.234 [1.200, 1.270])×10⁻⁵", "12 [11, 13]", "2.1×10⁻⁷", "–", "(−5.4 [−5.6, ∞))×10⁶", "< 1×10⁻⁶"];
+        const raised = (text) => text.replace(/[⁻⁰¹²³⁴-⁹]+/g, (power) => `<sup>${[...power].map((c) => "−0123456789"["⁻⁰¹²³⁴⁵⁶⁷⁸⁹".indexOf(c)]).join("")}</sup>`);
+        const box = document.createElement("div");
+        box.innerHTML = `<table><thead><tr><th class="n">Value</th></tr></thead><tbody>${cells.map((text, i) => `<tr><td data-i="${i}">${raised(text)}</td></tr>`).join("")}</tbody></table>`;
+        document.body.append(box);
+        palpate.enliven(box);
+        box.querySelector("th button").click();
+        return [...box.querySelectorAll("td")].map((cell) => +cell.dataset.i);
+    }""")
+    assert order == [5, 3, 6, 1, 0, 2, 4]
+    found.context.close()
+
+
 def test_sections_fold_and_links_open_them(browser: Browser, reports: Reports) -> None:
     found = opened(browser, reports.many)
     page = found.page
