@@ -198,3 +198,15 @@ impl ComparedRecord {
         compared.filter(|(_, comparison)| comparison.verdict.is_some())
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::held_at;
+
+    /// A hold at 10 µm had the title "Hold 1, 0.0 mm", and holds at 0.25 mm those of 0.2 mm and 0.3 mm.
+    #[test]
+    fn titles_tell_small_displacements_apart() {
+        let titles = [1e-5, 0.249_999e-3, 0.250_001e-3, 0.0101].map(held_at);
+        assert_eq!(titles, ["10.00 µm", "250.0 µm", "250.0 µm", "10.10 mm"]);
+    }
+}

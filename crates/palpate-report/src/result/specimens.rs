@@ -257,15 +257,15 @@ impl SpecimenResults {
         let quantities = (!strains.is_empty() && !forces.is_empty()).then(|| {
             format!(
                 "The law was fitted to the strain of {} and to the force of {}: each of the two has rows of its own. State the body of all of these records, or of none, to compare them.",
-                listed(&strains),
-                listed(&forces)
+                few(&strains),
+                few(&forces)
             )
         });
         let merged = self.called(|_, fitted| fitted.has_redundant_terms);
         let terms = (!merged.is_empty()).then(|| {
             format!(
                 "Amplitudes and times of terms leave out holds of {}, on which terms merge or vanish.",
-                listed(&merged)
+                few(&merged)
             )
         });
         quantities.into_iter().chain(terms).collect()
@@ -365,12 +365,12 @@ fn is_of_term(name: &str) -> bool {
     matches!(kind, Ok(ParameterKind::Amplitude | ParameterKind::Time))
 }
 
-/// "a", "a and b", "a, b and c".
-fn listed(names: &[String]) -> String {
-    match names.split_last() {
-        Some((last, [_, ..])) => format!("{} and {last}", names[..names.len() - 1].join(", ")),
-        _ => names.concat(),
-    }
+/// The first names, and how many more there are.
+fn few(names: &[String]) -> String {
+    const MOST: usize = 6;
+    let more = names.len().saturating_sub(MOST);
+    let rest = if more == 0 { String::new() } else { format!(" and {more} more") };
+    format!("{}{rest}", names[..names.len() - more].join(", "))
 }
 
 fn all_equal(mut values: impl Iterator<Item = Option<f64>>) -> bool {
@@ -528,7 +528,7 @@ mod tests {
         let [sentence] = &found.apart()[..] else {
             panic!("{:?}", found.apart())
         };
-        assert!(sentence.contains("strain of a.csv and to the force of b.csv and c.csv"), "{sentence}");
+        assert!(sentence.contains("strain of a.csv and to the force of b.csv, c.csv"), "{sentence}");
         let equilibria = found.parameters().into_iter().filter(|(_, name, _)| *name == "equilibrium");
         assert_eq!(equilibria.map(|(.., unit)| unit).collect::<Vec<_>>(), ["1", "N"]);
     }

@@ -102,3 +102,16 @@ impl Cell {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::Cell;
+
+    /// A probability of 2.2e-308 was 1e-06 in `holds.csv`, as if it were one.
+    #[test]
+    fn a_floor_is_for_people_alone() {
+        let cell = Cell::AtLeast(f64::MIN_POSITIVE, 1e-6);
+        assert_eq!((cell.shown(1.0).as_str(), cell.stored().parse()), ("< 1×10⁻⁶", Ok(f64::MIN_POSITIVE)));
+        assert_eq!(Cell::AtLeast(0.031_25, 1e-6).shown(1.0), "0.031");
+    }
+}

@@ -45,3 +45,24 @@ pub(super) fn shaded(panel: Panel, holds: &[(usize, f64, f64)]) -> Panel {
         if holds.len() <= MOST_NAMED { span.label(number.to_string()) } else { span }
     }))
 }
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used, reason = "in a test a panic is the verdict")]
+mod tests {
+    use palpate::segment::{SegmentOptions, find_phases};
+
+    use super::*;
+
+    /// Holds that a description gives were captioned as detected.
+    #[test]
+    fn stated_holds_are_not_called_detected() {
+        let time: Vec<f64> = (0..300).map(|i| 0.1 * f64::from(i)).collect();
+        let place: Vec<f64> = time.iter().map(|t| 1e-3 * t.clamp(1.0, 6.0)).collect();
+        let force: Vec<f64> = place.iter().map(|d| 1e3 * (d - 1e-3)).collect();
+        let record = Record::new(time, Some(place), force).unwrap();
+        let segments = find_phases(&record, &SegmentOptions::default()).unwrap().segments;
+        let caption = |are_given| cut_figure(&record, &segments, are_given, "cut").caption;
+        assert_eq!(caption(false), "Shaded: the detected hold.");
+        assert_eq!(caption(true), "Shaded: the stated hold.");
+    }
+}
