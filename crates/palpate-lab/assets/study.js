@@ -44,6 +44,7 @@ export class Study {
     this.record = el("div", { "aria-live": "off" });
     this.body = el("div");
     this.laws = el("div");
+    this.creep = el("div");
     this.tests = el("div");
     this.grip = el("div");
     this.answer = el("p", { className: "headline" });
@@ -110,7 +111,31 @@ export class Study {
     }
     // Fields that a person is working in stay as they are.
     if (!this.body.contains(document.activeElement)) this.body.replaceChildren(bodyForm(this.description, this.vocabulary));
+    const modes = tests[0].record.phases.filter((phase) => phase.phase === "hold").map((phase) => phase.mode);
+    const creeps = modes.includes("force");
+    this.creepCard?.remove();
+    if (creeps) this.laws.closest("section").after(this.creepCard = card("creep", "Creep", this.creep));
     await this.analyze();
+    if (creeps) await this.creeps(modes.every((mode) => mode === "force"));
+  }
+
+  // Holds in which the machine held the force have laws of creep.
+  async creeps(alone) {
+    const made = await into(this.creep, { kind: "creep", subject: this.subject }, (answer, id) => {
+      const file = (path) => `api/tasks/${id}/files/${path}`;
+      const stem = this.subject.file.replace(/\.[^.]*$/, "");
+      return [
+        answer.left_out.map(({ reason, hint }) => refusal({ message: reason, hint })),
+        drawn(answer.first, "first"),
+        el("div", { className: "takeaway", role: "group", "aria-label": "Take away the creep" }, el("a", { href: file("report.html"), target: "_blank", rel: "noopener" }, "Report of the creep"), answer.files.includes("tables.xlsx") && el("a", { href: file("tables.xlsx"), download: `${stem}-creep.xlsx` }, "Workbook"), el("a", { href: file("comparison.json"), download: `${stem}-creep.json` }, "JSON")),
+        lines(answer.lines),
+      ].flat();
+    });
+    const lede = this.creep.querySelector(".lede")?.textContent;
+    if (made && alone && lede) {
+      this.answer.replaceChildren(lede);
+      say(lede);
+    }
   }
 
   shownRecord({ document: found, figure, draft, guess, notes }, open) {

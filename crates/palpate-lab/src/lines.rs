@@ -71,6 +71,17 @@ pub(crate) fn of_analysis(subject: &Subject, stated: Option<&str>) -> Lines {
     }
 }
 
+pub(crate) fn of_creep(subject: &Subject, stated: Option<&str>) -> Lines {
+    let out = format!("{}-creep", stem(&subject.file));
+    Lines {
+        shell: Some(format!("palpate compare {} --creep --out {}", record_words(subject, stated), word(&out))),
+        python: format!(
+            "import palpate\n\ncomparison = {}.compare(creep=True)\nprint(comparison)",
+            record_call(subject, stated)
+        ),
+    }
+}
+
 pub(crate) fn of_batch(subject: &Subject, stated: Option<&str>, mapped: Option<&str>) -> Lines {
     let out = format!("{}-holds.csv", stem(&subject.file));
     let map = mapped.map_or_else(String::new, |name| format!(" --map {}", word(name)));
@@ -202,6 +213,8 @@ mod tests {
                 .contains("palpate.read(\"a b.xlsx\", test=\"a b.xlsx.test.toml\", part=\"Sheet 1\").analyze()")
         );
         assert_eq!(part_option("-x y"), " --part='-x y'");
+        let creep = of_creep(&one, None).shell.unwrap();
+        assert_eq!(creep, "palpate compare 'a b.xlsx' --part 'Sheet 1' --creep --out 'a b-creep'");
         let two = [one.clone(), Subject { part: None, ..one }];
         assert_eq!(of_comparison(&two, &[None, None]).shell, None);
         let map = of_batch(&two[1], None, Some("relative_rate_per_s"));

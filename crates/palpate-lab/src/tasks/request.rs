@@ -17,6 +17,8 @@ pub(crate) enum Request {
         #[serde(default)]
         options: Analyze,
     },
+    /// Laws of creep in the holds of a test in which the force was held.
+    Creep { subject: Subject },
     /// All tests of a file, one row each and more.
     Batch {
         subject: Subject,
@@ -39,9 +41,10 @@ impl Request {
     /// The tests that it is about.
     pub(crate) fn subjects(&self) -> &[Subject] {
         match self {
-            Self::Inspect { subject } | Self::Analyze { subject, .. } | Self::Batch { subject, .. } => {
-                std::slice::from_ref(subject)
-            }
+            Self::Inspect { subject }
+            | Self::Analyze { subject, .. }
+            | Self::Creep { subject }
+            | Self::Batch { subject, .. } => std::slice::from_ref(subject),
             Self::Compare { subjects } | Self::Calibrate { subjects, .. } => subjects,
             Self::Grip { .. } => &[],
         }
@@ -62,6 +65,7 @@ impl Request {
         let kind = match self {
             Self::Inspect { .. } => "inspect",
             Self::Analyze { .. } => "analyze",
+            Self::Creep { .. } => "creep",
             Self::Batch { .. } => "batch",
             Self::Compare { .. } => "compare",
             Self::Calibrate { .. } => "calibrate",

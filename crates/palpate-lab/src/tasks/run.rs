@@ -6,8 +6,8 @@ use palpate::grip::PlanKind;
 use palpate::watch::Watch;
 use palpate_jobs::input::OpenedFile;
 use palpate_jobs::{
-    Analyze, Analyzed, Batch, BatchedTest, Calibrate, CalibrateSeveral, Inspect, JobError, MaterialSource, PlanGrip,
-    ReportIndex, Results,
+    Analyze, Analyzed, Batch, BatchedTest, Calibrate, CalibrateSeveral, Compare, Inspect, JobError, MaterialSource,
+    PlanGrip, ReportIndex, Results,
 };
 use palpate_report::figure::Figure;
 use palpate_report::page::{Block, fragment};
@@ -34,6 +34,7 @@ impl Request {
         match self {
             Self::Inspect { subject } => inspect(folder, subject, watch),
             Self::Analyze { subject, options } => analyze(folder, subject, options, watch),
+            Self::Creep { subject } => creep(folder, subject, watch),
             Self::Batch { subject, options } => batch(folder, subject, options, watch, take),
             Self::Compare { subjects } => compare(folder, subjects, watch),
             Self::Calibrate { subjects, options } => calibrate(folder, subjects, options, watch),
@@ -103,6 +104,23 @@ fn analyze(folder: &Folder, subject: &Subject, options: &Analyze, watch: &mut dy
         "lines": lines::of_analysis(subject, stated.as_deref()),
     });
     Ok(Made::new(answer, bundle).of_analysis(analyzed))
+}
+
+fn creep(folder: &Folder, subject: &Subject, watch: &mut dyn Watch) -> Result<Made, JobError> {
+    let job = Compare {
+        creep: true,
+        ..Compare::default()
+    };
+    let compared = job.run_on(folder.measured(subject, watch)?, watch)?.result;
+    let bundle = compared.bundle(&without_figures(), watch)?;
+    let stated = folder.stated(subject)?.name;
+    let answer = json!({
+        "first": first(&bundle),
+        "left_out": compared.left_out,
+        "files": names(&bundle),
+        "lines": lines::of_creep(subject, stated.as_deref()),
+    });
+    Ok(Made::new(answer, bundle))
 }
 
 fn batch(
