@@ -2,6 +2,7 @@
 
 import { Cancelled, Lost, Refused, call, task } from "./api.js";
 import { button, copied, drawn, el, progress, refusal, say, shown } from "./dom.js";
+import { decimal } from "./number.js";
 
 // A material of one record, or of several together.
 export const calibration = (subjects, made) => {
@@ -44,24 +45,33 @@ const slider = ({ id, label, unit, low, high, value, log = false, scale = 1, dig
   const to = (x) => (log ? (Math.log(x / low) / Math.log(high / low)) * STEPS : ((x - low) / (high - low)) * STEPS);
   const from = (step) => (log ? low * (high / low) ** (step / STEPS) : low + (step / STEPS) * (high - low));
   const state = { value };
-  const text = () => String(+(state.value * scale).toPrecision(digits));
+  const text = (shownDigits = digits) => String(+(state.value * scale).toPrecision(shownDigits));
+  const wrong = el("span", { className: "wrong", id: `${id}-wrong`, role: "alert" });
   const range = el("input", { type: "range", id, min: "0", max: String(STEPS), step: "1", value: String(to(value)), oninput: () => { set(+from(+range.value).toPrecision(digits), range); moved(); } });
-  const field = el("input", { type: "text", inputmode: "decimal", "aria-label": `${label}, ${unit || "number"}`, value: text(), onchange: () => {
-    const found = Number(field.value.replace(",", ".")) / scale;
+  const field = el("input", { type: "text", inputmode: "decimal", "aria-label": `${label}, ${unit || "number"}`, value: text(), "aria-describedby": wrong.id, onchange: () => {
+    const typed = decimal(field.value);
+    const found = typed.value / scale;
     const fits = Number.isFinite(found) && found > 0 && found < most;
-    field.setCustomValidity(fits ? "" : `a number above 0${Number.isFinite(most) ? ` and below ${most * scale}` : ""}`);
-    if (!fits) return field.reportValidity();
+    if (!fits) return refuse(typed.wrong ?? `expected a number above 0${Number.isFinite(most) ? ` and below ${most * scale}` : ""}`);
     set(found, field);
     return moved();
   } });
+  // The answer stays that of the value before: the field says so.
+  const refuse = (why) => {
+    field.setAttribute("aria-invalid", "true");
+    wrong.textContent = `${why}. The answer is that of ${[text(), unit].join(" ").trim()}.`;
+  };
   const set = (found, by) => {
     state.value = found;
     if (by !== range) range.value = String(to(found));
-    if (by !== field) field.value = text();
+    // What was typed stands as it was read.
+    field.value = by === field ? text(12) : text();
+    field.removeAttribute("aria-invalid");
+    wrong.textContent = "";
     range.setAttribute("aria-valuetext", `${text()} ${unit}`);
   };
   set(value, null);
-  return { state, set: (found) => set(found, null), box: el("div", { className: "slider" }, el("label", { for: id }, label), range, el("span", { className: "value" }, field, el("span", { className: "unit" }, unit))) };
+  return { state, set: (found) => set(found, null), box: el("div", { className: "slider" }, el("label", { for: id }, label), range, el("span", { className: "value" }, field, el("span", { className: "unit" }, unit)), wrong) };
 };
 
 // Sliders of mass, friction, time and squeeze; verdict, probability and band follow.
@@ -83,7 +93,7 @@ export const gripPanel = async (material) => {
     confidence: slider({ id: "grip-confidence", label: "Required probability", unit: "%", scale: 100, low: 0.5, high: 0.999, value: 0.95, digits: 3, most: 1 }, () => moved()),
   };
   const options = () => Object.fromEntries(Object.entries(sliders).map(([key, { state }]) => [key, state.value]));
-  let [busy, again] = [false, false];
+  let [busy, again, open] = [false, false, false];
   // One question at a time; the last of those that came meanwhile is asked next.
   const moved = async () => {
     if (plan.firstChild) plan.classList.add("before");
@@ -102,6 +112,9 @@ export const gripPanel = async (material) => {
         verdict.textContent = error.message;
         facts.textContent = error.hint ?? "";
         figure.replaceChildren();
+        // The lines of the answer before would belong to another grip.
+        open = line.firstChild?.open ?? open;
+        line.replaceChildren();
       }
     } finally { busy = false; }
     if (again) moved();
@@ -112,9 +125,9 @@ export const gripPanel = async (material) => {
     const [low, high] = found.end_force_interval_n ?? [NaN, NaN];
     facts.textContent = `Force at the end ${shown(found.end_force_n)} N (${shown(100 * found.confidence, 2)} % interval ${shown(low)} to ${shown(high)} N); needed ${shown(found.needed_force_n)} N; when the jaws stop ${shown(found.start_force_n)} N. ${found.extrapolations.map((one) => `Beyond the test: ${one}.`).join(" ")}`;
     figure.replaceChildren(drawn(found.figure));
-    const open = line.firstChild?.open;
+    open = line.firstChild?.open ?? open;
     line.replaceChildren(lines(found.lines));
-    line.firstChild.open = open ?? false;
+    line.firstChild.open = open;
     document.dispatchEvent(new CustomEvent("tried", { detail: found }));
   };
   const ask = async (least) => {

@@ -2,6 +2,7 @@
 
 import { Lost, call } from "./api.js";
 import { button, drawn, el, refusal, say, shown } from "./dom.js";
+import { decimal } from "./number.js";
 
 const SECONDS = { s: 1, ms: 1e-3, "µs": 1e-6, min: 60, h: 3600, d: 86400, days: 86400 };
 const SVG = "http://www.w3.org/2000/svg";
@@ -154,16 +155,31 @@ export class PhaseFigure {
   }
 }
 
+// The time in a description, s: its unit is one of those that the figures have.
+const timeOf = (text) => {
+  const [, number, unit] = /^\s*([-+.\deE]+)\s*(\S*)/.exec(text) ?? [];
+  return Number(number) * (SECONDS[unit] ?? 1);
+};
 const seconds = (time) => `${String(time)} s`;
 
 // Holds as a table of times.
 export const holdTable = (description, inspected, figure) => {
   const record = inspected.record;
-  const stated = (description.get("phases", "hold") ?? []).length > 0;
+  const written = description.get("phases", "hold") ?? [];
+  const stated = written.length > 0;
   const wrong = el("div");
   const phases = record.phases.filter((phase) => phase.phase === "hold");
+  // The stated hold that each of the record is, with all its keys; they may stand in any order.
+  const inOrder = [...written].sort((a, b) => timeOf(a.from) - timeOf(b.from));
+  const own = (i) => (inOrder.length === phases.length ? inOrder[i] : undefined) ?? {};
+  const kept = (i) => ({ of: i, times: [phases[i].start_s, phases[i].end_s] });
+  const all = () => phases.map((_, i) => kept(i));
   const state = (holds) => {
-    const value = holds.map(([from, to]) => ({ from: seconds(from), to: seconds(to) }));
+    const value = holds.map(({ of, times }) => {
+      const before = of === null ? {} : own(of);
+      const time = (key, end) => (before[key] !== undefined && times[end] === kept(of).times[end] ? before[key] : seconds(times[end]));
+      return { ...before, from: time("from", 0), to: time("to", 1) };
+    });
     return description.edit([{ key: ["phases", "hold"], value: value.length ? value : null }], { alone: true, beside: wrong });
   };
   const rows = phases.map((phase, i) => {
@@ -171,11 +187,11 @@ export const holdTable = (description, inspected, figure) => {
       type: "text", inputmode: "decimal", value: String(figure ? figure.holds[i][end] : [phase.start_s, phase.end_s][end]),
       "aria-label": `${end ? "End" : "Start"} of hold ${i + 1}, in seconds`, "data-end": String(end),
       onchange: (event) => {
-        const text = event.target.value.replace(",", ".").replace(/s$/, "").trim();
-        const time = text === "" ? NaN : Number(text);
-        if (!Number.isFinite(time)) return wrong.replaceChildren(refusal({ message: `expected a time in seconds, found “${event.target.value}”` }));
-        const holds = phases.map((one) => [one.start_s, one.end_s]);
-        holds[i][end] = time;
+        const { value: time, wrong: why } = decimal(event.target.value.replace(/s\s*$/, ""));
+        event.target.setAttribute("aria-invalid", String(why !== undefined));
+        if (why) return wrong.replaceChildren(refusal({ message: `${end ? "End" : "Start"} of hold ${i + 1}, in seconds: ${why}` }));
+        const holds = all();
+        holds[i].times[end] = time;
         const [field, before] = [event.target, String([phase.start_s, phase.end_s][end])];
         state(holds).then((taken) => { if (!taken) field.value = before; });
       },
@@ -185,7 +201,7 @@ export const holdTable = (description, inspected, figure) => {
       el("th", { scope: "row" }, String(i + 1)),
       el("td", {}, input(0)), el("td", {}, input(1)),
       el("td", {}, held, phase.doubtful && el("span", { className: "guess" }, "doubtful")),
-      el("td", {}, button("Remove", () => state(phases.filter((_, j) => j !== i).map((one) => [one.start_s, one.end_s])), { className: "quiet", "aria-label": `Remove hold ${i + 1}`, disabled: phases.length === 1 })));
+      el("td", {}, button("Remove", () => state(all().filter((_, j) => j !== i)), { className: "quiet", "aria-label": `Remove hold ${i + 1}`, disabled: phases.length === 1 })));
   });
   const add = () => {
     // In the widest stretch that no hold takes.
@@ -194,7 +210,7 @@ export const holdTable = (description, inspected, figure) => {
     const gaps = ends.slice(1).map(([start], i) => [ends[i][1], start]);
     const [from, to] = gaps.sort((a, b) => b[1] - b[0] - (a[1] - a[0]))[0];
     const inner = (share) => +(from + share * (to - from)).toPrecision(6);
-    const holds = [...phases.map((one) => [one.start_s, one.end_s]), [inner(0.25), inner(0.75)]].sort((a, b) => a[0] - b[0]);
+    const holds = [...all(), { of: null, times: [inner(0.25), inner(0.75)] }].sort((a, b) => a.times[0] - b.times[0]);
     state(holds);
   };
   const table = el("table", { className: "holds-table" },
@@ -203,7 +219,7 @@ export const holdTable = (description, inspected, figure) => {
     el("tbody", {}, rows));
   if (figure) figure.heard = (hold) => [0, 1].forEach((end) => { const field = rows[hold].querySelector(`[data-end="${end}"]`); if (field) field.value = String(figure.holds[hold][end]); });
   return {
-    commit: state,
+    commit: (times) => state(times.map((one, of) => ({ of, times: one }))),
     box: el("div", {}, phases.length ? el("div", { className: "scroll", tabindex: "0", role: "region", "aria-label": "Holds" }, table) : el("p", {}, "No hold was detected. Add one, or state what is a hold by hand."),
       el("p", { className: "actions" }, button("Add a hold", add), stated && button("Detect again", () => description.edit([{ key: ["phases", "hold"], value: null }], { alone: true, beside: wrong }), { className: "quiet" })), wrong),
   };
@@ -215,6 +231,8 @@ export const columnTable = (description, inspected, vocabulary, guess) => {
   const units = new Map(vocabulary.quantities.map(({ name, units: of }) => [name, of]));
   const names = inspected.columns.map((column) => column.name);
   const reference = (column) => (column.name && names.filter((name) => name === column.name).length === 1 ? column.name : column.number);
+  const unused = [description.get("columns", "unused") ?? []].flat();
+  const isUnused = (column) => unused.some((one) => one === column.number || one === column.name);
   const choices = [...vocabulary.quantities.map(({ name }) => name), "deflection"];
   // What is stated of a column counts too where the file cannot be read yet.
   const stated = (column) => {
@@ -246,6 +264,10 @@ export const columnTable = (description, inspected, vocabulary, guess) => {
         const edits = [];
         if (quantity) edits.push({ key: ["columns", quantity], value: null });
         if (chosen) edits.push({ key: ["columns", chosen], value: null }, { key: ["columns", chosen, "column"], value: reference(column) });
+        // Without a word its name would be taken for what it is.
+        const others = unused.filter((one) => one !== column.number && one !== column.name);
+        const left = chosen ? others : [...others, reference(column)];
+        if (String(left) !== String(unused)) edits.unshift({ key: ["columns", "unused"], value: left.length ? left : null });
         description.edit(edits, { beside: wrong });
       },
     }, ["", ...choices].map((name) => el("option", { value: name, selected: name === quantity }, name || "not used")), fixed && el("option", { selected: true }, used.role));
@@ -270,7 +292,7 @@ export const columnTable = (description, inspected, vocabulary, guess) => {
       button("Confirm", () => description.edit([{ key: ["columns", quantity, "column"], value: reference(column) }], { beside: wrong }), { className: "quiet", "aria-label": `Confirm the use of column ${column.number}` }));
     return el("tr", {},
       el("th", { scope: "row" }, String(column.number)), el("td", {}, column.name ?? "(no name)"), el("td", {}, column.unit ?? "–"),
-      el("td", { className: "n" }, column.sample), el("td", {}, use), el("td", {}, unit), el("td", {}, sign), el("td", {}, guess));
+      el("td", { className: "n" }, column.sample), el("td", {}, use), el("td", {}, unit), el("td", {}, sign), el("td", {}, guess || (isUnused(column) && el("span", { className: "small" }, "not used, as stated"))));
   });
   const timed = inspected.columns.some((column) => (column.used_as[0] ?? stated(column) ?? guessed(column))?.quantity === "time");
   const rate = !timed && el("label", {}, "Without a column of time: samples per second ", el("input", {
@@ -340,9 +362,9 @@ export const bodyForm = (description, vocabulary) => {
     for (const key of keys()) {
       const value = values[key];
       if (value === undefined || value === "") continue;
-      if (key === "poisson_ratio" && !Number.isFinite(Number(String(value).replace(",", ".")))) return wrong.replaceChildren(refusal({ message: `Poisson's ratio is a number from 0 to 0.5, found “${value}”` }));
+      if (key === "poisson_ratio" && decimal(String(value)).wrong) return wrong.replaceChildren(refusal({ message: `Poisson's ratio is a number from 0 to 0.5, found “${value}”` }));
       if (ROWS[key]) wanted.set(key, Array.isArray(value) ? value : value.split("\n").filter((line) => line.trim()).map(cells));
-      else wanted.set(key, key === "poisson_ratio" ? Number(String(value).replace(",", ".")) : value);
+      else wanted.set(key, key === "poisson_ratio" ? decimal(String(value)).value : value);
     }
     // Of a body that is stated only what was changed here: another page may have changed the rest.
     if (changed && description.get("specimen", "shape") === chosen.name) return taken(await description.edit([{ key: ["specimen", changed], value: wanted.get(changed) ?? null }], { beside: wrong }));

@@ -9,13 +9,14 @@ use super::access::POLICY;
 use super::refusal::Refusal;
 
 /// Names of what belongs to the page, with its type and content. Figures have the style and the script that they have in reports.
-const ASSETS: [(&str, &str, &str); 9] = [
+const ASSETS: [(&str, &str, &str); 10] = [
     ("report.css", "text/css", STYLE),
     ("report.js", "text/javascript", SCRIPT),
     ("lab.css", "text/css", include_str!("../../assets/lab.css")),
     ("lab.js", "text/javascript", include_str!("../../assets/lab.js")),
     ("api.js", "text/javascript", include_str!("../../assets/api.js")),
     ("dom.js", "text/javascript", include_str!("../../assets/dom.js")),
+    ("number.js", "text/javascript", include_str!("../../assets/number.js")),
     ("record.js", "text/javascript", include_str!("../../assets/record.js")),
     ("study.js", "text/javascript", include_str!("../../assets/study.js")),
     ("grip.js", "text/javascript", include_str!("../../assets/grip.js")),
