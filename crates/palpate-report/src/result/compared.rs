@@ -207,6 +207,6 @@ mod tests {
     #[test]
     fn titles_tell_small_displacements_apart() {
         let titles = [1e-5, 0.249_999e-3, 0.250_001e-3, 0.0101].map(held_at);
-        assert_eq!(titles, ["10.00 µm", "250.0 µm", "250.0 µm", "10.10 mm"]);
+        assert_eq!(titles, ["10.00 µm", "0.2500 mm", "0.2500 mm", "10.10 mm"]);
     }
 }
