@@ -133,6 +133,9 @@ export class Study {
     });
     const lede = this.creep.querySelector(".lede")?.textContent;
     if (made && alone && lede) {
+      // The refusal of relaxation names a command for what stands below.
+      const help = this.laws.querySelector(":scope > .finding i")?.parentElement;
+      if (help) help.textContent = "The displacement is fitted as creep, below.";
       this.answer.replaceChildren(lede);
       say(lede);
     }

@@ -146,6 +146,7 @@ def test_a_creep_is_fitted_on_the_page(browser: Browser, lab: Lab, tmp_path: Pat
     found.wait("#creep .takeaway")
     found.settle()
     assert "standard linear solid" in found.page.inner_text("#creep") or "prony" in found.page.inner_text("#creep")
+    assert "palpate compare" not in found.page.inner_text("#laws")
     assert "--creep" in (found.page.text_content("#creep .lines") or "")
     assert found.accessible()
     found.context.close()
