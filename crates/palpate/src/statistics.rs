@@ -250,7 +250,8 @@ pub(crate) fn effective_freedom(combined: f64, parts: impl IntoIterator<Item = (
 
 /// Student's factor of effective degrees of freedom, truncated (JCGM 100, G.4.1).
 pub(crate) fn effective_factor(level: f64, freedom: f64) -> f64 {
-    coverage_factor(level, freedom.floor().max(1.0))
+    // A whole number comes out of fourth powers a rounding below itself.
+    coverage_factor(level, (freedom * (1.0 + 1e-9)).floor().max(1.0))
 }
 
 /// The factor of a bound that holds on one side with a probability of `level`: below 0 for a level below a half.

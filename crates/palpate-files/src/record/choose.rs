@@ -1,7 +1,7 @@
 //! Choosing the columns of a file: from a description, else by the header.
 
 use super::{
-    chooser::{Chooser, Found},
+    chooser::{Chooser, Found, named_column},
     column_use::ColumnUse,
     conversion::{self, Conversion},
     error::ColumnError,
@@ -9,9 +9,9 @@ use super::{
     signals::Time,
 };
 use crate::{
-    description::TestDescription,
+    description::{ColumnChoices, TestDescription},
     naming::Quantity,
-    table::{ColumnInfo, ColumnRef, Part, recognise},
+    table::{ColumnInfo, Part, recognise},
 };
 
 /// The columns to read and how to make a record of them.
@@ -28,25 +28,24 @@ pub(super) struct Plan {
 }
 
 /// The columns that may be recognised by their names: all but those that a description does not use.
-fn open_columns(part: &Part, unused: &[ColumnRef]) -> Result<Vec<ColumnInfo>, ColumnError> {
-    let numbers = unused.iter().map(|named| Ok(named_column(part, "columns.unused", named)?.number));
+fn open_columns(part: &Part, stated: &ColumnChoices) -> Result<Vec<ColumnInfo>, ColumnError> {
+    let numbers = stated.unused.iter().map(|named| Ok(named_column(part, "columns.unused", named)?.number));
     let numbers = numbers.collect::<Result<Vec<usize>, ColumnError>>()?;
-    Ok(part.columns.iter().filter(|column| !numbers.contains(&column.number)).cloned().collect())
-}
-
-/// The column that is named under a key.
-pub(super) fn named_column<'a>(part: &'a Part, key: &str, named: &ColumnRef) -> Result<&'a ColumnInfo, ColumnError> {
-    part.column_of(named).ok_or_else(|| ColumnError::NoSuchColumn {
-        key: key.to_owned(),
-        found: named.clone(),
-        columns: part.columns.clone(),
-    })
+    let is_unused = |column: &&ColumnInfo| numbers.contains(&column.number);
+    // One and the same column may be stated by its number and by its name.
+    for (quantity, choice) in stated.all() {
+        let named = choice.column.as_ref().and_then(|named| part.column_of(named));
+        if let Some(column) = named.filter(is_unused) {
+            return Err(ColumnError::StatedAsUnused(quantity, column.into()));
+        }
+    }
+    Ok(part.columns.iter().filter(|column| !is_unused(column)).cloned().collect())
 }
 
 /// Chooses the columns of one test.
 pub(super) fn choose(part: &Part, test: &TestDescription) -> Result<Plan, ColumnError> {
     let stated = &test.columns;
-    let open = open_columns(part, &stated.unused)?;
+    let open = open_columns(part, stated)?;
     let chooser = Chooser {
         part,
         open: &open,

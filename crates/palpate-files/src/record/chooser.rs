@@ -3,7 +3,6 @@
 use palpate::units::{self, Dimension};
 
 use super::{
-    choose::named_column,
     column_use::{ColumnUse, Role},
     error::{ColumnError, UnitProblem},
     named::NamedColumn,
@@ -332,4 +331,13 @@ impl<'a> Chooser<'a> {
         }
         Ok(())
     }
+}
+
+/// The column that is named under a key.
+pub(super) fn named_column<'a>(part: &'a Part, key: &str, named: &ColumnRef) -> Result<&'a ColumnInfo, ColumnError> {
+    part.column_of(named).ok_or_else(|| ColumnError::NoSuchColumn {
+        key: key.to_owned(),
+        found: named.clone(),
+        columns: part.columns.clone(),
+    })
 }

@@ -26,6 +26,9 @@ pub enum ColumnError {
     /// A column is named after a quantity, but some of its cells are no numbers: this is the first of them, as far as known.
     #[error("{0}: expected numbers in every row, found `{1}`")]
     NotNumbers(NamedColumn, String),
+    /// A column is stated to be that of a quantity, and not to be used.
+    #[error("{1}: expected a column that is used, found the {0} in columns.unused")]
+    StatedAsUnused(Quantity, NamedColumn),
     /// Several columns could hold a quantity.
     #[error("expected one column of {}, found {}", .0, listed(.1, " and "))]
     Ambiguous(Quantity, Vec<NamedColumn>),
@@ -204,6 +207,9 @@ impl ColumnError {
             }
             Self::NoSection(..) => {
                 "choose a column of force, or describe the body as a strip, cylinder or block".to_owned()
+            }
+            Self::StatedAsUnused(quantity, _) => {
+                format!("take it out of columns.unused, or name another column under columns.{quantity}")
             }
             Self::TrueMeasures(columns) => snippet::of_true_measures(columns),
             Self::Oscillation(..) | Self::FlowCurve { .. } => {

@@ -182,10 +182,12 @@ fn examined(
         complete_hold(hold, &record, loading.as_ref(), options, watch)?;
     }
     forecast_holds(&mut holds, &loadings, options, watch)?;
-    findings.extend(specimen.as_ref().and_then(|specimen| uncertain_touch(&contact, specimen, &holds)));
+    // Where causes are known the intervals contain that of first touch.
+    let exact = specimen.as_ref().filter(|_| causes.is_none());
+    findings.extend(exact.and_then(|specimen| uncertain_touch(&contact, specimen, &holds)));
     let across = across(&holds, &exponents, options, 4.0 * segmentation.settings.tolerance, watch)?;
     if !measured {
-        findings.extend(ramp_relaxes(&record, &segmentation, &holds));
+        findings.extend(ramp_relaxes(&record, &segmentation, &contact, &holds));
     }
     findings.extend(changing_rate(&across));
     findings.extend(exponent_not_listed(&holds, &across.evidence));

@@ -9,7 +9,7 @@
 //!
 //! | file | what | equations |
 //! |---|---|---|
-//! | `error.rs`, `options.rs`, `samples.rs` | samples, options, and errors | |
+//! | `error.rs`, `options.rs`, `levels.rs`, `samples.rs` | samples and whether they were rounded, options, and errors | |
 //! | `noise/` | correlation of residuals, and the resulting standard errors and intervals | |
 //! | `problem/` | law, samples and options made ready in the units of the fit | |
 //! | `global/` | from a problem to the global optimum | |
@@ -27,6 +27,7 @@ mod global;
 mod joint;
 mod latency;
 mod law;
+mod levels;
 mod noise;
 mod options;
 mod parameter;

@@ -1,7 +1,7 @@
 //! The samples of a hold, checked and brought to units in which every hold looks alike.
 
 use super::error::FitError;
-use super::problem::step_between_levels;
+use super::levels::step_between_levels;
 use crate::optimise::Target;
 use crate::vector::{all_finite, extremes, multiply, rises, shifted};
 

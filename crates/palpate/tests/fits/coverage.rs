@@ -8,7 +8,8 @@ mod noises;
 mod study;
 
 use noises::{KINDS, Noise, laws, truth_over};
-use palpate::fit::{LawOptions, Samples, fit_law};
+use palpate::fit::{ConstantChoice, Estimate, LawOptions, Samples, fit_law};
+use palpate::laws::Law;
 use palpate::test_problems::Rng;
 use study::{Method, cases, tally};
 
@@ -119,13 +120,20 @@ fn a_plateau_inside_one_step_of_rounding_may_be_anywhere_in_it() {
     const FEW: u64 = 40;
     for (duration, ratio) in [(10.0, 5.0), (24.0, 8.0)] {
         let noise = Noise::Rounded(ratio);
-        let (mut all, mut inside) = (0, 0);
+        let (mut all, mut inside, mut samples_inside) = (0, 0, 0.0);
         for known in laws() {
             let (times, clean) = truth_over(duration, &known, noise, 400);
             let (mut covered, mut halves, mut square) = (0, Vec::new(), 0.0);
             for hold in 0..FEW {
                 let values = noise.added(&times, &clean, 1e-2, &mut Rng::new(9 + (hold << 20)));
                 let fit = fit_law(&Samples::new(&times, &values), known.law, &LawOptions::default()).expect("a fit");
+                let others = noise.added(&times, &clean, 1e-2, &mut Rng::new(10 + (hold << 20)));
+                let bands = fit.predict_samples(&times);
+                let is_inside = |(band, value): (&Estimate, f64)| {
+                    band.interval.is_some_and(|(low, high)| low <= value && value <= high)
+                };
+                samples_inside +=
+                    bands.iter().zip(others).filter(|(band, value)| is_inside((band, *value))).count() as f64;
                 for (parameter, truth) in &known.truth {
                     let found = fit.estimate(parameter).expect("a parameter");
                     let (low, high) = found.interval.expect("an interval");
@@ -146,8 +154,33 @@ fn a_plateau_inside_one_step_of_rounding_may_be_anywhere_in_it() {
             assert!(covered >= FEW - 6, "{duration} s, {ratio} sd, {}: {covered}", known.name);
             assert!((0.75..1.5).contains(&width), "{duration} s, {ratio} sd, {}: {width}", known.name);
         }
+        // Rounding is part of a sample.
+        let share = samples_inside / (4 * FEW * 400) as f64;
+        println!("{duration} s, {ratio} sd: {share} of further samples");
+        assert!((0.90..0.999).contains(&share), "{duration} s, {ratio} sd: {share} of further samples");
         let share = inside as f64 / all as f64;
         assert!((0.93..0.995).contains(&share), "{duration} s, {ratio} sd: {share}");
+    }
+}
+
+/// Six columns of rounding beside those of the law took up all that nine samples had: there were no errors.
+#[test]
+fn a_few_rounded_samples_keep_their_errors() {
+    let values = [5.0, 5.0, 4.0, 4.0, 3.0, 3.0, 3.0, 2.0, 2.0, 2.0];
+    for count in [9, 10] {
+        let times: Vec<f64> = (0..count).map(f64::from).collect();
+        let samples = Samples::new(&times, &values[..times.len()]);
+        let options = LawOptions {
+            constant: ConstantChoice::Fixed(1.0),
+            ..LawOptions::default()
+        };
+        let fit = fit_law(&samples, Law::StandardLinearSolid, &options).expect("a fit");
+        let error = fit.estimate("time_constant_s").expect("a parameter").standard_error;
+        assert!(
+            error.is_some_and(|error| error > 0.0 && error.is_finite()),
+            "{count}: {:?} {error:?}",
+            fit.termination
+        );
     }
 }
 

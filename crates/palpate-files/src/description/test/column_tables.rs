@@ -172,7 +172,7 @@ impl ColumnsTable {
         let measured = |table: Option<ColumnTable>, key, quantity| {
             table.map(|table| table.checked(source, machine, key, quantity)).transpose()
         };
-        let choices = ColumnChoices {
+        Ok(ColumnChoices {
             time,
             displacement: self.displacement.map(|table| table.checked(source, machine)).transpose()?,
             force: measured(self.force, "force", Quantity::Force)?,
@@ -188,13 +188,7 @@ impl ColumnsTable {
                 deflection => measured(deflection, "deflection", Quantity::Displacement)?,
             },
             unused: self.unused,
-        };
-        let is_unused =
-            |choice: &ColumnChoice| choice.column.as_ref().is_some_and(|column| choices.unused.contains(column));
-        match choices.all().into_iter().find(|(_, choice)| is_unused(choice)) {
-            Some((quantity, _)) => Err(source.both("columns.unused", format!("columns.{quantity}.column"))),
-            None => Ok(choices),
-        }
+        })
     }
 }
 

@@ -50,9 +50,14 @@ fn a_column_that_is_not_used_is_not_recognised_by_its_name() {
     // Of two columns of one name the other is taken, which was ambiguous.
     let twice = "Time (s),Force (N),Force (N)\n0,0,1\n0.5,12,13\n1,9,10\n";
     assert_eq!(read(twice, "[columns]\nunused = [2]").unwrap().record.force(), [1.0, 13.0, 10.0]);
-    let both = "[columns]\nunused = [2]\nforce = { column = 2 }";
-    let error = parse_test(both, Path::new("test.toml")).unwrap_err().to_string();
-    assert!(error.contains("columns.unused") && error.contains("columns.force.column"), "{error}");
+    // By its number and by its name.
+    for stated in ["2", "\"Displacement\""] {
+        let both = format!("[columns]\nunused = [2]\ndisplacement = {{ column = {stated} }}");
+        let error = read(PRESS, &both).unwrap_err();
+        let (text, hint) = (error.to_string(), error.hint().unwrap());
+        assert!(text.contains("column 2 (Displacement): expected a column that is used"), "{text}");
+        assert!(hint.contains("take it out of columns.unused"), "{hint}");
+    }
 }
 
 /// A cantilever of 0.04 N/m: by Hooke's law the force is 0.04 nN for each nm.

@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 use super::joint::{JointAnalysis, JointHolds, Misfit, joint};
 use crate::analysis::{AnalysisOptions, Finding, HoldAnalysis, Signal};
 use crate::fit::{ExponentChoice, LatencyFit, TrendVerdict};
-use crate::forecast::{Comparison, REFUTED};
+use crate::forecast::{REFUTED, Row};
 use crate::laws::Law;
 use crate::segment::After;
 use crate::statistics::{coverage_factor, range};
@@ -128,18 +128,19 @@ pub(in crate::analysis) fn exponent_not_listed(holds: &[HoldAnalysis], evidence:
     })
 }
 
-/// Whether most of the holds on which laws were compared refute the latency law with any exponent, and not every other law.
+/// Whether most of the holds on which the latency law was compared with others refute it with any exponent, and not every other law.
 fn refutes_latency(holds: &[HoldAnalysis]) -> bool {
-    let least = |comparison: &Comparison, of: &dyn Fn(Law) -> bool| {
-        let rows = comparison.rows.iter().filter(|row| row.is_good() && of(row.law));
-        rows.filter_map(|row| row.delta_bic).fold(f64::INFINITY, f64::min)
-    };
-    let is_latency = |law: Law| matches!(law, Law::Latency { .. });
     let (mut compared, mut refuting) = (0, 0);
     for comparison in holds.iter().filter_map(|hold| hold.comparison.as_ref()) {
-        let others = least(comparison, &|law| !is_latency(law) && law != Law::Spectrum);
+        let is_latency = |row: &&Row| matches!(row.law, Law::Latency { .. });
+        // A fit that ended at a bound describes the hold as closely as it does.
+        let latency = comparison.rows.iter().filter(is_latency).filter_map(|row| row.delta_bic).reduce(f64::min);
+        let mut others =
+            comparison.rows.iter().filter(|row| !is_latency(row) && row.law != Law::Spectrum && row.is_good());
+        let Some(latency) = latency else { continue };
+        let stands = others.any(|row| row.delta_bic.is_some_and(|bic| bic <= REFUTED));
         compared += 1;
-        refuting += usize::from(others <= REFUTED && least(comparison, &is_latency) > REFUTED);
+        refuting += usize::from(stands && latency > REFUTED);
     }
     2 * refuting > compared
 }

@@ -73,8 +73,11 @@ struct RelaxedHold {
 /// Laws that end at an equilibrium, besides the latency law.
 const OTHERS: [Law; 4] = [Law::StandardLinearSolid, Law::Prony { terms: 2 }, Law::Prony { terms: 3 }, Law::Stretched];
 
-/// A law of a smaller probability is left out.
+/// A law of a smaller probability, over that of the likeliest, is left out.
 const LEAST: f64 = 1e-3;
+
+/// Probability of the laws that give an equilibrium, at least, whose error is that of the modulus.
+const KNOWN: f64 = 0.05;
 
 /// E from the holds: weighted least squares of F_e = E g(u₁), with g the equilibrium force of the body at 1 Pa: A(u₁) u₁/depth in
 /// equation (11).
@@ -99,12 +102,15 @@ pub(in crate::analysis) fn implied_modulus(
         .holds()
         .filter_map(|hold| relaxed_hold(record, displacement, (hold, &laws), &body, options))
         .collect();
+    // A law that ends well on few holds is none that they have in common.
     let by_law = |(law, weight): (usize, f64)| {
         let forces: Vec<RelaxedForce> = holds.iter().filter_map(|hold| hold.tends_to(law)).collect();
-        weighted(&forces, &body).map(|found| (found, ByLaw { weight, forces }))
+        let found = weighted(&forces, &body).filter(|_| 2 * forces.len() >= holds.len())?;
+        Some((found, ByLaw { weight, forces }))
     };
-    let found: Vec<((f64, f64), ByLaw)> =
-        probabilities(&holds, laws.len()).into_iter().enumerate().filter_map(by_law).collect();
+    let probabilities = probabilities(&holds, laws.len());
+    let whole: f64 = probabilities.iter().sum();
+    let found: Vec<((f64, f64), ByLaw)> = probabilities.into_iter().enumerate().filter_map(by_law).collect();
     let likeliest = found.iter().fold(0.0, |most: f64, (_, law)| most.max(law.weight));
     let found: Vec<((f64, f64), ByLaw)> = found.into_iter().filter(|(_, law)| law.weight > LEAST * likeliest).collect();
     if found.is_empty() {
@@ -129,7 +135,8 @@ pub(in crate::analysis) fn implied_modulus(
     let variance = mean(&|of_law, error| error * error + (of_law - value).powi(2));
     Some(ImpliedModulus {
         value,
-        standard_error: Some(variance.sqrt()),
+        // Where the likely laws give no equilibrium, the error of an unlikely one is none.
+        standard_error: (all > KNOWN * whole).then(|| variance.sqrt()),
         laws: found.into_iter().map(|(_, law)| law).collect(),
     })
 }
@@ -162,10 +169,13 @@ impl RelaxedHold {
     }
 }
 
-/// Probabilities of so many laws by the sums of their BIC over the holds, up to a factor.
+/// Probabilities of so many laws by the sums of their BIC over the holds that have samples enough for each, up to a factor.
 fn probabilities(holds: &[RelaxedHold], laws: usize) -> Vec<f64> {
+    let has_all = |hold: &&RelaxedHold| hold.fits.iter().all(Option::is_some);
+    let any_has_all = holds.iter().any(|hold| has_all(&hold));
     let mut sums = vec![0.0; laws];
-    for criteria in holds.iter().filter_map(RelaxedHold::criteria) {
+    let counted = holds.iter().filter(|hold| !any_has_all || has_all(hold));
+    for criteria in counted.filter_map(RelaxedHold::criteria) {
         sums.iter_mut().zip(criteria).for_each(|(sum, of_hold)| *sum += of_hold);
     }
     let least = sums.iter().copied().fold(f64::INFINITY, f64::min);

@@ -4,7 +4,7 @@ use crate::analysis::{Finding, HoldAnalysis};
 use crate::fit::Fit;
 use crate::laws::BasisFunction;
 use crate::record::Record;
-use crate::segment::{After, Phase, Segmentation};
+use crate::segment::{After, ContactPoint, Phase, Segmentation};
 
 /// Share of the amplitude of a step below which what a ramp leaves of it is stated.
 const MOST: f64 = 0.5;
@@ -19,6 +19,7 @@ const LEAST_TERM: f64 = 0.05;
 pub(in crate::analysis) fn ramp_relaxes(
     record: &Record,
     segmentation: &Segmentation,
+    contact: &ContactPoint,
     holds: &[HoldAnalysis],
 ) -> Option<Finding> {
     let time = record.time();
@@ -27,7 +28,8 @@ pub(in crate::analysis) fn ramp_relaxes(
         let rows = &hold.comparison.as_ref()?.rows;
         let fit = rows.iter().find(|row| row.law == verdict.law && row.is_good())?.fit.as_ref().ok()?;
         let ramp = segmentation.segments.iter().rfind(|segment| segment.end <= hold.segment.start)?;
-        let duration = time[hold.segment.start] - time[ramp.start];
+        // Through air nothing relaxes.
+        let duration = time[hold.segment.start] - time[ramp.start.max(contact.sample.unwrap_or(0))];
         let is_loading = ramp.phase == Phase::Loading && hold.after == Some(After::Loading);
         let time_constant = shortest(fit).filter(|_| is_loading && duration > 0.0)?;
         let share = time_constant / duration * -(-duration / time_constant).exp_m1();

@@ -5,19 +5,16 @@
 //! | `model.rs` | a law with its free parameters and their bounds, as columns of a separable model |
 //! | `build.rs` | options checked against a law, and the model that they ask for |
 //! | `condensed.rs` | a hold condensed to a few dozen nodes |
-//! | `levels.rs` | the step of values that were rounded |
 //! | `redundant.rs` | terms that a fit lists and the data do not have |
 
 pub(crate) mod build;
 pub(crate) mod condensed;
-mod levels;
 pub(crate) mod model;
 pub(crate) mod redundant;
 
 pub(super) use build::build;
 pub(crate) use condensed::Condensed;
 pub(super) use condensed::{condense, condense_to};
-pub(super) use levels::step_between_levels;
 pub(super) use model::{Model, ModelParameter, Sampled, searched_name};
 pub use redundant::RedundantTerm;
 pub(super) use redundant::redundant_terms;

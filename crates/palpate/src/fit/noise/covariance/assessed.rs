@@ -7,12 +7,12 @@ use super::rounding::Rounding;
 use super::sandwich::Sandwich;
 use super::uncertainty::{Scale, Uncertainty, add};
 use super::uneven::leverages;
+use crate::fit::levels::step_between_levels;
 use crate::fit::noise::course::NoiseCourse;
 use crate::fit::noise::model::Noise;
 use crate::fit::noise::portmanteau::{UNEXPLAINED, p_value};
 use crate::fit::noise::residuals::Residuals;
 use crate::fit::noise::spread::Spread;
-use crate::fit::problem::step_between_levels;
 use crate::fit::{Estimate, NoiseChoice, NoiseModel};
 use crate::optimise::{Cholesky, Effort, Few, Solution, Termination};
 use crate::statistics::dot;
@@ -101,13 +101,14 @@ impl Assessed {
         let columns: Vec<&[f64]> = solution.columns.iter().chain(&solution.derivatives).map(Vec::as_slice).collect();
         let inverse = solution.inverse_normal.as_deref().filter(|_| trust.known);
         let counted = trust.counted.unwrap_or(&solution.residuals);
-        let rounding = (trust.step > 0.0).then(|| trust.rounding(solution, counted)).flatten();
-        let waves = rounding.iter().filter(|_| trust.noise == NoiseChoice::FromResiduals).flat_map(Rounding::waves);
-        let all: Vec<&[f64]> = columns.iter().copied().chain(waves).collect();
         // Merged terms have columns that are one another's multiples, beside which no noise has a likelihood.
-        let is_known = inverse.is_some() && all.len() == columns.len();
-        let taken_up = if is_known { columns.clone() } else { independent(&all) };
-        let left = if all.len() > columns.len() { without(counted, &taken_up) } else { None };
+        let own = if inverse.is_some() { columns.clone() } else { independent(&columns) };
+        let rounding = (trust.step > 0.0).then(|| trust.rounding(solution, counted)).flatten();
+        let (taken_up, left) = rounding
+            .as_ref()
+            .filter(|_| trust.noise == NoiseChoice::FromResiduals)
+            .and_then(|rounding| beside_waves(&columns, rounding, counted))
+            .map_or_else(|| (own.clone(), None), |(taken_up, left)| (taken_up, Some(left)));
         let residuals = Residuals::of(left.as_deref().unwrap_or(counted), taken_up.len());
         let (times, time_unit) = trust.uneven_times();
         let taken = || inverse.map(|inverse| leverages(&columns, amplitudes, inverse));
@@ -120,13 +121,18 @@ impl Assessed {
             }
             NoiseChoice::FromResiduals => noise_of(&taken_up, &residuals, observed, times),
         };
+        // How many samples count as independent follows from the residuals as they are: rounding that laws follow is no evidence.
+        let as_they_are = left.as_ref().map(|_| Residuals::of(counted, own.len()));
+        let stated = as_they_are.as_ref().map(|residuals| noise_of(&own, residuals, observed, times));
         effort.hear()?;
+        let (model, stated_p_value) =
+            stated.as_ref().map_or((noise.model, noise_p_value), |(noise, p_value)| (noise.model, *p_value));
         let mut assessed = Self {
             white: None,
             uncertainty: None,
-            noise: noise.model.in_unit(time_unit),
-            noise_p_value,
-            correlation: residuals.correlations[0],
+            noise: model.in_unit(time_unit),
+            noise_p_value: stated_p_value,
+            correlation: as_they_are.as_ref().unwrap_or(&residuals).correlations[0],
             uneven: observed.is_some(),
             course: spread.as_ref().map(|spread| spread.course),
         };
@@ -151,14 +157,16 @@ impl Assessed {
         };
         assessed.white = Some(fit.scaled(inverse, solution.variance)).filter(|rows| is_finite(rows));
         if assessed.white.is_some() {
-            // The noise of a sample is that of all, outliers too.
-            let unit = unit * trust.counted.map_or(1.0, |_| (solution.residual_square / counted_square).sqrt());
+            // The noise of a sample is that of all, outliers and rounding too.
+            let is_part = trust.counted.is_some() || left.is_some();
+            let unit = unit * if is_part { (solution.residual_square / residuals.square).sqrt() } else { 1.0 };
             let mut uncertainty = Uncertainty::of_noise(&fit, &noise, (trust.confidence, unit), effort)?;
             if noise_p_value.is_some_and(|p_value| p_value < UNEXPLAINED)
                 && let Some(covariance) = fit.by_blocks()
             {
                 uncertainty.widen(&covariance);
             }
+            uncertainty.freedom -= (taken_up.len() - own.len()) as f64;
             if let Some(rounding) = &rounding {
                 uncertainty.add(&fit.by_rounding(rounding));
             }
@@ -317,16 +325,27 @@ fn fitted(solution: &Solution, roots: Option<&[f64]>) -> Vec<f64> {
     values
 }
 
-/// What columns leave of residuals.
-fn without(residuals: &[f64], columns: &[&[f64]]) -> Option<Vec<f64>> {
-    let size = columns.len();
+/// Columns with the waves of rounding beside them, and what all of them leave of residuals; `None` where samples are few beside so many columns.
+fn beside_waves<'a>(
+    columns: &[&'a [f64]],
+    rounding: &'a Rounding,
+    residuals: &[f64],
+) -> Option<(Vec<&'a [f64]>, Vec<f64>)> {
+    /// Samples for each column.
+    const ENOUGH: usize = 4;
+    let all: Vec<&[f64]> = columns.iter().copied().chain(rounding.waves()).collect();
+    if residuals.len() < ENOUGH * all.len() {
+        return None;
+    }
+    let taken_up = independent(&all);
+    let size = taken_up.len();
     let mut normal = vec![0.0; size * size];
-    cross_products(columns, columns, &mut normal);
-    let mut along: Vec<f64> = columns.iter().map(|column| dot(column, residuals)).collect();
+    cross_products(&taken_up, &taken_up, &mut normal);
+    let mut along: Vec<f64> = taken_up.iter().map(|column| dot(column, residuals)).collect();
     Cholesky::new(&normal, size)?.solve(&mut along);
     let mut left = residuals.to_vec();
-    columns.iter().zip(along).for_each(|(column, by)| add_multiple(&mut left, -by, column));
-    Some(left)
+    taken_up.iter().zip(along).for_each(|(column, by)| add_multiple(&mut left, -by, column));
+    Some((taken_up, left))
 }
 
 /// The columns that those before them do not span.
