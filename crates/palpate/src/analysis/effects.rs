@@ -30,7 +30,7 @@ enum Cause {
 
 /// How the signal of a hold changes: scale · signal + offset, rates times `rate`.
 ///
-/// The jaw stands, so that strain is force by a constant, and every law is one of its signal in any unit.
+/// The jaw stands, or goes on as the force relaxes, so that strain is a line over the force, and every law is one of its signal in any unit.
 #[derive(Debug, Clone, Copy)]
 struct Changed {
     scale: f64,
@@ -152,12 +152,17 @@ impl<'a> Causes<'a> {
         let geometry = self.geometry?;
         let body = geometry.with_shape(deviation.shape(&geometry.shape)).specimen(self.modulus(cause, by)?).ok()?;
         let before = per_strain(specimen, level)?;
-        let after = per_strain(&body, deviation.displacement(level, hold.force_end))?;
-        Some(Changed {
-            scale: gain * before / after,
-            offset: zero / after,
-            rate,
-        })
+        let end = per_strain(&body, deviation.displacement(level, hold.force_end))?;
+        let strain =
+            |force: f64| Some(deviation.force(force) / per_strain(&body, deviation.displacement(level, force))?);
+        // Through the compliance of a machine the jaw goes on as the force relaxes: the line by least squares over the hold.
+        let every = hold.values.len().div_ceil(MOST).max(1);
+        let mut points = Vec::with_capacity(MOST);
+        for value in hold.values.iter().step_by(every) {
+            points.push((*value, strain(value * before)?));
+        }
+        let (scale, offset) = line(&points).unwrap_or_else(|| (gain * before / end, zero / end));
+        Some(Changed { scale, offset, rate })
     }
 
     /// A fit whose parameters have these effects besides the scatter of the samples.
@@ -181,6 +186,18 @@ impl<'a> Causes<'a> {
         }
         with
     }
+}
+
+/// Samples of a hold that show how its signal changes.
+const MOST: usize = 64;
+
+/// Slope and intercept of the line through points by least squares; `None` where all lie at one place.
+fn line(points: &[(f64, f64)]) -> Option<(f64, f64)> {
+    let count = points.len() as f64;
+    let (x, y) = points.iter().fold((0.0, 0.0), |(x, y), point| (x + point.0 / count, y + point.1 / count));
+    let square: f64 = points.iter().map(|point| (point.0 - x).powi(2)).sum();
+    let slope = points.iter().map(|point| (point.0 - x) * (point.1 - y)).sum::<f64>() / square;
+    (square > (1e-6 * x).powi(2) * count && slope.is_finite()).then_some((slope, y - slope * x))
 }
 
 /// What comes out one standard uncertainty below and above.

@@ -1,12 +1,14 @@
 //! The uncertainty of instrument and body against records whose instrument and body are wrong.
 #![expect(clippy::unwrap_used, reason = "a test that cannot run has failed")]
 
-use palpate::analysis::{AnalysisOptions, Geometry, analyze};
+use palpate::analysis::{Analysis, AnalysisOptions, Geometry, analyze};
 use palpate::budget::{Distribution, Evaluation, InputQuantity};
 use palpate::calibrate::{Calibration, CalibrationData, Candidate, EquilibriumLaw, calibrate};
 use palpate::contact::{Layers, Shape, ShapeDimension, Sides, Specimen};
+use palpate::fit::Parameter;
 use palpate::instrument::{Instrument, InstrumentInput, InstrumentQuantity};
-use palpate::record::Record;
+use palpate::record::{Compliance, CorrectionOptions, Record};
+use palpate::segment::ContactChoice;
 use palpate::simulate::{ContactModel, Sampling, Separation, simulate_force};
 use palpate::test_problems::{Rng, paper_ball, paper_test_a};
 use palpate::watch::Unwatched;
@@ -192,4 +194,47 @@ fn rates_are_as_uncertain_as_the_clock() {
         |name: &str| fit.parameters.iter().find(|parameter| parameter.name.to_string().starts_with(name)).unwrap();
     let effect = |name: &str| named(name).parts.as_ref().unwrap().effects[0] / named(name).estimate.value;
     assert!((effect("rate_coefficient") + by).abs() < 1e-3 * by && effect("equilibrium") == 0.0);
+}
+
+/// The sensitivity to the compliance of the machine was that of a jaw that stands: it goes on as the force relaxes, and v was stated a third too
+/// certain.
+#[test]
+fn a_compliant_machine_moves_start_and_end_of_a_hold_apart() {
+    let (compliance, by) = (2e-5, 1e-5);
+    let ball = record(0.035, (0.0, 0.0, 0.0), 1e-3, 3);
+    let jaw = ball.displacement().unwrap().iter().zip(ball.force()).map(|(d, f)| d + compliance * f).collect();
+    let measured = Record::new(ball.time().to_vec(), Some(jaw), ball.force().to_vec()).unwrap();
+    let analysed = |by: f64, stated: Instrument| {
+        let plain = options(0.035, Some(28e3), stated);
+        let corrections = CorrectionOptions {
+            compliance: Some(Compliance::Constant(compliance + by)),
+            ..CorrectionOptions::default()
+        };
+        let options = AnalysisOptions {
+            corrections,
+            touch: ContactChoice::AsRecorded,
+            ..plain
+        };
+        analyze(&measured, &options).unwrap()
+    };
+    let stated = instrument(&[(InstrumentQuantity::Compliance, by * 3f64.sqrt())]);
+    let [low, with, high] = [(-by, Instrument::default()), (0.0, stated), (by, Instrument::default())]
+        .map(|(by, stated)| analysed(by, stated));
+    for hold in 0..3 {
+        let fit = |analysis: &Analysis| analysis.holds[hold].fit_with(5.0).unwrap().clone();
+        let effect = |name: &str| {
+            let named = |parameter: &&Parameter| parameter.name.to_string() == name;
+            let found = fit(&with).parameters.iter().find(named).unwrap().parts.as_ref().unwrap().effects[0];
+            let [below, above] = [&low, &high].map(|found| fit(found).value(name).unwrap());
+            let value = fit(&with).value(name).unwrap();
+            (found / value, 0.5 * (above - below) / value)
+        };
+        let (stated, expected) = effect("rate_coefficient_per_s");
+        println!("{hold}: {stated} {expected}");
+        assert!(expected.abs() > 0.01, "the test shows what it is to show: {expected}");
+        // A line knows nothing of how the course bends.
+        assert!((0.9..1.35).contains(&(stated / expected)), "{hold}: {stated} {expected}");
+        let (stated, expected) = effect("equilibrium");
+        assert!((stated - expected).abs() < 2e-3, "{hold}: {stated} {expected}");
+    }
 }
