@@ -9,7 +9,7 @@ use super::together::{
 };
 use super::{AnalysisError, AnalysisOptions, Finding};
 use crate::budget::{Budget, Contribution, InputQuantity};
-use crate::contact::{Specimen, SpecimenError};
+use crate::contact::Specimen;
 use crate::fit::{ErrorParts, Fit, Parameter};
 use crate::forecast::RampChoice;
 use crate::laws::Loading;
@@ -146,7 +146,8 @@ fn examined(
         contact,
     } = prepared;
     hear("estimating the modulus")?;
-    let (specimen, implied) = specimen(&record, &segmentation, options, &mut findings)?.unzip();
+    let (specimen, implied) = specimen(&record, &segmentation, options, &mut findings, watch)?.unzip();
+    let mut hear = |task: &str| watch.report(Progress::open(task, 0));
     let implied = implied.flatten();
     let modulus_source = specimen.as_ref().map(|_| match implied {
         Some(_) => ModulusSource::Estimated,
@@ -231,11 +232,12 @@ fn specimen(
     segmentation: &Segmentation,
     options: &AnalysisOptions,
     findings: &mut Vec<Finding>,
-) -> Result<Option<(Specimen, Option<ImpliedModulus>)>, SpecimenError> {
+    watch: &mut dyn Watch,
+) -> Result<Option<(Specimen, Option<ImpliedModulus>)>, AnalysisError> {
     let Some(geometry) = options.geometry.as_ref().filter(|_| record.displacement().is_some()) else {
         return Ok(None);
     };
-    let implied = implied_modulus(record, segmentation, geometry, options);
+    let implied = implied_modulus(record, segmentation, geometry, options, watch)?;
     match (geometry.modulus, implied) {
         (Some(given), implied) => {
             let specimen = geometry.specimen(given)?;
@@ -252,7 +254,7 @@ fn specimen(
             Ok(Some((specimen, Some(implied))))
         }
         // Validates the geometry even where no modulus can be determined.
-        (None, None) => geometry.specimen(1.0).map(|_| None),
+        (None, None) => Ok(geometry.specimen(1.0).map(|_| None)?),
     }
 }
 

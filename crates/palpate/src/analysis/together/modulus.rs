@@ -4,13 +4,16 @@ use serde::{Deserialize, Serialize};
 
 use crate::analysis::options::{AnalysisOptions, Geometry};
 use crate::contact::Specimen;
-use crate::fit::{ErrorParts, Estimate, ExponentChoice, Fit, IntervalMethod, LawOptions, Samples, fit_law};
+use crate::fit::{
+    ErrorParts, Estimate, ExponentChoice, Fit, IntervalMethod, LawOptions, Samples, fit_law_watched, fitted,
+};
 use crate::forecast::criteria;
 use crate::instrument::{Deviation, Instrument, InstrumentInput};
 use crate::laws::Law;
 use crate::record::Record;
 use crate::segment::{After, ContactPoint, Phase, Segment, Segmentation};
 use crate::statistics::{median, noise};
+use crate::watch::{Cancelled, Watch};
 
 /// Where the modulus comes from.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
@@ -93,22 +96,29 @@ pub(in crate::analysis) fn implied_modulus(
     segmentation: &Segmentation,
     geometry: &Geometry,
     options: &AnalysisOptions,
-) -> Option<ImpliedModulus> {
-    let body = geometry.specimen(1.0).ok()?;
-    let displacement = record.displacement()?;
+    watch: &mut dyn Watch,
+) -> Result<Option<ImpliedModulus>, Cancelled> {
+    let (Ok(body), Some(displacement)) = (geometry.specimen(1.0), record.displacement()) else {
+        return Ok(None);
+    };
     let latency = options.choices().map(|exponent| Law::Latency { exponent });
     let laws: Vec<Law> = latency.chain(OTHERS).collect();
-    let holds: Vec<RelaxedHold> = segmentation
-        .holds()
-        .filter_map(|hold| relaxed_hold(record, displacement, (hold, &laws), &body, options))
-        .collect();
+    let mut holds: Vec<RelaxedHold> = Vec::new();
+    for hold in segmentation.holds() {
+        holds.extend(relaxed_hold(record, displacement, (hold, &laws), &body, options, watch)?);
+    }
+    Ok(implied_by(&holds, laws.len(), &body))
+}
+
+/// E from these holds, to each of which so many laws were fitted.
+fn implied_by(holds: &[RelaxedHold], laws: usize, body: &Specimen) -> Option<ImpliedModulus> {
     // A law that ends well on few holds is none that they have in common.
     let by_law = |(law, weight): (usize, f64)| {
         let forces: Vec<RelaxedForce> = holds.iter().filter_map(|hold| hold.tends_to(law)).collect();
-        let found = weighted(&forces, &body).filter(|_| 2 * forces.len() >= holds.len())?;
+        let found = weighted(&forces, body).filter(|_| 2 * forces.len() >= holds.len())?;
         Some((found, ByLaw { weight, forces }))
     };
-    let probabilities = probabilities(&holds, laws.len());
+    let probabilities = probabilities(holds, laws);
     let whole: f64 = probabilities.iter().sum();
     let found: Vec<((f64, f64), ByLaw)> = probabilities.into_iter().enumerate().filter_map(by_law).collect();
     let likeliest = found.iter().fold(0.0, |most: f64, (_, law)| most.max(law.weight));
@@ -120,7 +130,7 @@ pub(in crate::analysis) fn implied_modulus(
             error: 1.0,
         };
         let forces: Vec<RelaxedForce> = holds.iter().filter(|hold| hold.after_loading).map(last).collect();
-        let (value, _) = weighted(&forces, &body)?;
+        let (value, _) = weighted(&forces, body)?;
         return Some(ImpliedModulus {
             value,
             standard_error: None,
@@ -255,7 +265,8 @@ fn relaxed_hold(
     (hold, laws): (&Segment, &[Law]),
     body: &Specimen,
     options: &AnalysisOptions,
-) -> Option<RelaxedHold> {
+    watch: &mut dyn Watch,
+) -> Result<Option<RelaxedHold>, Cancelled> {
     debug_assert_eq!(hold.phase, Phase::Hold);
     let range = hold.fit_start..hold.end;
     let every = range.len().div_ceil(2000).max(1);
@@ -266,12 +277,14 @@ fn relaxed_hold(
     // A jaw that retreats may leave the body, and the force of an open contact says nothing about the modulus.
     let lowest = force.iter().fold(f64::MAX, |least, f| least.min(*f));
     let displacement = median(&mut displacement[range].to_vec());
-    if unit_force(body, displacement) <= 0.0 || !(after_loading || lowest > 5.0 * noise(&force)) {
-        return None;
-    }
+    let last = force
+        .last()
+        .copied()
+        .filter(|_| unit_force(body, displacement) > 0.0 && (after_loading || lowest > 5.0 * noise(&force)));
+    let Some(last) = last else { return Ok(None) };
     let until = options.fitted(&times);
     let samples = Samples::new(&times[..until], &force[..until]);
-    let fit = |law: &Law| {
+    let mut fit = |law: &Law| {
         let exponent = match law {
             Law::Latency { exponent } => *exponent,
             _ => ExponentChoice::Fixed(1.0),
@@ -281,12 +294,12 @@ fn relaxed_hold(
             intervals: IntervalMethod::Curvature,
             ..options.fit.of_latency(exponent)
         };
-        fit_law(&samples, *law, &fitting).ok()
+        fitted(fit_law_watched(&samples, *law, &fitting, watch))
     };
-    Some(RelaxedHold {
+    Ok(Some(RelaxedHold {
         displacement,
-        last: *force.last()?,
+        last,
         after_loading,
-        fits: laws.iter().map(fit).collect(),
-    })
+        fits: laws.iter().map(&mut fit).collect::<Result<_, Cancelled>>()?,
+    }))
 }
