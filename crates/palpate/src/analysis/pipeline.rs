@@ -154,10 +154,10 @@ fn examined(
         None => ModulusSource::Given,
     });
     let causes = Causes::new(options, &contact, specimen.as_ref(), implied.as_ref());
-    let modulus = implied.as_ref().zip(options.geometry.as_ref()).map(|(implied, geometry)| match &causes {
-        Some(causes) => causes.of_modulus(implied),
-        None => implied.estimate_beside(geometry, &contact),
-    });
+    // Without causes it has no error, nor has it one that first touch would add to.
+    let modulus = implied
+        .as_ref()
+        .map(|implied| causes.as_ref().map_or_else(|| implied.estimate(), |causes| causes.of_modulus(implied)));
     findings.extend(modulus.iter().map(|modulus| Finding::ModulusEstimated {
         modulus: modulus.estimate.value,
         standard_error: modulus.estimate.standard_error,

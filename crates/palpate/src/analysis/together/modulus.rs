@@ -8,10 +8,10 @@ use crate::fit::{
     ErrorParts, Estimate, ExponentChoice, Fit, IntervalMethod, LawOptions, Samples, fit_law_watched, fitted,
 };
 use crate::forecast::criteria;
-use crate::instrument::{Deviation, Instrument, InstrumentInput};
+use crate::instrument::Deviation;
 use crate::laws::Law;
 use crate::record::Record;
-use crate::segment::{After, ContactPoint, Phase, Segment, Segmentation};
+use crate::segment::{After, Phase, Segment, Segmentation};
 use crate::statistics::{median, noise};
 use crate::watch::{Cancelled, Watch};
 
@@ -202,20 +202,6 @@ impl ImpliedModulus {
             },
             parts: None,
         }
-    }
-
-    /// The same with the errors of first touch and of the zero of the force, where they were found.
-    pub(in crate::analysis) fn estimate_beside(&self, geometry: &Geometry, contact: &ContactPoint) -> EstimatedModulus {
-        let found = Instrument::default().with_found(contact.displacement_error, contact.force_error);
-        let half = |input: &InstrumentInput| {
-            let by = input.uncertainty.standard_uncertainty;
-            let at = |by: f64| self.with(geometry, &Deviation::of(input.quantity, by));
-            Some(0.5 * (at(by)? - at(-by)?))
-        };
-        let by_found = found.inputs.iter().filter_map(half).fold(0.0, f64::hypot);
-        let mut modulus = self.estimate();
-        modulus.estimate.standard_error = self.standard_error.map(|error| error.hypot(by_found));
-        modulus
     }
 
     /// What the same holds imply with a quantity of the instrument off its estimate, Pa, at the temperature of the test; `None` where they

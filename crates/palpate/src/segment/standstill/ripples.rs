@@ -16,8 +16,8 @@ const RIPPLES: f64 = 12.0;
 /// Standstills without those that are waves of a ripple on a ramp.
 ///
 /// A standstill of L samples in a ramp changes the difference of the ways of L samples before and after its corners by all the way
-/// that it lacks; in a ramp that ripples such differences are found everywhere. What goes to and fro beside it is no ramp, and shows no ripple. Differences of white noise of deviation `noise` are √6
-/// of it. A standstill with others right beside it has no ramp there until these are known for waves, so the search goes on as long as it
+/// that it lacks; in a ramp that ripples such differences are found everywhere. What goes to and fro beside
+/// it is no ramp, and shows no ripple. Differences of white noise of deviation `noise` are √6 of it. A standstill with others right beside it has no ramp there until these are known for waves, so the search goes on as long as it
 /// finds some. A ramp that stands still in every wave looks like stairs, and is read as such.
 pub(super) fn without_ripples(values: &[f64], noise: f64, found: &[Standstill]) -> Vec<Standstill> {
     let mut found = found.to_vec();
