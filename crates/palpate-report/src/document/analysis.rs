@@ -50,7 +50,7 @@ documents! {
         end_s: f64 = hold.end,
         /// Time from which the laws are fitted, s.
         fit_start_s: f64 = hold.fit_start,
-        /// How that time was chosen: `hold_start`, `drive_settled`, `extreme`, `after_extreme`, `contact_closed` or `behind_strays`.
+        /// How that time was chosen: `hold_start`, `drive_settled`, `extreme`, `after_extreme`, `contact_closed`, `behind_strays` or `delay_faded`.
         fit_start_rule: Option<String> = hold.segment.fit_start_rule.map(word),
         /// Displacement of the jaw (median) since first touch, m.
         displacement_m: Option<f64> = hold.displacement,

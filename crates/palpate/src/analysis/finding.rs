@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 use crate::fit::{Fit, TrendVerdict, UNEXPLAINED};
 use crate::laws::Law;
 use crate::record::Column;
-use crate::segment::{HoldMode, LabelCheck, Ripple, Rupture, TouchMethod};
+use crate::segment::{ForceDelay, HoldMode, LabelCheck, Ripple, Rupture, TouchMethod};
 
 /// Severity of a finding.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
@@ -28,6 +28,8 @@ pub enum Severity {
 pub enum Finding {
     /// The fitted equilibrium lies well beyond the end of the hold.
     EquilibriumExtrapolated {
+        /// Law that is to be used.
+        law: Law,
         /// Share of the fitted relaxation that lies beyond the end of the hold.
         beyond: f64,
     },
@@ -204,6 +206,22 @@ pub enum Finding {
     ContactOpen {
         /// Time at which contact returns, s.
         until: f64,
+    },
+    /// The ramp before a hold has fewer samples than say when it began and ended.
+    RampBetweenSamples {
+        /// The holds behind such ramps.
+        holds: Vec<usize>,
+        /// Interval of the samples, s.
+        interval: f64,
+    },
+    /// The force goes on after the jaw has stopped, as behind a filter.
+    ForceLags {
+        /// Time from the stop to its extreme, s.
+        rise: f64,
+        /// Least time constant of a filter of first order that explains it, s.
+        time_constant: f64,
+        /// Time from the stop of the jaw to the start of the fit, s.
+        from: f64,
     },
     /// No contact area at this displacement, hence no strain.
     NoContactArea,
@@ -463,6 +481,15 @@ pub enum Finding {
 }
 
 impl Finding {
+    /// [`Self::ForceLags`] where laws are fitted from this time (s) on.
+    pub(crate) fn of_delay(delay: &ForceDelay, fit_start_s: f64) -> Self {
+        Self::ForceLags {
+            rise: delay.rise_s,
+            time_constant: delay.time_constant_s,
+            from: fit_start_s - delay.stop_s,
+        }
+    }
+
     /// The stable code.
     #[must_use]
     pub fn code(&self) -> &'static str {
@@ -546,7 +573,10 @@ mod tests {
     fn a_drift_is_stated_before_what_fits_to_it_show() {
         // A force that rose after loading was stated after two cautions about fits of laws that relax.
         let mut findings = [
-            Finding::EquilibriumExtrapolated { beyond: 1.0 },
+            Finding::EquilibriumExtrapolated {
+                law: Law::StandardLinearSolid,
+                beyond: 1.0,
+            },
             Finding::OneHold,
             Finding::DriftInsteadOfRelaxation { rise: 0.5, fall: 0.0 },
             Finding::NoContactArea,

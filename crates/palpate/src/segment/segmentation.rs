@@ -32,6 +32,8 @@ pub enum FitStartRule {
     ContactClosed,
     /// The first sample behind rows of the force that stray.
     BehindStrays,
+    /// The first sample at which a force that an amplifier or a filter delays has caught up.
+    DelayFaded,
 }
 
 impl FitStartRule {
@@ -45,6 +47,7 @@ impl FitStartRule {
             Self::AfterExtreme => "requested delay",
             Self::ContactClosed => "contact closed",
             Self::BehindStrays => "behind stray rows",
+            Self::DelayFaded => "delay of the force faded",
         }
     }
 }

@@ -28,15 +28,15 @@ impl Finding {
     /// The text of the finding.
     pub(super) fn text(&self) -> Text {
         match self {
-            Self::EquilibriumExtrapolated { beyond } => caution(
+            Self::EquilibriumExtrapolated { law, beyond } => caution(
                 "equilibrium_extrapolated",
                 format!(
-                    "by the latency law, the hold covers {:.0} % of the relaxation; {:.0} % lies beyond its end",
+                    "by the law {law}, the hold covers {:.0} % of the relaxation; {:.0} % lies beyond its end",
                     100.0 * (1.0 - beyond),
                     100.0 * beyond
                 ),
-                "the estimated equilibrium depends on the exponent; a different exponent gives a different equilibrium",
-                "hold longer, or compare holds at one fixed exponent",
+                "the estimated equilibrium depends on the law and, by the latency law, on the exponent: another one gives another equilibrium",
+                "hold longer, or compare holds at one law and one fixed exponent",
             ),
             Self::ForceStep { time, step, gap } => caution(
                 "force_step",
@@ -282,6 +282,32 @@ impl Finding {
                 format!("the force is zero until {until:.2} s"),
                 "the jaw retreated faster than the body recovered, and contact was lost; the fit begins where contact returns",
                 "unload more slowly or in smaller steps",
+            ),
+            Self::RampBetweenSamples { holds, interval } => caution(
+                "ramp_between_samples",
+                format!(
+                    "the jaw goes most of its way to {} between two samples, {} s apart: when it started and stopped is unknown by as much",
+                    listed_holds(holds),
+                    significant(*interval, 3)
+                ),
+                "the ramp is drawn straight between the samples; rate coefficient, exponent and layer thickness depend on it, beyond their intervals",
+                "sample faster, or press more slowly; laws of the holds do not depend on the ramps",
+            ),
+            Self::ForceLags {
+                rise,
+                time_constant,
+                from,
+            } => caution(
+                "force_lags",
+                format!(
+                    "the force goes on for {} s after the jaw has stopped, as behind a filter with a time constant of {} s or more; laws are \
+                     fitted to it from {} s after the stop on",
+                    significant(*rise, 2),
+                    significant(*time_constant, 2),
+                    significant(*from, 2)
+                ),
+                "a body relaxes as soon as the jaw stops: forces of the ramp and up to there are those of an amplifier or a filter",
+                "record the force with a faster filter, or press more slowly",
             ),
             Self::NoContactArea => warning(
                 "no_contact_area",

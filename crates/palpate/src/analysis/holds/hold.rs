@@ -9,12 +9,15 @@ use super::rate_bias::{RateBias, rate_bias};
 use crate::analysis::{AnalysisOptions, Finding};
 use crate::contact::{Shape, Specimen};
 use crate::fit::{
-    Domain, ExponentChoice, LatencyFit, LawOptions, OrderSelection, Samples, Termination, fitted, select_order,
+    Domain, ExponentChoice, Fit, LatencyFit, LawOptions, OrderSelection, Parameter, ParameterKind, Samples,
+    Termination, fitted, select_order,
 };
 use crate::forecast::{CompareOptions, Comparison, KnownFit, change, compare_laws_watched};
 use crate::laws::Loading;
 use crate::record::Record;
-use crate::segment::{After, FitStartRule, HoldMode, Relaxation, RelaxationType, Segment, classify_relaxation};
+use crate::segment::{
+    After, FitStartRule, HoldMode, Relaxation, RelaxationType, Segment, classify_relaxation, force_delay,
+};
 use crate::simulate::Separation;
 use crate::statistics::{mean, median, noise};
 use crate::strain::{StrainRates, contact_strain, strain_rates};
@@ -170,6 +173,8 @@ pub(in crate::analysis) fn prepare_hold(
     if reopened.is_some() {
         hold.findings.push(Finding::ContactOpen { until: hold.fit_start });
     }
+    hold.findings
+        .extend(force_delay(record, segments, index).map(|delay| Finding::of_delay(&delay, hold.fit_start)));
     let force_held = segment.mode == Some(HoldMode::ForceHeld);
     if force_held {
         // A force that a controller brings back to where it was does not relax.
@@ -354,38 +359,58 @@ fn judge(hold: &mut HoldAnalysis) {
         }
     }
     let Some(best) = hold.preferred().cloned() else { return };
-    if best.termination == Termination::RateAtBound {
+    let bounded = best.termination == Termination::RateAtBound;
+    if bounded {
         hold.findings.push(Finding::RateAtBound {
             exponent: best.exponent().value,
         });
-        return;
     }
+    match recommended(hold).cloned() {
+        Some(fit) => judge_fit(hold, &fit),
+        None if !bounded => judge_fit(hold, &best),
+        None => {}
+    }
+}
+
+/// The fit of the recommended law.
+fn recommended(hold: &HoldAnalysis) -> Option<&Fit> {
+    let comparison = hold.comparison.as_ref()?;
+    let law = comparison.verdict.as_ref()?.law;
+    comparison.rows.iter().find(|row| row.law == law)?.fit.as_ref().ok()
+}
+
+/// Adds what the fit of the law to use gives cause to say.
+fn judge_fit(hold: &mut HoldAnalysis, fit: &Fit) {
     let (last, first_step) = (hold.times[hold.fitted - 1], hold.times[1]);
-    let left = (best.predict(last) - best.equilibrium().value) / best.amplitude().value;
-    if left > 0.2 {
-        hold.findings.push(Finding::EquilibriumExtrapolated { beyond: left });
-    }
-    if let Some((low, high)) = best.equilibrium().interval {
-        let end = best.predict(last);
+    let [start, next, end] = [0.0, first_step, last].map(|time| fit.predict(time));
+    if let Some(Parameter { estimate, .. }) = fit.parameter(ParameterKind::Equilibrium) {
+        let beyond = (end - estimate.value) / (start - estimate.value);
+        if beyond > 0.2 {
+            hold.findings.push(Finding::EquilibriumExtrapolated { law: fit.law, beyond });
+        }
         // A force below zero that goes on to one above it belongs to a body that is held on to.
-        if high < 0.0 && (low / end).is_finite() && end > 0.0 {
+        if let Some((low, high)) = estimate.interval
+            && high < 0.0
+            && (low / end).is_finite()
+            && end > 0.0
+        {
             hold.findings.push(Finding::EquilibriumBeyondZero {
-                share: best.equilibrium().value / end,
+                share: estimate.value / end,
                 interval: (low / end, high / end),
             });
         }
     }
-    let share = (best.predict(0.0) - best.predict(first_step)) / (best.predict(0.0) - best.predict(last));
+    let share = (start - next) / (start - end);
     if share > 0.3 {
         hold.findings.push(Finding::SampledTooSlowly { share });
     }
-    if best.residual_correlation > 0.5 && best.rmse > 1e-9 * best.amplitude().value.abs() {
+    if fit.residual_correlation > 0.5 && fit.rmse > 1e-9 * (start - end).abs() {
         hold.findings.push(Finding::ResidualsCorrelated {
-            correlation: best.residual_correlation,
-            independent: best.effective_samples(),
+            correlation: fit.residual_correlation,
+            independent: fit.effective_samples(),
         });
     }
-    hold.findings.extend(Finding::of_noise(&best));
+    hold.findings.extend(Finding::of_noise(fit));
 }
 
 /// Correlation of exponent and equilibrium, if it is close to one and the exponent is not known well for all that.

@@ -2,6 +2,7 @@
 
 use std::ops::Range;
 
+use super::delayed::force_delay;
 use super::turning::extremes;
 use crate::record::Record;
 use crate::segment::{
@@ -35,6 +36,12 @@ pub(super) fn place_fits(record: &Record, options: &SegmentOptions, segments: &m
         let wander = if answers.is_some() { CONTROLLER } else { SERVO };
         let (sample, rule) = options.hold_start.sample(answers.unwrap_or(record), wander, segments, index);
         (segments[index].fit_start, segments[index].fit_start_rule) = (sample, Some(rule));
+        if options.hold_start == HoldStart::Peak
+            && let Some(delay) = force_delay(record, segments, index).filter(|delay| delay.settled > sample)
+        {
+            (segments[index].fit_start, segments[index].fit_start_rule) =
+                (delay.settled, Some(FitStartRule::DelayFaded));
+        }
     }
 }
 

@@ -4,6 +4,7 @@
 //!
 //! | file | what |
 //! |---|---|
+//! | `delayed.rs` | a force that an amplifier or a filter delays |
 //! | `find.rs` | the phases of a record: given, labelled or sought |
 //! | `given.rs` | phases that are sought, and holds whose limits someone gives |
 //! | `labelled.rs` | phases that a file labels |
@@ -17,6 +18,7 @@
 //! | `whole.rs` | a record that is one hold throughout |
 //! | `fit_start.rs` | from where in a hold the laws are fitted |
 
+mod delayed;
 mod find;
 mod fit_start;
 mod from_both;
@@ -30,6 +32,7 @@ mod rupture;
 mod turning;
 mod whole;
 
+pub(crate) use delayed::{ForceDelay, force_delay};
 pub use find::{find_phases, phases_watched, phases_with};
 pub use given::GivenHold;
 pub(crate) use ramps::ramps_alone;
