@@ -193,7 +193,7 @@ fn examined(
     findings.extend(changing_rate(&across));
     findings.extend(exponent_not_listed(&holds, &across.evidence));
     let overlay = specimen.as_ref().filter(|_| !holds.is_empty()).and_then(|specimen| {
-        let result = overlay(&record, &segmentation, specimen, &holds, across.common_exponent, options);
+        let result = overlay((&record, &segmentation, &contact), specimen, &holds, across.common_exponent, options);
         result.map_err(|reason| findings.push(Finding::NoOverlay { reason })).ok()
     });
     if let Some(relative) = overlay.as_ref().map(|overlay| overlay.relative).filter(|relative| *relative > POOR) {

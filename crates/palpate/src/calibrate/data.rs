@@ -1,12 +1,14 @@
 //! What a model is fitted to: the motion of the jaw and the force it met.
 
+use std::ops::Range;
+
 use super::CalibrateError;
 use super::range::Span;
 use crate::analysis::{AnalysisOptions, Finding, Geometry, Prepared, corrected, measured_motion, signal_findings};
 use crate::contact::{Specimen, SpecimenError};
 use crate::instrument::Instrument;
 use crate::record::Record;
-use crate::segment::HoldMode;
+use crate::segment::{HoldMode, Phase, Segment, force_delay, ramps_before};
 use crate::simulate::{MeasuredMotion, Motion, Separation};
 use crate::statistics::median;
 
@@ -129,23 +131,38 @@ impl CalibrationData {
         let geometry = options.geometry.clone().ok_or(CalibrateError::NoGeometry)?;
         let corrected = corrected(record, options)?;
         let prepared = corrected.prepared(options, options.touch)?;
-        let findings = signal_findings((record, &record.signals()), &corrected, &prepared, options);
+        let mut findings = signal_findings((record, &record.signals()), &corrected, &prepared, options);
         let Prepared {
             record,
             segmentation,
             contact,
         } = prepared;
         let body = geometry.specimen(1.0)?;
-        let measured = measured_motion(&record, &segmentation, &body, options.separation)
+        let measured = measured_motion(&record, &segmentation, &contact, &body, options.separation)
             .ok_or(CalibrateError::NoDisplacement)??;
         let displacement = record.displacement().unwrap_or_default();
         never_pressed(displacement)?;
         let held: Vec<f64> =
             segmentation.holds().map(|hold| median(&mut displacement[hold.start..hold.end].to_vec())).collect();
-        let (times, forces) = (record.time().to_vec(), record.force().to_vec());
+        let segments = &segmentation.segments;
+        let delayed: Vec<Range<usize>> = (0..segments.len())
+            .filter_map(|index| {
+                let delay = force_delay(&record, segments, index)?;
+                findings.push(Finding::of_delay(&delay, record.time()[delay.settled]));
+                let ramp = ramps_before(segments, index).last()?;
+                Some(ramp.start..delay.settled)
+            })
+            .collect();
+        findings.extend(between_samples(&record, segments));
+        let (times, forces) = (record.time(), record.force());
         let pressed = segmentation.holds().filter(|hold| hold.mode == Some(HoldMode::ForceHeld));
         let force_held = pressed.map(|hold| (times[hold.start], times[hold.end - 1])).collect();
         let motion = measured.motion.clone();
+        // Behind a filter the force of a ramp is that of an earlier moment.
+        let (times, forces) = (0..times.len())
+            .filter(|i| !delayed.iter().any(|rows| rows.contains(i)))
+            .map(|i| (times[i], forces[i]))
+            .unzip();
         Ok(Self {
             measured: Some(measured),
             instrument: options.instrument.with_found(contact.displacement_error, contact.force_error),
@@ -309,4 +326,31 @@ fn levels(body: &Specimen, motion: &Motion, held: &[f64]) -> Vec<f64> {
         before = level;
     }
     filled
+}
+
+/// [`Finding::RampBetweenSamples`] where the jaw has gone most of its way between two samples.
+fn between_samples(record: &Record, segments: &[Segment]) -> Option<Finding> {
+    /// Samples of a ramp that say when it began and ended.
+    const FEWEST: usize = 2;
+    /// Share of the way within which a sample is one of the rest.
+    const AT_REST: f64 = 0.02;
+    let displacement = record.displacement()?;
+    let mut holds = Vec::new();
+    let mut number = 0;
+    for (index, hold) in segments.iter().enumerate().filter(|(_, segment)| segment.phase == Phase::Hold) {
+        number += 1;
+        let Some(first) = ramps_before(segments, index).last().map(|ramp| ramp.start) else {
+            continue;
+        };
+        let from = displacement[first.saturating_sub(1)];
+        let to = median(&mut displacement[hold.start..hold.end].to_vec());
+        let moves = |at: &&f64| (**at - from).abs().min((**at - to).abs()) > AT_REST * (to - from).abs();
+        if displacement[first..hold.start].iter().filter(moves).count() < FEWEST {
+            holds.push(number);
+        }
+    }
+    (!holds.is_empty()).then(|| Finding::RampBetweenSamples {
+        holds,
+        interval: record.sample_interval(),
+    })
 }

@@ -3,11 +3,13 @@
 
 use palpate::analysis::{AnalysisOptions, Geometry};
 use palpate::calibrate::{CalibrationData, Candidate, EquilibriumLaw, Extrapolation, Material, calibrate};
-use palpate::contact::{Equilibrium, Shape, Sides, Specimen};
+use palpate::contact::{Equilibrium, Layers, Shape, Sides, Specimen};
+use palpate::latency::LatencyLaw;
 use palpate::record::Record;
+use palpate::segment::ContactChoice;
 use palpate::simulate::{
-    Contact, ForceHistory, LinearContact, LinearLaw, LinearTerm, Memory, Motion, ProgramStep, Sampling, Separation,
-    simulate, simulate_force,
+    Contact, ContactModel, ForceHistory, LinearContact, LinearLaw, LinearTerm, Memory, Motion, ProgramStep, Sampling,
+    Separation, simulate, simulate_force,
 };
 use palpate::test_problems::Rng;
 use palpate::watch::Unwatched;
@@ -145,4 +147,61 @@ fn the_curve_of_a_servo_is_not_cut_to_straight_pieces() {
         assert!(covered.iter().all(|covered| *covered >= 16) && knots < 30, "{found}");
     }
     assert!(ramp.1 <= 5, "{found}");
+}
+
+/// A body of constant area that the plate approached through air was squeezed in the air: 18 to 64 kPa for 60, n = 2 to 21 for 4.
+#[test]
+fn a_plate_in_air_squeezes_no_body() {
+    const AIR: f64 = 2e-3;
+    let shape = Shape::Prism {
+        area: 3e-4,
+        length: 0.02,
+    };
+    for separation in [Separation::Unilateral, Separation::Bonded] {
+        let model = ContactModel {
+            specimen: Specimen::new(shape.clone(), 6e4, Sides::One).unwrap(),
+            law: LatencyLaw::new(4.0, 3e3).unwrap(),
+            layers: Layers::new(3.0).unwrap(),
+            separation,
+        };
+        let touched = 1.0 + AIR / 1e-3;
+        let motion =
+            |from: f64| Motion::new(vec![from, touched + 4.0, 67.0], vec![1e-3 * (from - touched), 4e-3, 4e-3]);
+        let times: Vec<f64> = (0..660).map(|i| 0.1 * f64::from(i)).collect();
+        let pressed = times.partition_point(|time| *time < touched);
+        let mut force = vec![0.0; pressed];
+        force.extend(simulate_force(&motion(touched).unwrap(), &model, &times[pressed..]).unwrap());
+        if separation == Separation::Unilateral {
+            let through_air = simulate_force(&motion(1.0).unwrap(), &model, &times[10..]).unwrap();
+            let apart = through_air.iter().zip(&force[10..]).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+            assert!(apart < 1e-9, "{apart} N");
+        }
+        let mut random = Rng::new(5);
+        let noisy = force.iter().map(|force| force + 5e-3 * random.normal()).collect();
+        let jaw = times
+            .iter()
+            .map(|time| 1e-3 * (time - 1.0).clamp(0.0, 4.0 + touched - 1.0) + 2e-7 * random.normal());
+        let record = Record::new(times.clone(), Some(jaw.collect()), noisy).unwrap();
+        for touch in [ContactChoice::Auto, ContactChoice::Displacement(AIR)] {
+            let geometry = Geometry {
+                shape: shape.clone(),
+                sides: Sides::One,
+                modulus: None,
+                equilibrium: Equilibrium::UniformStrain,
+            };
+            let options = AnalysisOptions {
+                geometry: Some(geometry),
+                separation,
+                touch,
+                ..AnalysisOptions::default()
+            };
+            let data = CalibrationData::of_record(&record, &options).unwrap();
+            let candidate = Candidate::new("latency".parse().unwrap(), EquilibriumLaw::UniformStrain);
+            let found = calibrate(&data, candidate, 0.95, &mut Unwatched).unwrap().material;
+            for (name, truth, near) in [("modulus_pa", 6e4, 0.01), ("exponent", 4.0, 0.05)] {
+                let value = found.estimate(name).unwrap().value;
+                assert!((value / truth - 1.0).abs() < near, "{separation:?} {touch:?} {name}: {value}");
+            }
+        }
+    }
 }

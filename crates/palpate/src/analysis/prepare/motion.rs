@@ -2,17 +2,18 @@
 
 use crate::contact::Specimen;
 use crate::record::Record;
-use crate::segment::Segmentation;
+use crate::segment::{ContactPoint, Segmentation};
 use crate::simulate::{MeasuredMotion, MotionError, Separation};
 use crate::statistics::noise_in_time;
 
-/// The measured motion with its noise taken out, for a record that is zero at first touch; `None` without a displacement.
+/// The measured motion with its noise taken out, for a record that is zero at first touch, `contact`; `None` without a displacement.
 ///
 /// # Errors
 /// [`MotionError`] as of [`MeasuredMotion::of`].
 pub(crate) fn measured_motion(
     record: &Record,
     segmentation: &Segmentation,
+    contact: &ContactPoint,
     specimen: &Specimen,
     separation: Separation,
 ) -> Option<Result<MeasuredMotion, MotionError>> {
@@ -20,8 +21,15 @@ pub(crate) fn measured_motion(
     const WITHIN: f64 = 4.0;
     let displacement = record.displacement()?;
     let tolerance = (0.5 * segmentation.settings.tolerance).max(WITHIN * noise_in_time(record.time(), displacement));
-    let found = MeasuredMotion::of(record.time().to_vec(), displacement.to_vec(), tolerance);
+    let is_bonded = separation == Separation::Bonded;
+    let mut displacement = displacement.to_vec();
+    if is_bonded && contact.tare.displacement != 0.0 {
+        // What is glued to the jaw as it touches is not pulled before.
+        let touched = contact.sample.unwrap_or(0).min(displacement.len());
+        displacement[..touched].iter_mut().for_each(|place| *place = place.max(0.0));
+    }
+    let found = MeasuredMotion::of(record.time().to_vec(), displacement, tolerance);
     // A bonded ball has no area before first touch; noise there is no pull.
-    let is_bonded_ball = separation == Separation::Bonded && specimen.contact_area(0.0) == 0.0;
+    let is_bonded_ball = is_bonded && specimen.contact_area(0.0) == 0.0;
     Some(if is_bonded_ball { found.map(|found| found.at_least(0.0)) } else { found })
 }

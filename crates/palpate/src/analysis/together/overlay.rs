@@ -5,7 +5,7 @@ use crate::contact::{Layers, Specimen};
 use crate::fit::LatencyFit;
 use crate::latency::LatencyLaw;
 use crate::record::Record;
-use crate::segment::{After, Segmentation};
+use crate::segment::{After, ContactPoint, Segmentation};
 use crate::simulate::{ContactModel, simulate_force};
 use crate::statistics::{median, rms};
 
@@ -35,8 +35,7 @@ pub struct Overlay {
 /// v is the median over the holds after loading, at the common exponent. Where the number of layers is not given it is
 /// fitted: only the overshoot in the ramps depends on it.
 pub(in crate::analysis) fn overlay(
-    record: &Record,
-    segmentation: &Segmentation,
+    (record, segmentation, contact): (&Record, &Segmentation, &ContactPoint),
     specimen: &Specimen,
     holds: &[HoldAnalysis],
     exponent: Option<f64>,
@@ -57,7 +56,7 @@ pub(in crate::analysis) fn overlay(
         return Err("no hold gave a rate coefficient".to_owned());
     }
     let law = LatencyLaw::new(n, median(&mut coefficients)).map_err(|error| error.to_string())?;
-    let motion = measured_motion(record, segmentation, specimen, options.separation)
+    let motion = measured_motion(record, segmentation, contact, specimen, options.separation)
         .ok_or("the record has no displacement")?
         .map_err(|error| error.to_string())?
         .motion;

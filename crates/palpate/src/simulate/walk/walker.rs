@@ -43,6 +43,14 @@ impl<'a, L: Layer> Walker<'a, L> {
         let specimen = self.model.specimen();
         check_displacements(motion, specimen, self.model.separation())?;
         let share = |displacement: f64| specimen.contact_displacement(displacement);
+        // A jaw that begins off the body meets its surface where that has always been.
+        if motion.displacements().first().is_some_and(|first| *first < 0.0)
+            && !self.model.is_bonded()
+            && let Some(surface) = self.model.left(&self.model.relaxed(), 0.0)
+        {
+            let since = motion.start();
+            self.contact = Contact::Free { surface, since };
+        }
         let knots = motion.times().windows(2).zip(motion.displacements().windows(2));
         for (times, displacements) in knots {
             let ends = (share(displacements[0]), share(displacements[1]));
