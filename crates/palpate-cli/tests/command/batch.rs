@@ -346,6 +346,32 @@ fn the_lowest_of_exponents_that_are_not_distinguishable_is_recommended() {
     assert!(others.len() > 1 && !others.contains(&recommended[0].as_str()), "{others:?}");
 }
 
+/// "On 12 of these other exponents are not distinguishable" stood beside a free exponent that is better by a criterion of 3,000.
+#[test]
+fn a_free_exponent_that_the_data_distinguish_has_none_beside_it() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    let mut text = String::from("time_s,displacement_mm,force_n\n");
+    for i in 0..620 {
+        let t = 0.05 * f64::from(i);
+        let relaxed = 1.0 + (1.0 + 6.0 * (t - 1.0).max(0.0)).powf(-1.0 / 3.0);
+        let noise = 1e-3 * (f64::from(i) * 12.9898).sin();
+        let (d, f) = if t < 1.0 { (t, 2.0 * t) } else { (1.0, relaxed) };
+        text.push_str(&format!("{t:.2},{d:.5},{:.6}\n", f + noise));
+    }
+    file(folder, "one.csv", text);
+    let text = done(folder, &["batch", "one.csv", "--out", "holds.csv"]);
+    let table = lines(folder, "holds.csv");
+    let of_recommended: Vec<(String, String)> = (column(&table, "law").into_iter())
+        .zip(column(&table, "indistinguishable"))
+        .zip(column(&table, "recommended"))
+        .filter(|(_, recommended)| recommended == "1")
+        .map(|(of, _)| of)
+        .collect();
+    assert_eq!(of_recommended, [("latency".to_owned(), String::new())]);
+    assert!(!text.contains("not distinguishable"), "{text}");
+}
+
 /// A link to a file that is no longer there was passed over without a word.
 #[test]
 #[cfg(unix)]

@@ -246,11 +246,13 @@ impl Line<'_> {
     /// Of the recommended law: the other laws, or exponents where no laws were compared, that the data do not distinguish from the best.
     fn indistinguishable(&self) -> Option<String> {
         let hold = self.hold.filter(|_| self.is_recommended)?;
-        let alike = match &hold.comparison {
-            Some(_) => &self.verdict()?.indistinguishable,
-            None => &hold.indistinguishable,
-        };
         let own = self.name()?;
+        let alike = match &hold.comparison {
+            Some(_) => self.verdict()?.indistinguishable.as_slice(),
+            // The data distinguish a free exponent from all listed ones where it is not one of those.
+            None if hold.indistinguishable.iter().all(|law| *law != own) => &[],
+            None => hold.indistinguishable.as_slice(),
+        };
         let others: Vec<&str> = alike.iter().filter(|law| **law != own).map(String::as_str).collect();
         Some(others.join(" "))
     }

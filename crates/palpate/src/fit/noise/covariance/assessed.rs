@@ -62,17 +62,18 @@ impl Trust<'_> {
         times.map_or((None, 1.0), |(times, unit)| (Some(times).filter(|times| are_uneven(times)), unit))
     }
 
-    /// How the size of the noise changes along evenly spaced samples.
+    /// How the size of noise with these partial autocorrelations changes along the samples.
     fn spread(
         &self,
         solution: &Solution,
         residuals: &Residuals<'_>,
+        partial: &[f64],
         leverages: impl FnOnce() -> Option<Vec<f64>>,
     ) -> Option<Spread> {
         if !self.may_vary || self.noise == NoiseChoice::White {
             return None;
         }
-        Spread::of(residuals.values, &self.fitted(solution), &residuals.partial, leverages)
+        Spread::of(residuals.values, &self.fitted(solution), partial, leverages)
     }
 
     /// What rounding adds to the noise.
@@ -112,7 +113,13 @@ impl Assessed {
         let residuals = Residuals::of(left.as_deref().unwrap_or(counted), taken_up.len());
         let (times, time_unit) = trust.uneven_times();
         let taken = || inverse.map(|inverse| leverages(&columns, amplitudes, inverse));
-        let spread = if times.is_none() { trust.spread(solution, &residuals, taken) } else { None };
+        let spread = match times {
+            None => trust.spread(solution, &residuals, &residuals.partial, taken),
+            // What a sample brings beyond the one before changes with their distance where noise correlates in time.
+            Some(_) => trust
+                .spread(solution, &residuals, &[], taken)
+                .filter(|_| Noise::of(&taken_up, &residuals, times).model == NoiseModel::White),
+        };
         let observed = spread.as_ref().filter(|spread| spread.is_observed());
         effort.hear()?;
         let (noise, noise_p_value) = match trust.noise {
