@@ -134,6 +134,20 @@ impl ComparedHold {
     }
 }
 
+/// How far the jaw goes in a record, m.
+pub(crate) fn travel(analysis: &Analysis) -> f64 {
+    let places = analysis.record.displacement().unwrap_or_default();
+    places.iter().fold(0.0, |most, place| most.max(place.abs()))
+}
+
+/// The displacement that a hold is held at, m, for people: what is less than a ten-thousandth of the travel is none, as after a return to first
+/// touch.
+pub(crate) fn displacement_held(displacement: Option<f64>, travel: f64) -> Option<f64> {
+    /// Titles have four digits.
+    const LEAST: f64 = 1e-4;
+    displacement.map(|place| if place.abs() < LEAST * travel { 0.0 } else { place })
+}
+
 /// The displacement that a hold is held at, as titles have it.
 pub(crate) fn held_at(displacement: f64) -> String {
     quantity(displacement, "m", 4)
@@ -143,13 +157,14 @@ impl ComparedRecord {
     /// The comparison in an analysis.
     #[must_use]
     pub fn of_analysis(analysis: &Analysis, input: Input) -> Self {
+        let travel = travel(analysis);
         let holds = analysis.holds.iter().map(|hold| ComparedHold {
             number: hold.number,
             after: hold.after,
             start: hold.start,
             end: hold.end,
             fit_start: hold.fit_start,
-            level: hold.displacement,
+            level: displacement_held(hold.displacement, travel),
             quantity: hold.signal.into(),
             times: hold.times[..hold.fitted].to_vec(),
             values: hold.values[..hold.fitted].to_vec(),
@@ -201,12 +216,21 @@ impl ComparedRecord {
 
 #[cfg(test)]
 mod tests {
-    use super::held_at;
+    use super::{displacement_held, held_at};
 
     /// A hold at 10 µm had the title "Hold 1, 0.0 mm", and holds at 0.25 mm those of 0.2 mm and 0.3 mm.
     #[test]
     fn titles_tell_small_displacements_apart() {
         let titles = [1e-5, 0.249_999e-3, 0.250_001e-3, 0.0101].map(held_at);
         assert_eq!(titles, ["10.00 µm", "0.2500 mm", "0.2500 mm", "10.10 mm"]);
+    }
+
+    /// A hold after a return to first touch had the title "Hold 6, 3.000 nm".
+    #[test]
+    fn a_displacement_of_nothing_is_none() {
+        let title = |place, travel| held_at(displacement_held(Some(place), travel).unwrap());
+        assert_eq!(title(3e-9, 0.015), held_at(0.0));
+        assert_eq!(title(-3e-9, 0.015), held_at(0.0));
+        assert_eq!(title(3e-9, 1e-6), "3.000 nm");
     }
 }

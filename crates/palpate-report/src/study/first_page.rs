@@ -7,7 +7,7 @@ use palpate::fit::Estimate;
 use palpate::forecast::{Comparison, name_in_words};
 use palpate::laws::Law;
 use palpate::number::counted;
-use palpate::segment::RelaxationType;
+use palpate::segment::{After, RelaxationType};
 
 use super::answer::{HoldFit, fits_of_law, fits_of_record, law_table, parameter_columns, with_start};
 use super::findings::{Gathered, entry, holds_named, sentence};
@@ -165,17 +165,19 @@ fn grouped(fits: Vec<HoldFit<'_>>) -> Option<Table> {
     Some(parameter_columns(table, &groups[0].1, median).table())
 }
 
-/// The hold that stands for a record: of those for which its law is recommended, the one that changes most beside its noise.
+/// The hold that stands for a record: one after loading where there is one; of these one for which its law is recommended, and of those the one
+/// that changes most beside its noise.
 fn shown(record: &ComparedRecord) -> Option<(&ComparedHold, &Comparison)> {
     let law = law_of_record(record);
-    let weight = |found: &Comparison| {
+    let weight = |hold: &ComparedHold, found: &Comparison| {
         let verdict = found.verdict.as_ref().filter(|verdict| Some(verdict.law) == law);
         let unreserved = verdict.is_some_and(|verdict| verdict.reservation.is_none());
-        (verdict.is_some(), unreserved, found.change.abs() / found.noise)
+        let is_loaded = hold.after == Some(After::Loading);
+        ((is_loaded, verdict.is_some(), unreserved), found.change.abs() / found.noise)
     };
     record.verdicts().reduce(|best, other| {
-        let ((a, b, c), (x, y, z)) = (weight(best.1), weight(other.1));
-        if (x, y).cmp(&(a, b)).then(z.total_cmp(&c)).is_gt() { other } else { best }
+        let ((of_best, a), (of_other, b)) = (weight(best.0, best.1), weight(other.0, other.1));
+        if of_other.cmp(&of_best).then(b.total_cmp(&a)).is_gt() { other } else { best }
     })
 }
 
@@ -223,4 +225,62 @@ pub(super) fn panel_of_hold(record: &ComparedRecord) -> Option<(Panel, String)> 
 pub(super) fn figure_of_hold(record: &ComparedRecord, name: &str) -> Option<Figure> {
     let (panel, caption) = panel_of_hold(record)?;
     Some(Figure::new(name, caption).panel(panel).width_mm(120.0).height_mm(72.0))
+}
+
+#[cfg(test)]
+mod tests {
+    use palpate::fit::Samples;
+    use palpate::forecast::{CompareOptions, compare_laws};
+    use palpate::test_problems::noisy_hold;
+
+    use super::*;
+    use crate::result::{Input, Quantity};
+
+    fn hold(number: usize, after: Option<After>, noise: f64) -> ComparedHold {
+        let (times, values) = noisy_hold(200, 5.0, noise);
+        let comparison = compare_laws(&Samples::new(&times, &values), &CompareOptions::default()).ok();
+        ComparedHold {
+            number,
+            after,
+            start: 0.0,
+            end: 10.0,
+            fit_start: 0.0,
+            level: Some(0.01),
+            quantity: Quantity::Strain,
+            times,
+            values,
+            comparison,
+            findings: Vec::new(),
+        }
+    }
+
+    /// A quiet hold after unloading, or after a pause, stood for the record.
+    #[test]
+    fn a_hold_after_loading_stands_for_the_record() {
+        let after = [None, Some(After::Loading), Some(After::Loading), Some(After::Unloading)];
+        let noises = [1e-4, 1e-2, 3e-3, 1e-4];
+        let mut record = ComparedRecord {
+            input: Input {
+                path: "steps.csv".to_owned(),
+                part: None,
+                sha256: String::new(),
+                rows: 200,
+                rows_averaged: 1,
+                x_m: None,
+                y_m: None,
+                map_index: None,
+                test: None,
+                test_sha256: None,
+                air_run_sha256: None,
+                then_sha256: None,
+                depends_on_sha256: None,
+                title: "steps".to_owned(),
+            },
+            holds: (1..).zip(after).zip(noises).map(|((number, after), noise)| hold(number, after, noise)).collect(),
+            findings: Vec::new(),
+        };
+        assert_eq!(shown(&record).map(|(hold, _)| hold.number), Some(3));
+        record.holds.retain(|hold| hold.after != Some(After::Loading));
+        assert!(matches!(shown(&record), Some((hold, _)) if hold.number == 1 || hold.number == 4));
+    }
 }

@@ -33,6 +33,7 @@ class Reports:
     hostile: Path
     index: Path
     paper: Path
+    series: Path
 
 
 @pytest.fixture(scope="session")
@@ -44,6 +45,9 @@ def reports(tmp_path_factory: pytest.TempPathFactory) -> Reports:
     levels = [3.0, 1.5, 5.0, 2.0] * 6
     many = write(folder / "many.csv", steps(levels, 12.0, 12.0, 1))
     works.append(analyze(folder, folder / "many", many))
+    # A law of seven parameters.
+    two = write(folder / "two.csv", steps([3.0, 1.0], 12.0, 12.0, 3))
+    works.append(command(folder, "compare", two, "--laws", "prony:3", "--out", folder / "series"))
     # Names from files and descriptions reach titles, addresses, tables and legends.
     names = ["=1+1 @SUM(A1) & 'x'", "a\"onmouseover=alert(1) <b>"]
     described = folder / "hostile.toml"
@@ -57,7 +61,7 @@ def reports(tmp_path_factory: pytest.TempPathFactory) -> Reports:
     hostile = sorted((folder / "set").glob("*/report.html"))
     assert len(hostile) == 2
     pages = [folder / f"{name}/report.html" for name in ("many", "long", "paper")]
-    return Reports(pages[0], pages[1], hostile[0], folder / "set/index.html", pages[2])
+    return Reports(pages[0], pages[1], hostile[0], folder / "set/index.html", pages[2], folder / "series/report.html")
 
 
 @dataclass

@@ -41,6 +41,17 @@ def test_nothing_is_cut_or_fetched(browser: Browser, reports: Reports, name: str
     found.context.close()
 
 
+@pytest.mark.parametrize("name", ["many", "series"])
+def test_the_table_of_the_first_page_never_scrolls_sideways(browser: Browser, reports: Reports, name: str) -> None:
+    """At 900 picture elements the last columns were beside the page."""
+    found = opened(browser, getattr(reports, name), 900)
+    table = found.page.locator(".first .scroll")
+    assert table.count() == 1
+    width = table.evaluate("(one) => [one.scrollWidth, one.clientWidth]")
+    assert width[0] <= width[1], width
+    found.context.close()
+
+
 def test_the_policy_forbids_what_a_name_could_bring(browser: Browser, reports: Reports) -> None:
     found = opened(browser, reports.many)
     forbidden = found.page.evaluate("""async () => {

@@ -7,7 +7,7 @@ use palpate::segment::After;
 
 use super::cut::{MOST_NAMED, known_as, shaded};
 use crate::figure::{Arrangement, Axis, Figure, Layer, Panel, Role};
-use crate::result::{ComparedRecord, held_at};
+use crate::result::{ComparedRecord, displacement_held, held_at, travel};
 use crate::study::first_page::panel_of_hold;
 use crate::study::grid::{by_hold, displacement_panel, grid};
 
@@ -104,7 +104,7 @@ pub(in crate::study) fn strain_rates(analysis: &Analysis, name: &str) -> Option<
             .collect();
         let (mut outside, mut points) = (0, 0);
         for holds in holds.chunks(MOST_SERIES) {
-            let (panel, beyond) = rate_panel(holds, n);
+            let (panel, beyond) = rate_panel(holds, n, travel(analysis));
             outside += beyond;
             points += holds.iter().map(|hold| hold.rates.rate.len()).sum::<usize>();
             panels.push(panel.title(title));
@@ -119,7 +119,7 @@ pub(in crate::study) fn strain_rates(analysis: &Analysis, name: &str) -> Option<
 }
 
 /// The strain rates of some holds with their laws, and how many points lie outside the range shown.
-fn rate_panel(holds: &[&HoldAnalysis], n: f64) -> (Panel, usize) {
+fn rate_panel(holds: &[&HoldAnalysis], n: f64, travel: f64) -> (Panel, usize) {
     let curves: Vec<Option<(Vec<f64>, Vec<f64>)>> =
         holds.iter().map(|hold| hold.fit_with(n).map(|fit| rate_curve(fit, hold))).collect();
     let rates = || holds.iter().flat_map(|hold| hold.rates.rate.iter().copied());
@@ -134,7 +134,7 @@ fn rate_panel(holds: &[&HoldAnalysis], n: f64) -> (Panel, usize) {
     for (series, (hold, curve)) in holds.iter().zip(curves).enumerate() {
         let role = Role::Series(series as u8);
         panel = panel.layer(Layer::points(hold.rates.strain.clone(), hold.rates.rate.clone(), role));
-        let label = match hold.displacement {
+        let label = match displacement_held(hold.displacement, travel) {
             Some(d) => format!("{}: {}", hold.number, held_at(d)),
             None => format!("{}", hold.number),
         };
@@ -192,7 +192,8 @@ fn hold_panel(analysis: &Analysis, hold: &HoldAnalysis) -> Panel {
     let visible = hold.times.partition_point(|t| *t <= 0.0);
     let (times, values) = (hold.times[visible..].to_vec(), hold.values[visible..].to_vec());
     let (first, last) = (times.first().copied().unwrap_or(1.0), times.last().copied().unwrap_or(1.0));
-    let held = hold.displacement.map_or_else(String::new, |d| format!(", {}", held_at(d)));
+    let place = displacement_held(hold.displacement, travel(analysis));
+    let held = place.map_or_else(String::new, |d| format!(", {}", held_at(d)));
     let law = recommended(hold).map_or_else(String::new, |row| format!(": {}", row.law));
     let mut panel = Panel::new(Axis::log("Time", "s"), y)
         .title(format!("Hold {}{held}{law}", hold.number))

@@ -8,7 +8,7 @@ use palpate::record::Correction;
 use palpate::segment::{After, FitStartRule, RelaxationType};
 
 use crate::number::significant;
-use crate::result::{ComparedRecord, Input, budgets_of_analysis, mode_word, percent, word};
+use crate::result::{ComparedRecord, Input, budgets_of_analysis, displacement_held, mode_word, percent, travel, word};
 use crate::study::comparison::tables as comparison_tables;
 use crate::study::findings::Gathered;
 use crate::study::{answer, budget, findings};
@@ -49,6 +49,7 @@ const LEAST_P: f64 = 1e-6;
 
 /// One row a hold: where it lies, what the force does.
 pub(super) fn holds(analysis: &Analysis) -> Table {
+    let travel = travel(analysis);
     Table::of("holds", "Holds of the record.", &analysis.holds)
         .column("Hold", "hold", "", |hold| Cell::Integer(hold.number as i64))
         .column("After", "after", "", |hold| Cell::text(hold.after.map(word).unwrap_or_default()))
@@ -62,7 +63,7 @@ pub(super) fn holds(analysis: &Analysis) -> Table {
         .column("Chosen by", "fit_start_rule", "", |hold| {
             Cell::text(hold.segment.fit_start_rule.map(FitStartRule::words).unwrap_or_default())
         })
-        .column("Displacement", "displacement_mm", "mm", displacement)
+        .column("Displacement", "displacement_mm", "mm", |hold| displacement(hold, travel))
         .column("Force at start", "force_start_n", "N", |hold| Cell::Number(hold.force_start, 4))
         .column("Force at end", "force_end_n", "N", |hold| Cell::Number(hold.force_end, 4))
         .column("Type", "relaxation", "", |hold| {
@@ -80,8 +81,8 @@ pub(super) fn holds(analysis: &Analysis) -> Table {
 }
 
 /// The displacement that was held.
-fn displacement(hold: &HoldAnalysis) -> Cell {
-    Cell::number_or(hold.displacement.map(|d| 1e3 * d), 4, "not recorded")
+fn displacement(hold: &HoldAnalysis, travel: f64) -> Cell {
+    Cell::number_or(displacement_held(hold.displacement, travel).map(|d| 1e3 * d), 4, "not recorded")
 }
 
 /// Every fit of every hold, both domains.
@@ -166,6 +167,7 @@ fn paper_table(analysis: &Analysis, after: After) -> Option<Table> {
         "Holds after {}: the law with n = {n}, in the layout of the paper's Table {number}. Time domain: the closed form fitted to the strain; rate domain: the paper's fit of strain rate against strain.",
         word(after)
     );
+    let travel = travel(analysis);
     let holds = analysis.holds.iter().filter(|hold| hold.after == Some(after) && hold.signal == Signal::Strain);
     let rows: Vec<(&HoldAnalysis, &LatencyFit)> = holds.filter_map(|hold| Some((hold, hold.fit_with(n)?))).collect();
     let by_rate = |hold: &HoldAnalysis, cell: &dyn Fn(&LatencyFit) -> Cell| {
@@ -175,7 +177,7 @@ fn paper_table(analysis: &Analysis, after: After) -> Option<Table> {
     let coefficient = |fit: &LatencyFit| parameter(fit, ParameterKind::RateCoefficient);
     Table::of(name, caption, &rows)
         .column("Hold", "hold", "", |(hold, _)| Cell::Integer(hold.number as i64))
-        .column("Displacement", "displacement_mm", "mm", |(hold, _)| displacement(hold))
+        .column("Displacement", "displacement_mm", "mm", |(hold, _)| displacement(hold, travel))
         .estimates("εₑ (time)", "equilibrium_strain", "", |(_, fit)| equilibrium(fit))
         .estimates("v (time)", "rate_coefficient_per_s", "s⁻¹", |(_, fit)| coefficient(fit))
         .estimates("εₑ (rate)", "equilibrium_strain_rate_domain", "", |(hold, _)| by_rate(hold, &equilibrium))
