@@ -187,6 +187,7 @@ impl Calibrated {
                 test: record.input.test.clone(),
                 palpate: Software::this().release(),
                 samples: record.data.fitted(),
+                misfit: record.misfit(),
             },
         })
     }

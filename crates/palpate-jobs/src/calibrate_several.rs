@@ -149,6 +149,7 @@ impl CalibratedSeveral {
                 test: (!tests.is_empty()).then(|| tests.join(", ")),
                 palpate: Software::this().release(),
                 samples: data.iter().map(CalibrationData::fitted).sum(),
+                misfit: self.batch.misfit(),
             },
         })
     }
@@ -167,6 +168,7 @@ impl CalibratedSeveral {
                     test: input.test.clone(),
                     palpate: Software::this().release(),
                     samples: data.fitted(),
+                    misfit: CalibratedBatch::misfit_of(specimen),
                 },
             }
         };

@@ -327,6 +327,7 @@ impl PlanGrip {
             depends_on_sha256: Dependencies::new("grip", &self.stated())
                 .file("material", Some(&source.sha256))
                 .sha256()?,
+            misfit: source.file.origin.misfit,
             grip,
             answer,
         };
@@ -355,7 +356,8 @@ impl PlanGrip {
         watch.report(Progress::open("trying a squeeze", 0))?;
         let course = grip.course(&plan, duration, SAMPLES).map_err(|error| ungripped(&error))?;
         let probability = grip.probability(&plan, duration).map_err(|error| ungripped(&error))?;
-        Ok(TriedSqueeze::new(&grip, squeeze, duration, (course, probability, self.confidence)))
+        let found = (course, probability, self.confidence);
+        Ok(TriedSqueeze::new(&grip, squeeze, duration, found, source.file.origin.misfit.as_ref()))
     }
 }
 

@@ -15,8 +15,8 @@ use std::time::{Duration, Instant};
 use palpate::watch::{Cancelled, Progress, Unwatched, Watch};
 use palpate_jobs::input::{Described, Measurement, NamedRecords, OpenedFile};
 use palpate_jobs::{
-    Analyze, Batch, Calibrate, Compare, Convert, ErrorKind, Inspect, JobError, PlanGrip, Predict, Reproduce, Results,
-    Simulate, Sweep, Verdict, WatchLog,
+    Analyze, Batch, Calibrate, Compare, Convert, ErrorKind, Inspect, JobError, MaterialSource, PlanGrip, Predict,
+    Reproduce, Results, Simulate, Sweep, Verdict, WatchLog,
 };
 use schemars::{JsonSchema, schema_for};
 use serde::Serialize;
@@ -244,4 +244,18 @@ fn names_that_nobody_would_choose_are_written_or_refused() {
     for name in names {
         any_path::write_any(name.as_bytes());
     }
+}
+
+/// Sliders of a material that its record refutes answered as surely as those of another.
+#[test]
+fn a_squeeze_that_is_tried_by_a_refuted_law_says_so() {
+    let mut source = MaterialSource::read(&example("records/ball-material.toml")).unwrap();
+    let question: PlanGrip =
+        serde_json::from_str(r#"{"mass_kg": 0.25, "friction": 0.6, "squeeze_m": 0.006, "hold_s": 10}"#).unwrap();
+    let found = question.try_squeeze(&source, &mut Unwatched).unwrap();
+    assert!(found.misfit.is_none() && !found.verdict.contains("refutes"), "{found:?}");
+    source.file.origin.misfit = Some("prony:2".parse().unwrap());
+    let found = question.try_squeeze(&source, &mut Unwatched).unwrap();
+    assert!(found.verdict.contains(", by a law that the record refutes"), "{}", found.verdict);
+    assert!(found.misfit.unwrap().contains("prony:2 describes it better than latency"));
 }

@@ -162,3 +162,73 @@ fn numbers_that_make_no_grip_are_reported_by_name() {
     let error = refused(folder.path(), &load(&name));
     assert!(error.contains("version"), "{error}");
 }
+
+const SERIES: &str = r#"
+[specimen]
+shape = "ball"
+radius = "35 mm"
+modulus = "28 kPa"
+
+[law]
+name = "prony"
+terms = [{ overshoot = 0.5, time = "0.8 s" }, { overshoot = 0.4, time = "15 s" }]
+
+[contact]
+squeezed_from = "two sides"
+separation = true
+
+[[step]]
+to = "10 mm"
+rate = "500 mm/min"
+hold = "20 s"
+
+[[step]]
+to = "15 mm"
+rate = "500 mm/min"
+hold = "20 s"
+
+[output]
+sample_rate = "10 Hz"
+"#;
+
+/// A grip of a material whose record has two time constants answered as surely by the latency law as by its own.
+#[test]
+fn a_grip_by_a_law_that_the_record_refutes_says_so_first() {
+    let folder = tempdir().unwrap();
+    let folder = folder.path();
+    file(folder, "series.toml", SERIES);
+    let noise = ["--force-noise", "0.05 N", "--displacement-noise", "0.001 mm", "--seed", "7"];
+    done(folder, &[&["simulate", "series.toml", "--out", "series.csv"], &noise[..]].concat());
+    let test = root().join("examples/records/ball.toml").display().to_string();
+    let calibrate = |law: &str, alternatives: &[&str]| {
+        let words = ["calibrate", "series.csv", "--test", &test, "--law", law, "--out", "material.toml"];
+        let text = done(folder, &[&words, alternatives].concat());
+        (text, std::fs::read_to_string(folder.join("material.toml")).unwrap())
+    };
+    let words = [&load("material.toml"), &["--squeeze", "8 mm", "--hold", "10 s"][..]].concat();
+    let grip = || {
+        let text = String::from_utf8(palpate(folder, &words).stdout).unwrap();
+        let json = palpate(folder, &[&words[..], &["--format", "json"]].concat()).stdout;
+        (text, serde_json::from_slice::<Value>(&json).unwrap())
+    };
+    let (text, material) = calibrate("latency", &["--alternatives", "prony:2"]);
+    assert!(text.contains("The record refutes this law: prony:2"), "{text}");
+    assert!(material.contains("\nmisfit = \"prony:2\"\n"), "{material}");
+    let (text, document) = grip();
+    let misfit = document["misfit"].as_str().unwrap();
+    assert!(misfit.starts_with("The record refutes this law: prony:2"), "{misfit}");
+    assert!(misfit.ends_with("What helps: calibrate with the law prony:2."), "{misfit}");
+    assert_eq!(document["remarks"][0], misfit);
+    let verdict = document["verdict"].as_str().unwrap();
+    assert!(verdict.contains(", by a law that the record refutes"), "{verdict}");
+    let unwrapped = text.split_whitespace().collect::<Vec<_>>().join(" ");
+    assert!(unwrapped.find(misfit).unwrap() < unwrapped.find(verdict).unwrap(), "{text}");
+    // Without another law its residuals speak.
+    let (_, material) = calibrate("latency", &["--no-alternatives"]);
+    assert!(material.contains("\nmisfit = \"residuals\"\n"), "{material}");
+    assert!(grip().1["verdict"].as_str().unwrap().contains(", by a law that misses part of the record"));
+    // With its own law there is nothing to say.
+    let (_, material) = calibrate("prony:2", &["--alternatives", "standard-linear-solid"]);
+    assert!(!material.contains("misfit"), "{material}");
+    assert!(grip().1["misfit"].is_null());
+}

@@ -924,6 +924,8 @@ class Material(_Value):
     """Covariance of the natural logarithms of the parameters, in their order; None where the record leaves one open."""
     confidence: Final[float | None]
     """Coverage of the intervals of the parameters; None where they have none."""
+    misfit: Final[str | None]
+    """What the record shows against the law, and what helps, in a sentence; None where nothing. Grips state it first."""
     noise_n: Final[float]
     """Standard deviation of what the law left of the measured force, N: noise of one reading."""
     calibration_range: Final[dict[str, float]]
@@ -1098,6 +1100,8 @@ class Grip(_Summed, _Reported):
     """
     holds: Final[bool]
     """Whether the grip that is in question holds as long as was requested; without a time whether it does at all."""
+    misfit: Final[str | None]
+    """What the record of the material shows against its law, and what helps, in a sentence; None where nothing. It is the first remark too."""
     verdict: Final[str]
     """The answer in a sentence."""
     question: Final[str]

@@ -64,9 +64,12 @@ impl Grip {
         })
     }
 
-    /// Answers, and warns of every question beyond the test.
+    /// Answers, and warns of a law that the record contradicts and of every question beyond the test.
     pub(crate) fn of(py: Python<'_>, source: MaterialSource, question: PlanGrip) -> PyResult<Self> {
         let made = job(py, move |watch| Self::made(&question.run(&source, watch)?.result))?;
+        if let Some(misfit) = &made.document.misfit {
+            warn(py, misfit.trim_end_matches('.'))?;
+        }
         for beyond in &made.document.extrapolations {
             warn(py, &format!("beyond the test: {beyond}"))?;
         }
@@ -83,6 +86,8 @@ shown! {
     values {
         /// Whether the grip that is in question holds as long as was requested; without a time whether it does at all.
         holds: bool = self.document.holds,
+        /// What the record of the material shows against its law, and what helps, in a sentence; None where nothing. It is the first remark too.
+        misfit: Option<&str> = self.document.misfit.as_deref(),
         /// The answer in a sentence.
         verdict: &str = &self.document.verdict,
         /// The question in a sentence.

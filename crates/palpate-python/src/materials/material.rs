@@ -7,7 +7,7 @@ use palpate::calibrate::{EquilibriumLaw, Material as Body, MaterialParameter};
 use palpate_files::description::{MaterialFile, parse_material, parse_protocol_of, read_protocol_of};
 use palpate_jobs::output::write_file;
 use palpate_jobs::{MaterialSource, PlanGrip, Predict};
-use palpate_report::result::si_unit;
+use palpate_report::result::{sentence_of_misfit, si_unit};
 use pyo3::prelude::*;
 use pyo3::types::{IntoPyDict, PyDict, PyType};
 use serde::de::Error;
@@ -145,6 +145,11 @@ shown! {
         /// Coverage of the intervals of the parameters; None where they have none.
         confidence: Option<f64> =
             self.source.file.material.uncertainty().map(|uncertainty| uncertainty.confidence),
+        /// What the record shows against the law, and what helps, in a sentence; None where nothing. Grips state it first.
+        misfit: Option<String> = {
+            let MaterialFile { material, origin } = &self.source.file;
+            origin.misfit.map(|misfit| sentence_of_misfit(&misfit, &material.candidate().to_string()))
+        },
         /// Standard deviation of what the law left of the measured force, N: noise of one reading.
         noise_n: f64 = self.source.file.material.noise(),
         /// The range of the test, beyond which predictions are extrapolations: ``longest_hold_s`` of the displacement,

@@ -226,6 +226,8 @@ documents! {
         depends_on_sha256: String = body.depends_on_sha256.clone(),
         /// The calibrated law.
         law: String = body.grip.material().candidate().to_string(),
+        /// What its record shows against that law, and what helps; `null` where nothing.
+        misfit: Option<String> = body.misfit_sentence(),
         /// Coverage of the intervals.
         confidence: f64 = body.grip.confidence(),
         /// The load.

@@ -1,7 +1,8 @@
 //! What a calibration of a record is shown with.
 
 use palpate::calibrate::{
-    CalibrateError, Calibration, CalibrationData, CalibrationRange, Candidate, Material, ParameterProfile, RateLaw,
+    CalibrateError, Calibration, CalibrationData, CalibrationRange, Candidate, Material, Misfit, ParameterProfile,
+    RateLaw,
 };
 use palpate::contact::Shape;
 use palpate::fit::{NoiseModel, Termination};
@@ -11,6 +12,7 @@ use palpate::simulate::Separation;
 use palpate::units::quantity;
 
 use super::input::Input;
+use super::misfit::sentence_of_misfit;
 use super::parameters::parameter_title;
 use crate::number::counted;
 use crate::word::word;
@@ -50,6 +52,18 @@ impl CalibratedRecord {
     /// Candidates whose search ended at an optimum.
     fn ranked(&self) -> impl Iterator<Item = &Calibration> {
         self.made().filter(|made| made.termination.is_good())
+    }
+
+    /// What the record shows against the law that was requested: another law that refutes it, or else residuals that follow a course.
+    #[must_use]
+    pub fn misfit(&self) -> Option<Misfit> {
+        let chosen = self.chosen()?;
+        let others = self.rows[1..].iter().filter_map(|(_, made)| made.as_ref().ok());
+        let refuting = chosen.refuted_by(others).map(|other| other.material.candidate());
+        let follows_course = are_systematic(chosen.noise, chosen.relative) || are_slow(chosen);
+        refuting
+            .map(|Candidate { law, rate, .. }| Misfit::Law { law, rate })
+            .or_else(|| follows_course.then_some(Misfit::Residuals))
     }
 
     /// What the table says in a sentence: the same figures rank.
@@ -110,6 +124,9 @@ impl CalibratedRecord {
     pub fn remarks(&self) -> Vec<String> {
         let mut remarks: Vec<String> = self.sentence().into_iter().collect();
         if let Some(chosen) = self.chosen() {
+            // Residuals have a remark of their own.
+            let refuted = self.misfit().filter(|misfit| *misfit != Misfit::Residuals);
+            remarks.extend(refuted.map(|by| sentence_of_misfit(&by, &chosen.material.candidate().to_string())));
             if chosen.material.candidate().rate == RateLaw::ByStrain && self.data.depths_held() < 2 {
                 remarks.push("The record holds one displacement: only the ramps determine the dependence of v on strain, so that an error of the law there biases it. Holds at several displacements would determine it.".to_owned());
             }

@@ -1,7 +1,7 @@
 //! What a calibration of several records is shown with.
 
 use palpate::analysis::{Finding, Severity};
-use palpate::calibrate::{BatchParameter, Between, CalibratedSpecimen, CalibrationData, SeveralCalibration};
+use palpate::calibrate::{BatchParameter, Between, CalibratedSpecimen, CalibrationData, Misfit, SeveralCalibration};
 use palpate::number::{counted, significant};
 
 use super::calibrated::{are_systematic, bonded_remark, formula_of_material, range_remark};
@@ -72,6 +72,18 @@ impl CalibratedBatch {
         lines
     }
 
+    /// What the records show against the law.
+    #[must_use]
+    pub fn misfit(&self) -> Option<Misfit> {
+        self.found.specimens.iter().find_map(Self::misfit_of)
+    }
+
+    /// What one of the records shows against it.
+    #[must_use]
+    pub fn misfit_of(specimen: &CalibratedSpecimen) -> Option<Misfit> {
+        are_systematic(specimen.noise, specimen.relative).then_some(Misfit::Residuals)
+    }
+
     /// The findings of records because of which numbers must not be used, in sentences that name the record.
     #[must_use]
     pub fn warnings(&self) -> Vec<String> {
@@ -113,7 +125,7 @@ impl CalibratedBatch {
             remarks
                 .push(format!("The bodies differ in geometry: the material has that of {}.", found.specimens[0].name));
         }
-        let systematic = |specimen: &&CalibratedSpecimen| are_systematic(specimen.noise, specimen.relative);
+        let systematic = |specimen: &&CalibratedSpecimen| Self::misfit_of(specimen).is_some();
         let systematic: Vec<&str> =
             found.specimens.iter().filter(systematic).map(|specimen| specimen.name.as_str()).collect();
         if !systematic.is_empty() {

@@ -8,6 +8,7 @@ use palpate::grip::{
 use palpate::number::significant;
 
 use super::gripped::GrippedBody;
+use super::misfit::{condition, sentence_of_misfit};
 use super::parameters::parameter_title;
 use super::words::percent;
 
@@ -80,14 +81,27 @@ impl GrippedBody<'_> {
             && self.answer.squeeze.as_ref().is_ok_and(|squeeze| is_short(&squeeze.found))
     }
 
-    /// What the probability of a verdict rests on beyond the test; empty where it does not.
+    /// What the probability of a verdict rests on besides the parameters; empty where on nothing.
     fn condition(&self) -> &'static str {
-        if self.extrapolations().is_empty() { "" } else { ", if the law holds beyond the test" }
+        condition(self.misfit.as_ref(), !self.extrapolations().is_empty())
+    }
+
+    /// What the record of the material shows against its law, and what helps, in sentences; it belongs before every answer.
+    #[must_use]
+    pub fn misfit_sentence(&self) -> Option<String> {
+        let law = self.grip.material().candidate().to_string();
+        self.misfit.as_ref().map(|misfit| sentence_of_misfit(misfit, &law))
+    }
+
+    /// All remarks: what is against the law, and what the tables mean.
+    #[must_use]
+    pub fn remarks(&self) -> Vec<String> {
+        self.misfit_sentence().into_iter().chain(self.notes()).collect()
     }
 
     /// What the tables mean, in sentences: the advice of both ways of control beside each other, retreat, schedule, limits of the test.
     #[must_use]
-    pub fn remarks(&self) -> Vec<String> {
+    pub fn notes(&self) -> Vec<String> {
         let answer = &self.answer;
         let mut remarks = Vec::new();
         if self.grip.material().uncertainty().is_none() {

@@ -1,6 +1,6 @@
 //! What a planned grip is shown with.
 
-use palpate::calibrate::{Extrapolation, Prediction};
+use palpate::calibrate::{Extrapolation, Misfit, Prediction};
 use palpate::grip::{Answer, Control, Grip, GripError};
 
 /// A body in a gripper with the answer to a question.
@@ -12,6 +12,8 @@ pub struct GrippedBody<'a> {
     pub sha256: String,
     /// SHA-256 over the material, the settings and the build: equal digests stand for equal plans.
     pub depends_on_sha256: String,
+    /// What its record shows against the law of the material.
+    pub misfit: Option<Misfit>,
     /// Body, load and gripper.
     pub grip: Grip<'a>,
     /// The answer.

@@ -13,6 +13,7 @@
 //! | `budget.rs` | uncertainty budgets of results |
 //! | `calibrated_batch.rs` | several records calibrated together, with remarks |
 //! | `gripped.rs`, `grip_sentences.rs` | a body in a gripper with an answer; the answer in sentences |
+//! | `misfit.rs` | what a record shows against the law of its material, in sentences |
 //! | `tried.rs` | a squeeze that is tried, with its verdict |
 //! | `specimens.rs` | records of several specimens: one law, its parameters between specimens |
 //! | `words.rs` | the words for what the library says |
@@ -25,6 +26,7 @@ mod compared;
 mod grip_sentences;
 mod gripped;
 mod input;
+mod misfit;
 mod parameters;
 mod specimens;
 mod tried;
@@ -41,6 +43,7 @@ pub(crate) use compared::{displacement_held, held_at, travel};
 pub(crate) use grip_sentences::{chance, lasted};
 pub use gripped::GrippedBody;
 pub use input::Input;
+pub use misfit::sentence_of_misfit;
 pub use parameters::{
     MIXED_EXPONENTS, PARAMETER_COLUMNS, ParameterColumn, ParameterDocument, ParameterRow, Parameters,
     depends_on_exponent, parameter_title, parameters_of, parameters_of_material, parameters_table, si_unit,

@@ -1,11 +1,12 @@
 //! A squeeze that is tried: whether it holds as long as was requested, and nothing else.
 
-use palpate::calibrate::Prediction;
+use palpate::calibrate::{Misfit, Prediction};
 use palpate::grip::Grip;
 use palpate::number::significant;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+use super::misfit::{condition, sentence_of_misfit};
 use super::{chance, lasted, percent};
 
 /// `palpate.tried-squeeze/1`: whether a squeeze holds with the displacement held, and the course of its force.
@@ -25,6 +26,8 @@ pub struct TriedSqueeze {
     pub probability: Option<f64>,
     /// Probability that is required.
     pub verdict_confidence: f64,
+    /// What the record of the material shows against its law, and what helps; `null` where nothing.
+    pub misfit: Option<String>,
     /// The verdict in a sentence.
     pub verdict: String,
     /// Beyond what the test has shown, in words each.
@@ -59,6 +62,7 @@ impl TriedSqueeze {
         squeeze: f64,
         duration: f64,
         (course, probability, required): (Prediction, Option<f64>, f64),
+        misfit: Option<&Misfit>,
     ) -> Self {
         let trajectory = &course.trajectory;
         let (last, closing) = (trajectory.len() - 1, squeeze / grip.limits().speed);
@@ -67,7 +71,7 @@ impl TriedSqueeze {
         let stops = trajectory.time.partition_point(|time| *time < closing * (1.0 - 1e-9)).min(last);
         let holds = probability.map(|found| found >= required);
         let extrapolations: Vec<String> = course.extrapolations.iter().map(ToString::to_string).collect();
-        let condition = if extrapolations.is_empty() { "" } else { ", if the law holds beyond the test" };
+        let condition = condition(misfit, !extrapolations.is_empty());
         let what = format!(
             "a squeeze of {} mm at {} mm/s",
             significant(1e3 * squeeze, 4),
@@ -92,6 +96,7 @@ impl TriedSqueeze {
             holds,
             probability,
             verdict_confidence: required,
+            misfit: misfit.map(|misfit| sentence_of_misfit(misfit, &grip.material().candidate().to_string())),
             verdict,
             extrapolations,
             needed_force_n: grip.needed_force(squeeze),

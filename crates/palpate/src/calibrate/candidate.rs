@@ -64,6 +64,15 @@ impl RateLaw {
         }
     }
 
+    /// What it adds to the name of its law.
+    pub(super) fn suffix(self) -> &'static str {
+        match self {
+            Self::Constant => "",
+            Self::ByStrain => ", v by strain",
+            Self::ByDirection => ", v by direction",
+        }
+    }
+
     /// What a record lacks that does not show its factor.
     pub(super) fn needs(self) -> Option<&'static str> {
         match self {
@@ -100,12 +109,7 @@ pub struct Candidate {
 
 impl std::fmt::Display for Candidate {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        write!(f, "{}", self.law)?;
-        match self.rate {
-            RateLaw::Constant => Ok(()),
-            RateLaw::ByStrain => f.write_str(", v by strain"),
-            RateLaw::ByDirection => f.write_str(", v by direction"),
-        }
+        write!(f, "{}{}", self.law, self.rate.suffix())
     }
 }
 
@@ -131,6 +135,12 @@ impl Candidate {
             ..self
         });
         std::iter::once(self).chain(rates.map(|rate| Self { rate, ..self })).chain(others).collect()
+    }
+
+    /// Whether a material can have this law of the layer.
+    #[must_use]
+    pub fn accepts(law: Law) -> bool {
+        matches!(law, Law::Latency { .. }) || Self::new(law, EquilibriumLaw::default()).terms().is_ok()
     }
 
     /// Terms of its linear law.

@@ -10,6 +10,7 @@
 //! | `search.rs`, `problem.rs` | a grid, then damped steps | |
 //! | `uncertainty/` | their errors and intervals | |
 //! | `fit.rs` | from there to parameters with intervals | |
+//! | `misfit.rs` | what the record shows against a law | |
 //! | `profile.rs` | intervals by the profile of the residual sum of squares | |
 //! | `material.rs` | the body with its parameters | |
 //! | `range.rs`, `extrapolation.rs` | what the test has shown; what lies beyond, and what it adds to the errors |
@@ -23,6 +24,7 @@ mod error;
 mod extrapolation;
 mod fit;
 mod material;
+mod misfit;
 mod predict;
 mod prepared;
 mod problem;
@@ -40,6 +42,7 @@ pub use fit::{Calibration, calibrate};
 pub use material::{
     Body, Material, MaterialParameter, MaterialParts, MaterialUncertainty, MaterialUnit, SystematicEffect,
 };
+pub use misfit::Misfit;
 pub use predict::Prediction;
 pub use profile::{ParameterProfile, profile};
 pub use range::CalibrationRange;

@@ -9,7 +9,7 @@ use palpate::{
     budget::InputQuantity,
     calibrate::{
         Body, CalibrationRange, Candidate, EquilibriumLaw, Material, MaterialParameter, MaterialParts,
-        MaterialUncertainty, RateLaw, SystematicEffect,
+        MaterialUncertainty, Misfit, RateLaw, SystematicEffect,
     },
     contact::{Equilibrium, RateDependence},
     fit::Estimate,
@@ -30,6 +30,7 @@ use crate::description::{
         error::DescriptionError,
         kind::DescriptionKind,
         quantity::QuantityText,
+        quoted,
         source::{self, Source},
     },
     uncertainty::CauseText,
@@ -101,6 +102,7 @@ pub fn parse_material(text: &str, path: &Path) -> Result<MaterialFile, Descripti
             test: table.test.clone(),
             palpate: table.palpate.clone(),
             samples: table.samples,
+            misfit: misfit(source, table.misfit.as_deref())?,
         },
     })
 }
@@ -124,6 +126,17 @@ fn version(source: &Source<'_>) -> Result<(), DescriptionError> {
         None if version.is_none() && calibration.is_table() => Err(source.missing(key, "the version of the table, 1")),
         _ => Ok(()),
     }
+}
+
+/// What the record shows against the law, where the file says so.
+fn misfit(source: &Source<'_>, written: Option<&str>) -> Result<Option<Misfit>, DescriptionError> {
+    let read = |text: &str| {
+        text.parse().map_err(|_| {
+            let expected = "a law such as \"prony:2\" that describes the record better, or \"residuals\"";
+            source.value("calibration.misfit", expected, &quoted(text))
+        })
+    };
+    written.map(read).transpose()
 }
 
 /// The law of the equilibrium force, and the contact displacements of its table, if it is one, but for first touch.

@@ -1,6 +1,6 @@
 //! A calibrated body with where it comes from.
 
-use palpate::calibrate::Material;
+use palpate::calibrate::{Material, Misfit};
 
 /// Version of the table `[calibration]` that is written and read.
 pub const MATERIAL_VERSION: u64 = 1;
@@ -15,7 +15,7 @@ pub struct MaterialFile {
 }
 
 /// Provenance of the parameters of a material.
-#[derive(Debug, Clone, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, PartialEq, Default)]
 pub struct MaterialOrigin {
     /// The record, or all of them with commas between.
     pub record: String,
@@ -29,4 +29,6 @@ pub struct MaterialOrigin {
     pub palpate: String,
     /// Samples that were fitted.
     pub samples: usize,
+    /// What the record shows against the law.
+    pub misfit: Option<Misfit>,
 }

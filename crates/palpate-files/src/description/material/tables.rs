@@ -46,6 +46,9 @@ pub(crate) struct CalibrationTable {
     pub(crate) samples: usize,
     /// The fitted law: latency (n estimated), latency:5 (n given), standard-linear-solid, prony:K or fung:K.
     pub(crate) law: String,
+    /// What the record shows against that law: the name of another law that refutes it, as "prony:2", or "residuals" that follow a course.
+    /// Omitted where nothing.
+    pub(crate) misfit: Option<String>,
     /// The fitted law of the equilibrium force.
     pub(crate) equilibrium: CalibratedEquilibriumName,
     /// Standard deviation of the force residuals.

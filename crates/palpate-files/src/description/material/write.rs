@@ -161,9 +161,12 @@ impl MaterialFile {
         let Self { material, origin } = self;
         let equilibrium = CalibratedEquilibriumName::from(material.candidate().equilibrium);
         let specimens = origin.specimens.map_or_else(String::new, |specimens| format!("specimens = {specimens}\n"));
+        let misfit = origin
+            .misfit
+            .map_or_else(String::new, |misfit| format!("misfit = {}\n", quoted(&misfit.to_string())));
         let test = origin.test.as_ref().map_or_else(String::new, |test| format!("test = {}\n", quoted(test)));
         let mut out = format!(
-            "\n# What follows is not for editing: the parameters above with their errors, and where they come from.\n[calibration]\nversion = {MATERIAL_VERSION}\nrecord = {}\nsha256 = {}\n{specimens}{test}palpate = {}\nsamples = {}\nlaw = {}\nequilibrium = \"{equilibrium}\"\nresidual = {}\n",
+            "\n# What follows is not for editing: the parameters above with their errors, and where they come from.\n[calibration]\nversion = {MATERIAL_VERSION}\nrecord = {}\nsha256 = {}\n{specimens}{test}palpate = {}\nsamples = {}\nlaw = {}\n{misfit}equilibrium = \"{equilibrium}\"\nresidual = {}\n",
             quoted(&origin.record),
             quoted(&origin.sha256),
             quoted(&origin.palpate),

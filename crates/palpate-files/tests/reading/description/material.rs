@@ -95,6 +95,7 @@ fn material(law: &str, equilibrium: EquilibriumLaw, shape: Shape) -> MaterialFil
             test: Some("ball.toml".to_owned()),
             palpate: "0.1.0".to_owned(),
             samples: 2061,
+            misfit: None,
         },
     }
 }
@@ -147,6 +148,21 @@ fn what_is_written_is_read_again_to_the_last_digit() {
             let read = parse_material(&text, Path::new("m.toml")).unwrap_or_else(|error| panic!("{error}\n{text}"));
             assert_eq!(read, file, "{text}");
         }
+    }
+}
+
+#[test]
+fn what_the_record_shows_against_the_law_is_kept() {
+    let mut file = usual();
+    // Files of before have no such key.
+    assert!(!file.to_toml().contains("misfit"));
+    for misfit in ["prony:2", "latency, v by strain", "residuals"] {
+        file.origin.misfit = Some(misfit.parse().unwrap());
+        let text = file.to_toml();
+        assert!(text.contains(&format!("\nmisfit = \"{misfit}\"\n")), "{text}");
+        assert_eq!(parse_material(&text, Path::new("m.toml")).unwrap(), file);
+        let error = parse_material(&text.replace(misfit, "pony"), Path::new("m.toml")).unwrap_err().to_string();
+        assert!(error.contains("calibration.misfit") && error.contains("\"residuals\""), "{error}");
     }
 }
 

@@ -2,6 +2,7 @@
 
 use super::figure::grip_figure;
 use super::tables::{grip_table, neighbour_table, schedule_table, sensitivity_table};
+use palpate::analysis::Severity;
 use palpate::watch::Unwatched;
 
 use crate::document::{GripDocument, Software};
@@ -18,6 +19,7 @@ pub fn grip_bundle(body: &GrippedBody<'_>, options: &FileOptions) -> Result<Bund
     let mut bundle = Bundle::new(options.csv_locale);
     let mut verdict = Section::new("Will it hold?")
         .block(Block::Paragraph(body.question()))
+        .blocks(body.misfit_sentence().map(|misfit| Block::Notes(vec![(Severity::Warning, misfit)])))
         .block(Block::Paragraph(body.verdict()));
     let grips = grip_table(body);
     if !grips.rows.is_empty() {
@@ -25,7 +27,7 @@ pub fn grip_bundle(body: &GrippedBody<'_>, options: &FileOptions) -> Result<Bund
         bundle.table(&grips);
         verdict = verdict.blocks(drawings.iter().map(Drawing::block)).block(Block::Table(grips));
     }
-    verdict = verdict.block(Block::List(body.remarks()));
+    verdict = verdict.block(Block::List(body.notes()));
     let mut page = Page::new("Grip", "Time to slip and closing motion").section(verdict);
     let sections = [
         ("Alternative squeezes", neighbour_table(body)),

@@ -148,6 +148,9 @@ pub fn grip_text(body: &GrippedBody<'_>) -> String {
     let mut text = format!("{}\n", body.path);
     text.push_str(&wrapped(&body.question()));
     text.push('\n');
+    if let Some(misfit) = body.misfit_sentence() {
+        text.push_str(&format!("{}\n", wrapped(&misfit)));
+    }
     text.push_str(&wrapped(&body.verdict()));
     let grips = grip_table(body);
     let tables = [
@@ -160,6 +163,6 @@ pub fn grip_text(body: &GrippedBody<'_>) -> String {
         text.push_str(&format!("\n{}", table.to_plain_text()));
     }
     text.push('\n');
-    body.remarks().iter().for_each(|remark| text.push_str(&wrapped(remark)));
+    body.notes().iter().for_each(|remark| text.push_str(&wrapped(remark)));
     text
 }
