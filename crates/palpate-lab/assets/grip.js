@@ -4,12 +4,32 @@ import { Cancelled, Lost, Refused, call, task } from "./api.js";
 import { button, copied, drawn, el, progress, refusal, say, shown } from "./dom.js";
 import { decimal } from "./number.js";
 
+// The law of a material, the usual one first. What a person has chosen stays; before that it is the one that the analysis recommends.
+export const lawChoice = (laws) => {
+  const why = el("span", { className: "small", id: "law-why" });
+  const select = el("select", { "aria-describedby": why.id, onchange: () => (isChosen = true) });
+  let isChosen = false;
+  const lay = (names, chosen) => select.replaceChildren(...names.map((name) => el("option", { value: name, selected: name === chosen }, name)));
+  lay(laws, laws[0]);
+  const recommend = (law) => {
+    const { recommended, calibrated } = law ?? {};
+    // A law that is recommended may be none of the usual ones, with one term for instance.
+    const names = [...new Set([...laws, ...[calibrated, isChosen ? select.value : null].filter(Boolean)])];
+    lay(names, isChosen ? select.value : calibrated ?? laws[0]);
+    if (!recommended) why.textContent = "";
+    else if (!calibrated) why.textContent = `The analysis recommends ${recommended}, which cannot be calibrated.`;
+    else if (calibrated !== recommended) why.textContent = `The analysis recommends ${recommended}; ${calibrated} estimates its n with an interval.`;
+    else why.textContent = `The analysis recommends ${recommended}.`;
+  };
+  return { box: el("p", { className: "actions" }, el("label", {}, "Law of the material ", select), why), value: () => select.value, recommend };
+};
+
 // A material of one record, or of several together.
-export const calibration = (subjects, made) => {
+export const calibration = (subjects, law, made) => {
   const box = el("div");
   const result = el("div", { "aria-live": "polite" });
   const begin = async () => {
-    const running = task({ kind: "calibrate", subjects, options: {} }, { first: true, heard: (brief) => bar.show(brief) });
+    const running = task({ kind: "calibrate", subjects, options: { law: law.value() } }, { first: true, heard: (brief) => bar.show(brief) });
     const bar = progress(running.cancel);
     result.replaceChildren(bar);
     try {
@@ -32,7 +52,7 @@ export const calibration = (subjects, made) => {
       if (bad.length) result.append(el("p", { className: "note-line" }, `Correct what is stated of ${bad.join(", ")}, or leave it out by its box above.`));
     }
   };
-  box.append(el("p", { className: "actions" }, button(subjects.length > 1 ? `Calibrate ${subjects.length} records together` : "Calibrate on the whole record", begin, { disabled: !subjects.length })), result);
+  box.append(law.box, el("p", { className: "actions" }, button(subjects.length > 1 ? `Calibrate ${subjects.length} records together` : "Calibrate on the whole record", begin, { disabled: !subjects.length })), result);
   return { box, begin };
 };
 
@@ -81,6 +101,7 @@ export const gripPanel = async (material) => {
   // A load that half of the force of the test carries.
   const mass = +Math.max(1e-6, (0.5 * range.largest_force_n * 2 * friction) / 9.80665 / 2).toPrecision(2);
   const verdict = el("p", { className: "verdict", role: "status" });
+  const misfit = el("p", { className: "note-line against", role: "status", hidden: true });
   const figure = el("div", { className: "try-figure" });
   const facts = el("p", { className: "small" });
   const line = el("div");
@@ -120,8 +141,13 @@ export const gripPanel = async (material) => {
     if (again) moved();
   };
   const show = (found) => {
-    verdict.className = `verdict ${found.holds === null ? "unknown" : found.holds ? "yes" : "no"}`;
+    // A yes by a law that the record contradicts is none to rely on.
+    const isOpen = found.holds === null || (found.holds && found.misfit);
+    verdict.className = `verdict ${isOpen ? "unknown" : found.holds ? "yes" : "no"}`;
     verdict.textContent = found.verdict;
+    // What is against the law is of the material, whatever the sliders are set to: it is read out once.
+    misfit.hidden = !found.misfit;
+    if (misfit.textContent !== (found.misfit ?? "")) misfit.textContent = found.misfit ?? "";
     const [low, high] = found.end_force_interval_n ?? [NaN, NaN];
     facts.textContent = `Force at the end ${shown(found.end_force_n)} N (${shown(100 * found.confidence, 2)} % interval ${shown(low)} to ${shown(high)} N); needed ${shown(found.needed_force_n)} N; when the jaws stop ${shown(found.start_force_n)} N. ${found.extrapolations.map((one) => `Beyond the test: ${one}.`).join(" ")}`;
     figure.replaceChildren(drawn(found.figure));
@@ -154,7 +180,7 @@ export const gripPanel = async (material) => {
   };
   const box = el("div", { className: "grip-panel" },
     el("div", { className: "sliders" }, Object.values(sliders).map(({ box: one }) => one), el("p", { className: "actions" }, button("Least squeeze that holds", () => ask(true)), button("Whole answer for this squeeze", () => ask(false), { className: "quiet" }))),
-    el("div", { className: "tried" }, verdict, facts, figure), el("div", { className: "wide-cell" }, line, plan));
+    el("div", { className: "tried" }, misfit, verdict, facts, figure), el("div", { className: "wide-cell" }, line, plan));
   await moved();
   return box;
 };

@@ -20,7 +20,7 @@ const show = (what, view) => {
 };
 const open = (subject) => show({ kind: "record", ...subject }, new Study(subject, state.vocabulary, { opened: open, materialMade }));
 const openMaterial = (name) => show({ kind: "material", file: name }, materialView(name));
-const openTogether = () => show({ kind: "together" }, together([...state.chosen].map((file) => ({ file, part: null })), { opened: open, materialMade }));
+const openTogether = () => show({ kind: "together" }, together([...state.chosen].map((file) => ({ file, part: null })), state.vocabulary, { opened: open, materialMade }));
 const materialMade = async (name, study) => {
   study.showGrip(await gripPanel(name));
 };

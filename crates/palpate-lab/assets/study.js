@@ -2,7 +2,7 @@
 
 import { Cancelled, Lost, call, task } from "./api.js";
 import { button, drawn, el, progress, refusal, say, shown } from "./dom.js";
-import { calibration, gripPanel, lines } from "./grip.js";
+import { calibration, gripPanel, lawChoice, lines } from "./grip.js";
 import { Description, PhaseFigure, bodyForm, columnTable, holdTable, textForm } from "./record.js";
 
 // Rows of a record whose laws are compared in a second step.
@@ -47,6 +47,7 @@ export class Study {
     this.creep = el("div");
     this.tests = el("div");
     this.grip = el("div");
+    this.law = lawChoice(vocabulary.laws);
     this.answer = el("p", { className: "headline" });
     this.box = el("div", { className: "study" }, this.head(), this.cards = el("div"));
   }
@@ -107,7 +108,7 @@ export class Study {
     }
     if (this.cards.children.length === 1) {
       this.cards.append(card("body", "Body", this.body), card("laws", "Law, forecast and findings", this.laws), card("grip", "Will it hold?", this.grip));
-      this.grip.replaceChildren(el("p", {}, "A grip needs a material: one set of parameters for the whole record, ramps and holds."), this.calibrated = calibration([this.subject], (name) => this.materialMade(name, this)).box, this.gripBox = el("div"));
+      this.grip.replaceChildren(el("p", {}, "A grip needs a material: one set of parameters for the whole record, ramps and holds."), this.calibrated = calibration([this.subject], this.law, (name) => this.materialMade(name, this)).box, this.gripBox = el("div"));
     }
     // Fields that a person is working in stay as they are.
     if (!this.body.contains(document.activeElement)) this.body.replaceChildren(bodyForm(this.description, this.vocabulary));
@@ -194,6 +195,7 @@ export class Study {
     });
     const lede = this.laws.querySelector(".lede")?.textContent ?? "";
     this.answer.replaceChildren(lede);
+    this.law.recommend(made?.answer.law);
     if (made) say(lede);
     return made;
   }
@@ -331,7 +333,7 @@ const mapView = async (id, quantities, usual) => {
 };
 
 // Several records beside each other, or one material of them all.
-export const together = (subjects, { opened, materialMade }) => {
+export const together = (subjects, vocabulary, { opened, materialMade }) => {
   const [compared, calibrated, grip] = [el("div"), el("div"), el("div")];
   const study = { showGrip: (panel) => grip.replaceChildren(panel) };
   const box = el("div", { className: "study" },
@@ -340,9 +342,10 @@ export const together = (subjects, { opened, materialMade }) => {
     card("material", "One material", el("p", {}, "Parameters that the records share are estimated together; the material is that of another specimen of the batch."), calibrated, grip));
   // Of those that count; one that cannot be calibrated is left out by its box.
   const counted = new Set(subjects);
+  const law = lawChoice(vocabulary.laws);
   const choice = (subject) => el("li", {}, el("label", { className: "check" }, el("input", { type: "checkbox", checked: true, onchange: (event) => { if (event.target.checked) counted.add(subject); else counted.delete(subject); lay(); } }), subject.file));
   const boxes = el("ul", { className: "counted", "aria-label": "Records that count" }, subjects.map(choice));
-  const lay = () => calibrated.replaceChildren(boxes, calibration(subjects.filter((one) => counted.has(one)), (name) => materialMade(name, study)).box);
+  const lay = () => calibrated.replaceChildren(boxes, calibration(subjects.filter((one) => counted.has(one)), law, (name) => materialMade(name, study)).box);
   lay();
   const start = () => into(compared, { kind: "compare", subjects }, (answer, id) => [
     el("iframe", { src: `api/tasks/${id}/files/index.html`, title: "Comparison of the records", sandbox: "allow-scripts allow-popups allow-downloads" }),

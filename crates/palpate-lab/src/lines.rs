@@ -2,7 +2,8 @@
 
 use std::path::Path;
 
-use palpate_jobs::PlanGrip;
+use palpate::laws::Law;
+use palpate_jobs::{Calibrate, PlanGrip};
 use serde::Serialize;
 
 use crate::folder::Subject;
@@ -123,23 +124,39 @@ pub(crate) fn of_comparison(subjects: &[Subject], stated: &[Option<String>]) -> 
     }
 }
 
-pub(crate) fn of_calibration(subjects: &[Subject], stated: &[Option<String>], material: Option<&str>) -> Lines {
+pub(crate) fn of_calibration(
+    subjects: &[Subject],
+    stated: &[Option<String>],
+    law: Law,
+    material: Option<&str>,
+) -> Lines {
     let out = material.unwrap_or("material.toml");
+    let (option, keyword) = if law == Calibrate::default().law {
+        (String::new(), String::new())
+    } else {
+        let law = law.to_string();
+        (format!(" --law {}", word(&law)), format!("law={}", literal(&law)))
+    };
     let (calibrated, shell) = match (subjects, stated) {
         ([subject], [stated]) => (
-            format!("calibration = {}.calibrate()\n", record_call(subject, stated.as_deref())),
-            Some(format!("palpate calibrate {} --out {}", record_words(subject, stated.as_deref()), word(out))),
+            format!("calibration = {}.calibrate({keyword})\n", record_call(subject, stated.as_deref())),
+            Some(format!(
+                "palpate calibrate {}{option} --out {}",
+                record_words(subject, stated.as_deref()),
+                word(out)
+            )),
         ),
         _ => {
             let files: Vec<String> = subjects.iter().map(|subject| word(&subject.file)).collect();
             let all_stated: Option<String> =
                 stated.iter().map(|name| Some(format!(" --test {}", word(name.as_deref()?)))).collect();
             let whole = subjects.iter().all(|subject| subject.part.is_none());
+            let keyword = if keyword.is_empty() { keyword } else { format!(", {keyword}") };
             (
-                format!("{}calibration = palpate.calibrate(records)\n", list(subjects, stated)),
+                format!("{}calibration = palpate.calibrate(records{keyword})\n", list(subjects, stated)),
                 all_stated
                     .filter(|_| whole)
-                    .map(|tests| format!("palpate calibrate {}{tests} --out {}", files.join(" "), word(out))),
+                    .map(|tests| format!("palpate calibrate {}{tests}{option} --out {}", files.join(" "), word(out))),
             )
         }
     };
@@ -220,5 +237,26 @@ mod tests {
         let map = of_batch(&two[1], None, Some("relative_rate_per_s"));
         assert_eq!(map.shell.unwrap(), "palpate batch 'a b.xlsx' --out 'a b-holds.csv' --map relative_rate_per_s");
         assert!(map.python.contains("map=[\"relative_rate_per_s\"]"));
+    }
+
+    /// The lines made the material of the default law, whichever was chosen on the page.
+    #[test]
+    fn the_lines_of_a_calibration_have_its_law() {
+        let one = Subject {
+            file: "ball.csv".to_owned(),
+            part: None,
+        };
+        let prony = Law::Prony { terms: 2 };
+        let lines = of_calibration(std::slice::from_ref(&one), &[None], prony, Some("ball.material.toml"));
+        assert_eq!(lines.shell.unwrap(), "palpate calibrate ball.csv --law prony:2 --out ball.material.toml");
+        assert!(lines.python.contains("palpate.read(\"ball.csv\").calibrate(law=\"prony:2\")"), "{}", lines.python);
+        let stated = [Some("a.toml".to_owned()), Some("b.toml".to_owned())];
+        let several = of_calibration(&[one.clone(), one.clone()], &stated, prony, None);
+        let shell = "palpate calibrate ball.csv ball.csv --test a.toml --test b.toml --law prony:2 --out material.toml";
+        assert_eq!(several.shell.unwrap(), shell);
+        assert!(several.python.contains("palpate.calibrate(records, law=\"prony:2\")"), "{}", several.python);
+        let usual = of_calibration(&[one], &[None], Calibrate::default().law, None);
+        assert_eq!(usual.shell.unwrap(), "palpate calibrate ball.csv --out material.toml");
+        assert!(usual.python.contains(".calibrate()"), "{}", usual.python);
     }
 }

@@ -9,7 +9,7 @@ use axum::response::{IntoResponse, Response};
 use http_body_util::BodyExt;
 use palpate_files::description::{Edit, machines, parse_material, schema_test, shapes};
 use palpate_files::naming::Quantity;
-use palpate_jobs::{ErrorKind, JobError};
+use palpate_jobs::{Calibrate, ErrorKind, JobError};
 use palpate_report::document::Software;
 use serde::Deserialize;
 use serde_json::{Value, json};
@@ -23,13 +23,16 @@ use crate::tasks::{grip_range, material_of};
 /// Pieces of an upload that wait for the disk.
 const PIECES: usize = 16;
 
-/// The words of descriptions: shapes with their sizes, quantities with their units, machines, and what each key means.
+/// The words of descriptions: shapes with their sizes, quantities with their units, machines, and what each key means; and the laws of a
+/// calibration, the usual one first.
 pub(super) async fn vocabulary() -> Json<Value> {
     let units = |quantity: Quantity| {
         let units: Vec<&str> = quantity.dimension().units().iter().map(|(symbol, _)| *symbol).collect();
         json!({ "name": quantity.to_string(), "units": units })
     };
+    let Calibrate { law, alternatives, .. } = Calibrate::default();
     Json(json!({
+        "laws": std::iter::once(law).chain(alternatives).map(|law| law.to_string()).collect::<Vec<_>>(),
         "version": Software::this().release(),
         "quantities": Quantity::ALL.map(units),
         "shapes": shapes(),

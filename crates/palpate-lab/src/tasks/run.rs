@@ -2,7 +2,9 @@
 
 use std::path::Path;
 
+use palpate::calibrate::Candidate;
 use palpate::grip::PlanKind;
+use palpate::laws::Law;
 use palpate::watch::Watch;
 use palpate_jobs::input::OpenedFile;
 use palpate_jobs::{
@@ -11,6 +13,7 @@ use palpate_jobs::{
 };
 use palpate_report::figure::Figure;
 use palpate_report::page::{Block, fragment};
+use palpate_report::result::{Answer, ComparedRecord};
 use palpate_report::spelling::with_flags;
 use palpate_report::study::{Bundle, FileOptions, grip_bundle, grip_figure};
 use serde_json::{Value, json};
@@ -100,10 +103,24 @@ fn analyze(folder: &Folder, subject: &Subject, options: &Analyze, watch: &mut dy
         "first": first(&bundle),
         "holds": analyzed.analysis.holds.len(),
         "has_geometry": analyzed.analysis.options.geometry.is_some(),
+        "law": recommended_law(&analyzed),
         "files": names(&bundle),
         "lines": lines::of_analysis(subject, stated.as_deref()),
     });
     Ok(Made::new(answer, bundle).of_analysis(analyzed))
+}
+
+/// The law that an analysis recommends, and the one to calibrate: `null` where a calibration does not accept it. Of the latency law that is the one
+/// whose exponent is estimated, so that its error counts.
+fn recommended_law(analyzed: &Analyzed) -> Option<Value> {
+    let record = ComparedRecord::of_analysis(&analyzed.analysis, analyzed.input.clone());
+    let recommended: Law = Answer::new(&record).law?.parse().ok()?;
+    let calibrated = match recommended {
+        Law::Latency { .. } => Calibrate::default().law,
+        other => other,
+    };
+    let calibrated = Candidate::accepts(calibrated).then(|| calibrated.to_string());
+    Some(json!({ "recommended": recommended.to_string(), "calibrated": calibrated }))
 }
 
 fn creep(folder: &Folder, subject: &Subject, watch: &mut dyn Watch) -> Result<Made, JobError> {
@@ -222,7 +239,7 @@ fn calibrate(
         "remarks": remarks,
         "figure": figure.as_ref().map(shown).transpose()?,
         "notes": notes.iter().map(|note| with_flags(note)).collect::<Vec<_>>(),
-        "lines": lines::of_calibration(subjects, &stated, written.as_deref()),
+        "lines": lines::of_calibration(subjects, &stated, options.law, written.as_deref()),
     });
     let mut bundle = Bundle::default();
     let json = serde_json::to_vec_pretty(&document)?;

@@ -174,6 +174,88 @@ def test_what_is_taken_away_is_what_the_command_makes(browser: Browser, lab: Lab
     found.context.close()
 
 
+def series() -> np.ndarray:
+    """A ball of 28 kPa and 35 mm with two time constants: time, displacement (mm), force with noise."""
+    time = np.arange(0.0, 80.0, 0.1)
+    # Steps of a second, each held until the next.
+    knots = [0.0, *(20.0 * step + end for step in range(4) for end in (1.0, 20.0))]
+    place = np.interp(time, knots, [0.0, *np.repeat([5.0, 10.0, 15.0, 10.0], 2)])
+    # Strain u/d and its memory, stepped exactly over samples in which the jaw moves evenly.
+    depth, terms = 0.07, [(0.5, 0.8), (0.4, 15.0)]
+    strain, excess = 1e-3 * place / depth, np.zeros(time.size)
+    for share, constant in terms:
+        kept, memory = np.exp(-0.1 / constant), 0.0
+        for i in range(1, time.size):
+            memory = kept * memory + share * (strain[i] - strain[i - 1]) * (1.0 - kept) * constant / 0.1
+            excess[i] += memory
+    u = 1e-3 * place / 2
+    force = 28e3 * np.pi * (2 * 0.035 * u - u**2) * (strain + excess)
+    return np.c_[time, place, np.maximum(force, 0.0) + 0.03 * np.random.default_rng(3).standard_normal(time.size)]
+
+
+@pytest.mark.parametrize("width", WIDTHS)
+def test_the_law_of_a_material_is_chosen_and_a_refuted_one_is_stated(browser: Browser, lab: Lab, width: int) -> None:
+    """Every material had the latency law, and its sliders answered as surely where the record refuted it."""
+    assert lab.folder is not None
+    write(lab.folder / "series.csv", series())
+    (lab.folder / "series.toml").write_text('[specimen]\nshape = "ball"\nradius = "35 mm"\n[contact]\nsqueezed_from = "two sides"\n')
+    found = opened(browser, lab.address, width)
+    page = found.page
+    found.wait("#laws .lede")
+    found.settle()
+    law = page.get_by_label("Law of the material")
+    entries = law.locator("option").all_inner_texts()
+    assert entries[:2] == ["latency", "standard-linear-solid"] and "prony:2" in entries
+    # What the analysis recommends is preselected, and the page says so.
+    assert "prony:2" in page.inner_text("#laws .lede")
+    assert law.input_value() == "prony:2"
+    assert page.inner_text("#law-why") == "The analysis recommends prony:2."
+    assert found.accessible()
+
+    # By the keyboard, and what is chosen stays through a new analysis.
+    law.focus()
+    page.keyboard.press("Home")
+    assert law.input_value() == "latency"
+    page.fill("#size-radius", "35.0 mm")
+    page.press("#size-radius", "Tab")
+    page.wait_for_timeout(300)
+    found.settle()
+    assert law.input_value() == "latency"
+    page.get_by_role("button", name="Calibrate on the whole record").click()
+    found.wait(".grip-panel figure")
+    found.settle()
+    material = lab.folder / "series.material.toml"
+    assert tomllib.loads(material.read_text())["calibration"]["misfit"] == "prony:2"
+    assert "The record refutes this law: prony:2" in page.inner_text("#grip .remarks")
+    stated = page.locator(".against")
+    assert stated.is_visible() and "calibrate with the law prony:2" in stated.inner_text()
+    assert "a law that the record refutes" in page.inner_text(".verdict.unknown")
+    assert stated.bounding_box()["y"] < page.locator(".verdict").bounding_box()["y"]  # type: ignore[index]
+    assert found.accessible()
+    if width == 1280:
+        found.picture("refuted", "#grip")
+
+    # With that law there is nothing to state, and the lines make this material.
+    law.select_option("prony:2")
+    page.get_by_role("button", name="Calibrate on the whole record").click()
+    page.wait_for_selector("#grip .lines code:has-text('--law prony:2')", state="attached")
+    found.settle()
+    assert not page.locator(".against").is_visible() and "refutes" not in page.inner_text(".verdict")
+    written = tomllib.loads(material.read_text())
+    assert written["calibration"]["law"] == "prony:2" and "misfit" not in written["calibration"]
+    found.click("#grip .lines > summary >> nth=0")
+    codes = page.locator("#grip .lines").first.locator(".copied code").all_inner_texts()
+    assert codes[0] == "palpate calibrate series.csv --test series.csv.test.toml --law prony:2 --out series.material.toml"
+    assert 'calibrate(law="prony:2")' in codes[1]
+    material.unlink()
+    where = {"PATH": f"{Path(os.environ['PALPATE']).parent}:{os.environ['PATH']}"}
+    subprocess.run(codes[0], shell=True, cwd=lab.folder, env={**os.environ, **where}, check=True, stdout=subprocess.DEVNULL)
+    again = tomllib.loads(material.read_text())
+    assert again["law"] == written["law"] and again["calibration"]["parameter"] == written["calibration"]["parameter"]
+    assert found.messages == [] and found.foreign == []
+    found.context.close()
+
+
 def test_the_sliders_follow_the_hand(browser: Browser, lab: Lab) -> None:
     """Thirty answers a second on an idle machine (validation); here a share of that, beside other tests."""
     assert lab.folder is not None
