@@ -38,15 +38,16 @@ TABLE = """
 TAIL = """
 Intervals are not to be relied on where the least coverage is far below 95 %: under a slow drift that is hidden in white noise; under noise
 whose power goes as 1/f, in holds of one to three hundred samples above all; and of a dozen or two samples, under noise that correlates over
-several of them or follows the signal. Those of equilibria, and of starts under the last, suffer first. White noise pays for it: a drift that the residuals cannot rule out makes
-its intervals wider than they need be.
+several of them or follows the signal. For noise that follows the signal those samples count in which the signal is large: starts, amplitudes and
+rates of a hold of any length suffer if only a few of its samples lie within its shortest time. Otherwise equilibria suffer first. White noise
+pays for it: a drift that the residuals cannot rule out makes its intervals wider than they need be.
 """
 
 # Of few samples fewer kinds can be told apart; of more, others.
 KINDS_OF = {
     12: ("white", "AR(1) 0.7", "AR(1) 0.9", "ARMA(2, 1)", "walk 0.1 and white", "logarithmic times"),
     25: ("white", "AR(1) 0.7", "ARMA(2, 1)", "walk 0.1 and white", "proportional", "logarithmic times", "logarithmic times, and white"),
-    50: ("white", "AR(1) 0.9", "1/f", "proportional", "logarithmic times, and white"),
+    50: ("white", "AR(1) 0.9", "1/f", "proportional", "proportional, logarithmic times", "logarithmic times, and white"),
     100: ("white", "AR(1) 0.9", "low-pass filter", "1/f", "walk 1 and white", "proportional", "logarithmic times, and white"),
     200: ("white", "AR(1) 0.9", "low-pass filter", "1/f", "walk 1 and white", "proportional"),
     1000: ("white", "AR(1) 0.9", "low-pass filter", "1/f", "walk 1 and white", "walk 0.03 and white"),

@@ -8,6 +8,7 @@ use palpate::simulate::{Sampling, SimulateError};
 use palpate::watch::Watch;
 use palpate_files::description::{MaterialFile, Protocol};
 use palpate_report::figure::Figure;
+use palpate_report::result::sentence_of_misfit;
 use palpate_report::study::{prediction_figure, prediction_table, write_prediction};
 use palpate_report::table::CsvLocale;
 use schemars::JsonSchema;
@@ -97,7 +98,10 @@ impl Predict {
         let open = "the calibration left a parameter open: the intervals are not known";
         let open = material.uncertainty().is_none().then(|| open.to_owned());
         let beyond = prediction.extrapolations.iter().map(|beyond| format!("beyond the test: {beyond}"));
-        let notes = open.into_iter().chain(beyond).collect();
+        let law = material.candidate().to_string();
+        let misfit =
+            file.origin.misfit.map(|misfit| sentence_of_misfit(&misfit, &law).trim_end_matches('.').to_owned());
+        let notes = misfit.into_iter().chain(open).chain(beyond).collect();
         let caption = format!("Response of {name}, predicted by its calibrated law.");
         let caption = protocol.title.as_deref().map_or(caption.clone(), |title| format!("{title}. {caption}"));
         let predicted = Predicted {

@@ -223,6 +223,11 @@ fn a_grip_by_a_law_that_the_record_refutes_says_so_first() {
     assert!(verdict.contains(", by a law that the record refutes"), "{verdict}");
     let unwrapped = text.split_whitespace().collect::<Vec<_>>().join(" ");
     assert!(unwrapped.find(misfit).unwrap() < unwrapped.find(verdict).unwrap(), "{text}");
+    // So does a prediction.
+    file(folder, "hold.toml", "[[step]]\nto = \"8 mm\"\nrate = \"500 mm/min\"\nhold = \"20 s\"\n");
+    let predicted = palpate(folder, &["predict", "material.toml", "--protocol", "hold.toml", "--at", "5 s"]);
+    let notes = String::from_utf8(predicted.stderr).unwrap();
+    assert!(notes.contains("The record refutes this law: prony:2"), "{notes}");
     // Without another law its residuals speak.
     let (_, material) = calibrate("latency", &["--no-alternatives"]);
     assert!(material.contains("\nmisfit = \"residuals\"\n"), "{material}");

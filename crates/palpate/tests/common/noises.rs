@@ -20,12 +20,14 @@ pub(crate) enum Noise {
     Rounded(f64),
     /// White noise of a sensor so many times as slow, with straight lines between its readings.
     Interpolated(usize),
+    /// White noise in proportion to the signal above 0.9, at times evenly spaced in ln t.
+    ProportionalAtLogarithmicTimes,
     /// Noise that fades within 0.1 s, and white noise of this size, at times evenly spaced in ln t.
     LogarithmicTimes(f64),
 }
 
 /// All kinds by their names.
-pub(crate) const KINDS: [(&str, Noise); 26] = [
+pub(crate) const KINDS: [(&str, Noise); 27] = [
     ("white", Noise::Filtered(&[], &[1.0], 1.0)),
     ("AR(1) 0.7", Noise::Filtered(&[0.7], &[1.0], 0.714)),
     ("AR(1) 0.9", Noise::Filtered(&[0.9], &[1.0], 0.436)),
@@ -47,6 +49,7 @@ pub(crate) const KINDS: [(&str, Noise); 26] = [
     ("walk 0.03 and white", Noise::Walk(0.03, 1.0)),
     ("proportional", Noise::Proportional(0.0)),
     ("proportional AR(1) 0.9", Noise::Proportional(0.9)),
+    ("proportional, logarithmic times", Noise::ProportionalAtLogarithmicTimes),
     ("rounded to 5 sd", Noise::Rounded(5.0)),
     ("rounded to 8 sd", Noise::Rounded(8.0)),
     ("interpolated, 4 to 1", Noise::Interpolated(4)),
@@ -103,7 +106,9 @@ pub(crate) fn truth_over(duration: f64, known: &Known, noise: Noise, samples: us
     let share = |i: usize| i as f64 / (samples - 1) as f64;
     let time = |i: usize| match noise {
         // Amplitudes are those at the first sample, the true ones at 0.
-        Noise::LogarithmicTimes(_) => 1.001 * duration * (1.001e3_f64.powf(share(i)) - 1.0) / 1e3,
+        Noise::LogarithmicTimes(_) | Noise::ProportionalAtLogarithmicTimes => {
+            1.001 * duration * (1.001e3_f64.powf(share(i)) - 1.0) / 1e3
+        }
         _ => duration * share(i),
     };
     let times: Vec<f64> = (0..samples).map(time).collect();
@@ -179,6 +184,9 @@ impl Noise {
                 let read: Vec<f64> = (0..count / times + 2).map(|_| random.normal()).collect();
                 let between = |i: usize| (i / times, (i % times) as f64 / times as f64);
                 (0..count).map(between).map(|(i, share)| read[i] + share * (read[i + 1] - read[i])).collect()
+            }
+            Self::ProportionalAtLogarithmicTimes => {
+                white(random).iter().zip(clean).map(|(made, y)| 5.0 * made * (y - 0.9)).collect()
             }
             Self::Rounded(_) => white(random),
             Self::LogarithmicTimes(beside) => {

@@ -118,7 +118,7 @@ impl Assessed {
             // What a sample brings beyond the one before changes with their distance where noise correlates in time.
             Some(_) => trust
                 .spread(solution, &residuals, &[], taken)
-                .filter(|_| Noise::of(&taken_up, &residuals, times).model == NoiseModel::White),
+                .filter(|spread| noise_of(&taken_up, &residuals, Some(spread), times).0.model == NoiseModel::White),
         };
         let observed = spread.as_ref().filter(|spread| spread.is_observed());
         effort.hear()?;
