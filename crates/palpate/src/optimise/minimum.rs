@@ -28,41 +28,46 @@ pub(crate) struct Minimum<V> {
     curvature: Option<Square>,
 }
 
-/// Newton's method with differences; a compass search where it has no bottom to go to. `None` where the function is not below `promise` at the
-/// start.
+/// Newton's method with differences, between bounds; a compass search where it has no bottom to go to. `None` where the function is not below
+/// `promise` at the start.
 ///
 /// `evaluate` takes points together: what computes several at once takes hardly longer than for one.
 pub(crate) fn minimise<V: Level>(
     evaluate: &impl Fn(&[Few]) -> Vec<Option<V>>,
     start: &[f64],
+    bounds: &[(f64, f64)],
     promise: f64,
 ) -> Option<Minimum<V>> {
-    let size = start.len();
+    let at = Few::from_slice(start);
+    let mut around = Around::new(&at, bounds);
+    let mut points = around.points();
+    points.push(at.clone());
+    let mut found = evaluate(&points);
     let mut here = Minimum {
-        at: Few::from_slice(start),
-        value: evaluate(&[Few::from_slice(start)])[0]?,
+        at,
+        value: found.pop()??,
         curvature: None,
     };
     if here.value.level() > promise {
         return None;
     }
-    let mut around = evaluate(&ring(&here.at));
     for _ in 0..STEPS {
-        let Some((step, curvature)) = newton(size, here.value, &around) else {
+        let Some((to, curvature)) = around.newton(&found, bounds) else {
             return Some(compass(evaluate, here));
         };
-        let longest = step.iter().fold(0.0, |most: f64, by| most.max(by.abs()));
+        let steps = || to.iter().zip(&here.at).map(|(to, x)| to - x);
+        let longest = steps().fold(0.0, |most: f64, by| most.max(by.abs()));
         let is_last = longest <= ENOUGH;
-        let at: Few = here.at.iter().zip(&step).map(|(x, by)| x + by).collect();
-        here.curvature = Some(curvature);
-        let mut points = vec![at];
-        if !is_last {
-            points.extend(ring(&points[0]));
-        }
-        let mut found = evaluate(&points);
-        around = found.split_off(1);
-        match found[0] {
-            Some(found) if found.level() < here.value.level() => (here.at, here.value) = (points.swap_remove(0), found),
+        let shortened = (LONGEST / longest).min(1.0);
+        let at: Few = here.at.iter().zip(steps()).map(|(x, by)| x + shortened * by).collect();
+        let next = Around::new(&at, bounds);
+        here.curvature = around.is_inside(&here.at).then_some(curvature);
+        let mut points = if is_last { Vec::new() } else { next.points() };
+        points.push(at.clone());
+        found = evaluate(&points);
+        around = next;
+        match found.pop()? {
+            Some(value) if value.level() < here.value.level() => (here.at, here.value) = (at, value),
             // So near the bottom rounding and the next term of the series decide.
             _ if is_last => {}
             _ => return Some(compass(evaluate, here)),
@@ -72,6 +77,60 @@ pub(crate) fn minimise<V: Level>(
         }
     }
     Some(compass(evaluate, here))
+}
+
+/// Points that a parabola is laid through.
+struct Around {
+    /// As near to a point as bounds leave room for the others.
+    middle: Few,
+}
+
+impl Around {
+    fn new(at: &Few, bounds: &[(f64, f64)]) -> Self {
+        let inside = at.iter().zip(bounds).map(|(x, (low, high))| x.min(high - STEP).max(low + STEP));
+        Self {
+            middle: inside.collect(),
+        }
+    }
+
+    /// Whether this point is the middle: no bound is near.
+    fn is_inside(&self, at: &Few) -> bool {
+        self.middle == *at
+    }
+
+    fn points(&self) -> Vec<Few> {
+        std::iter::once(self.middle.clone()).chain(ring(&self.middle)).collect()
+    }
+
+    /// Where the parabola is least between the bounds, and its curvature; `None` where there is no bottom.
+    fn newton<V: Level>(&self, found: &[Option<V>], bounds: &[(f64, f64)]) -> Option<(Few, Square)> {
+        let (gradient, curvature) = parabola(self.middle.len(), (*found.first()?)?, &found[1..])?;
+        let size = gradient.len();
+        let mut held = vec![None; size];
+        loop {
+            // The equations of those that are free, and of those at a bound that they stay there.
+            let (mut matrix, mut step) = (curvature.clone(), Few::new());
+            for i in 0..size {
+                let of_held = (0..size).filter_map(|j| Some(curvature[i * size + j] * held[j]?));
+                step.push(match held[i] {
+                    Some(by) => curvature[i * (size + 1)] * by,
+                    None => -gradient[i] - of_held.sum::<f64>(),
+                });
+                for j in (0..size).filter(|j| *j != i && (held[i].is_some() || held[*j].is_some())) {
+                    matrix[i * size + j] = 0.0;
+                }
+            }
+            Cholesky::new(&matrix, size)?.solve(&mut step);
+            let to = |i: usize| self.middle[i] + step[i];
+            let over = |i: usize| (bounds[i].0 - to(i)).max(to(i) - bounds[i].1);
+            let outside = (0..size).filter(|i| held[*i].is_none() && over(*i) > 0.0);
+            let Some(farthest) = outside.max_by(|i, j| over(*i).total_cmp(&over(*j))) else {
+                return Some(((0..size).map(|i| to(i).clamp(bounds[i].0, bounds[i].1)).collect(), curvature));
+            };
+            let (low, high) = bounds[farthest];
+            held[farthest] = Some(to(farthest).clamp(low, high) - self.middle[farthest]);
+        }
+    }
 }
 
 /// Points around one that differences are taken between: two along each axis, and two along the diagonal of every two.
@@ -93,9 +152,8 @@ fn ring(middle: &Few) -> Vec<Few> {
     points
 }
 
-/// A step, no longer than some along any axis, and the curvature it rests on, from values on a [`ring`]. `None` at an edge, and where there is
-/// no bottom.
-fn newton<V: Level>(size: usize, middle: V, around: &[Option<V>]) -> Option<(Few, Square)> {
+/// Slopes and curvature, from values on a [`ring`]. `None` at an edge.
+fn parabola<V: Level>(size: usize, middle: V, around: &[Option<V>]) -> Option<(Few, Square)> {
     let middle = middle.level();
     let levels: Option<Vec<f64>> = around.iter().map(|found| found.as_ref().map(Level::level)).collect();
     let levels = levels?;
@@ -113,11 +171,7 @@ fn newton<V: Level>(size: usize, middle: V, around: &[Option<V>]) -> Option<(Few
             curvature[j * size + i] = entry;
         }
     }
-    let mut step: Few = gradient.iter().map(|slope| -slope).collect();
-    Cholesky::new(&curvature, size)?.solve(&mut step);
-    let longest = step.iter().fold(LONGEST, |most: f64, by| most.max(by.abs()));
-    step.iter_mut().for_each(|by| *by *= LONGEST / longest);
-    Some((step, curvature))
+    Some((gradient, curvature))
 }
 
 /// To the lowest of the neighbours, on in that direction for as long as the function falls, with ever shorter steps (after Hooke and Jeeves 1961).
@@ -171,7 +225,9 @@ fn compass<V: Level>(evaluate: &impl Fn(&[Few]) -> Vec<Option<V>>, from: Minimum
     }
     let around = evaluate(&ring(&at));
     Minimum {
-        curvature: newton(size, best, &around).map(|(_, curvature)| curvature),
+        curvature: parabola(size, best, &around)
+            .map(|(_, curvature)| curvature)
+            .filter(|curvature| Cholesky::new(curvature, size).is_some()),
         at,
         value: best,
     }
@@ -199,6 +255,8 @@ mod tests {
         }
     }
 
+    const OPEN: [(f64, f64); 2] = [(f64::NEG_INFINITY, f64::INFINITY); 2];
+
     /// Some points together.
     fn each(of: impl Fn(&Few) -> Option<f64>) -> impl Fn(&[Few]) -> Vec<Option<f64>> {
         move |points| points.iter().map(&of).collect()
@@ -211,7 +269,7 @@ mod tests {
 
     #[test]
     fn a_valley_is_found_from_afar_with_its_curvature() {
-        let found = minimise(&each(valley), &[3.5, 3.0], f64::INFINITY).unwrap();
+        let found = minimise(&each(valley), &[3.5, 3.0], &OPEN, f64::INFINITY).unwrap();
         assert!((found.at[0] - 1.3).abs() < 2e-3 && (found.at[1] + 0.4).abs() < 2e-3, "{:?}", found.at);
         let expected = [6.0, 1.0, 1.0, 2.0];
         assert!(found.curvature.unwrap().iter().zip(expected).all(|(a, b)| (a - b).abs() < 0.01));
@@ -220,13 +278,27 @@ mod tests {
     #[test]
     fn at_an_edge_the_compass_goes_on() {
         let slope = each(|x| (x[0] >= 0.0).then_some(x[0] + (x[1] - 1.0).powi(2)));
-        let found = minimise(&slope, &[2.0, 3.0], f64::INFINITY).unwrap();
+        let found = minimise(&slope, &[2.0, 3.0], &OPEN, f64::INFINITY).unwrap();
         assert!(
             found.at[0] < 0.04 && (found.at[1] - 1.0).abs() < 0.04 && found.curvature.is_none(),
             "{:?}",
             found.at
         );
-        assert!(minimise(&slope, &[-1.0, 0.0], f64::INFINITY).is_none());
-        assert!(minimise(&slope, &[2.0, 3.0], 5.9).is_none());
+        assert!(minimise(&slope, &[-1.0, 0.0], &OPEN, f64::INFINITY).is_none());
+        assert!(minimise(&slope, &[2.0, 3.0], &OPEN, 5.9).is_none());
+    }
+
+    /// At a bound the compass took some fifteen evaluations of points together.
+    #[test]
+    fn a_bottom_at_a_bound_is_found_in_few_steps() {
+        let rounds = std::cell::Cell::new(0);
+        let evaluate = |points: &[Few]| {
+            rounds.set(rounds.get() + 1);
+            each(|x: &Few| valley(x).filter(|_| x[0] <= 0.5))(points)
+        };
+        let found = minimise(&evaluate, &[-1.0, 2.0], &[(-5.0, 0.5), (-5.0, 5.0)], f64::INFINITY).unwrap();
+        // At x = 0.5 the least of b² + a b is at b = −a/2 = 0.4.
+        assert!((found.at[0] - 0.5).abs() < 1e-9 && found.at[1].abs() < 2e-2, "{:?}", found.at);
+        assert!(found.directions().is_none() && rounds.get() <= 6, "{}", rounds.get());
     }
 }

@@ -124,8 +124,10 @@ impl Series<'_> {
             kinds.take(slow.mixture(kinds.worth(3)), 3);
             // Most white residuals that look slow are done with here.
             if kinds.least() < white.deviance {
-                kinds.take(slow.power_alone(kinds.worth(1)), 1);
-                kinds.take(slow.power_law(kinds.worth(1)), 1);
+                slow.power_laws(|kind| {
+                    kinds.take(kind, 1);
+                    kinds.worth(1)
+                });
             }
         }
         if length == samples {

@@ -4,6 +4,7 @@ use std::borrow::Cow;
 
 use super::autoregression::innovations;
 use super::course::{FARTHEST, NoiseCourse, NoiseFollows};
+use crate::optimise::{Cholesky, Few};
 use crate::statistics::{dot, mean};
 use crate::vector::elementary::exp;
 use crate::vector::{accelerated, extremes, multiply, shifted, sum};
@@ -160,7 +161,7 @@ fn likeliest(squares: &[f64], [of, bent]: [&[f64]; 2], start: [f64; 3], bends: b
     const ROUNDS: usize = 50;
     /// Step of ln σ² that is nothing beside its error of √(2/N).
     const ENOUGH: f64 = 1e-4;
-    let (count, size) = (of.len() as f64, dot(bent, bent));
+    let count = of.len() as f64;
     let powers = |[a, b, c]: [f64; 3], by: f64| -> Vec<f64> {
         let mut out = vec![0.0; of.len()];
         accelerated(
@@ -177,10 +178,28 @@ fn likeliest(squares: &[f64], [of, bent]: [&[f64]; 2], start: [f64; 3], bends: b
     for _ in 0..ROUNDS {
         let mut beyond = powers(at, -1.0);
         multiply(&mut beyond, squares);
-        let beyond = shifted(&beyond, 1.0, 1.0);
-        let bend = if bends { dot(&beyond, bent) / size.max(f64::MIN_POSITIVE) } else { 0.0 };
-        let steps = [mean(&beyond), dot(&beyond, of) / count, bend];
-        // Fisher's steps are long where the size is far from even.
+        // Newton's step: −2 ln L is convex.
+        let columns = if bends { &[of, bent][..] } else { &[of] };
+        let weighed: Vec<Vec<f64>> = columns
+            .iter()
+            .map(|column| {
+                let mut weighed = column.to_vec();
+                multiply(&mut weighed, &beyond);
+                weighed
+            })
+            .collect();
+        let sums: Few = std::iter::once(&beyond).chain(&weighed).map(|column| sum(column)).collect();
+        let size = sums.len();
+        let entry = |i: usize, j: usize| if j == 0 { sums[i] } else { dot(&weighed[i - 1], columns[j - 1]) };
+        let curvature: Vec<f64> =
+            (0..size * size).map(|at| entry((at / size).max(at % size), (at / size).min(at % size))).collect();
+        let mut steps = sums.clone();
+        // The columns sum up to 0.
+        steps[0] -= count;
+        let Some(factor) = Cholesky::new(&curvature, size) else {
+            break;
+        };
+        factor.solve(&mut steps);
         let longest = steps.iter().map(|step| step.abs()).fold(0.0, f64::max);
         let shortened = 1.0f64.min(1.0 / longest.max(1e-300));
         at.iter_mut().zip(steps).for_each(|(at, step)| *at += shortened * step);

@@ -27,15 +27,15 @@ impl Closeness {
         gain: 1e-14,
     };
 
-    /// A hundred thousandth of half an interval.
+    /// A ten thousandth of half an interval.
     pub(super) const USUAL: Self = Self {
-        share: 1e-5,
+        share: 1e-4,
         gain: 1e-10,
     };
 
     /// On condensed samples, which only show where to look.
     const ROUGH: Self = Self {
-        share: 5e-4,
+        share: 5e-5,
         gain: 1e-9,
     };
 }
@@ -53,15 +53,25 @@ pub(super) struct End {
     pub(super) last: Reached,
     /// Whether the profile meets its bound there: else it is open.
     is_met: bool,
+    /// How fast z rises there with the distance, where that is known.
+    slope: f64,
 }
 
 impl End {
     fn open(last: Reached) -> Self {
-        Self { last, is_met: false }
+        Self {
+            last,
+            is_met: false,
+            slope: f64::NAN,
+        }
     }
 
-    fn met(last: Reached) -> Self {
-        Self { last, is_met: true }
+    fn met(last: Reached, slope: f64) -> Self {
+        Self {
+            last,
+            is_met: true,
+            slope,
+        }
     }
 
     /// Where the profile meets its bound.
@@ -171,12 +181,12 @@ impl Profile<'_> {
     fn end(&self, few: Option<&Field<'_>>, side: f64, effort: &mut Effort<'_>) -> Result<End, Cancelled> {
         let start = self.start();
         let guess = match few {
-            Some(few) => Some(self.meet(few, side, &start, self.target, Closeness::ROUGH, effort)?),
+            Some(few) => Some(self.meet(few, side, &start, (self.target, f64::NAN), Closeness::ROUGH, effort)?),
             None => None,
         };
-        let guess = guess.as_ref().and_then(End::bound);
-        let first = guess.map_or(self.target, |guess| guess.distance);
-        let nonlinear = guess.map_or_else(|| start.nonlinear.clone(), |guess| guess.nonlinear.clone());
+        let guess = guess.as_ref().filter(|guess| guess.last.distance > 0.0);
+        let first = guess.map_or((self.target, f64::NAN), |guess| (guess.last.distance, guess.slope));
+        let nonlinear = guess.map_or_else(|| start.nonlinear.clone(), |guess| guess.last.nonlinear.clone());
         self.meet(&self.all(), side, &Reached { nonlinear, ..start }, first, self.closeness, effort)
     }
 
@@ -185,13 +195,13 @@ impl Profile<'_> {
     fn end_among_valleys(&self, few: Option<&Field<'_>>, side: f64, effort: &mut Effort<'_>) -> Result<End, Cancelled> {
         let all = self.all();
         let field = few.unwrap_or(&all);
-        let mut met = self.meet(field, side, &self.start(), self.target, Closeness::ROUGH, effort)?;
+        let mut met = self.meet(field, side, &self.start(), (self.target, f64::NAN), Closeness::ROUGH, effort)?;
         for _ in 1..VALLEYS {
             let Some(end) = met.bound() else { break };
             let Some(lower) = self.elsewhere(field, side, end, effort)? else {
                 break;
             };
-            met = self.meet(field, side, &lower, 1.2 * end.distance, Closeness::ROUGH, effort)?;
+            met = self.meet(field, side, &lower, (1.2 * end.distance, f64::NAN), Closeness::ROUGH, effort)?;
         }
         Ok(met)
     }
@@ -252,53 +262,73 @@ impl Profile<'_> {
         (room / self.error).min(FARTHEST)
     }
 
-    /// Widens until z exceeds its bound, then closes in by regula falsi (Illinois): z is nearly straight in the parameter.
+    /// Widens until z exceeds its bound, then closes in by secants, and by regula falsi (Illinois) where those lead nowhere: z is nearly straight
+    /// in the parameter. `slope` is how fast it rises at the first distance, if that is known.
     ///
-    /// The far end may lie in a valley of its own: places between are looked for from the near one, and from the far one where that leads beyond
-    /// the bound. Where z jumps over its bound, what lies between is not known, and the end counts as open.
+    /// The far end may lie in a valley of its own: places between are looked for from the near one, and from the far one where that leads well
+    /// beyond the bound. Where z jumps over its bound, what lies between is not known, and the end counts as open.
     fn meet(
         &self,
         field: &Field<'_>,
         side: f64,
         start: &Reached,
-        first: f64,
+        (first, mut slope): (f64, f64),
         closeness: Closeness,
         effort: &mut Effort<'_>,
     ) -> Result<End, Cancelled> {
         /// Halvings of what is left, if no secant leads anywhere.
         const ROUNDS: usize = 40;
-        /// Share of the bound by which z may miss it.
+        /// Secants until then.
+        const SECANTS: usize = 5;
+        /// Share of the bound by which z may miss it, and of what z rises by between two ends by which it may miss their chord.
         const MISSES: f64 = 0.1;
         let (farthest, close) = (self.farthest(side), closeness.share * self.target);
+        let slope_of = |one: &Reached, other: &Reached| (other.z - one.z) / (other.distance - one.distance);
+        let secant = |from: &Reached, slope: f64| from.distance + (self.target - from.z) / slope;
         let mut near = start.clone();
         let mut far = self.at(field, side, first.min(farthest), &near, closeness, effort)?;
-        while far.z < self.target {
+        let mut widened = 0;
+        while far.z < self.target - close {
             if far.distance >= farthest {
                 return Ok(End::open(far));
             }
-            let growth = (1.05 * self.target / far.z).clamp(1.1, 2.0);
+            if slope.is_nan() {
+                slope = slope_of(&near, &far);
+            }
+            let least = if widened < SECANTS { 1.0 + closeness.share } else { 1.1 };
+            let growth = secant(&far, slope) / far.distance;
+            let growth = if growth >= 1.0 { growth.clamp(least, 2.0) } else { 2.0 };
             near = far;
             far = self.at(field, side, (near.distance * growth).min(farthest), &near, closeness, effort)?;
+            slope = slope_of(&near, &far);
+            widened += 1;
         }
         if far.z - self.target < close && !far.at_edge {
-            return Ok(End::met(far));
+            return Ok(End::met(far, slope));
         }
         // What is missing at the near end, what is over at the far one.
         let (mut missing, mut over) = (self.target - near.z, far.z - self.target);
-        for _ in 0..ROUNDS {
-            let share = missing / (missing + over);
-            let middle = near.distance + share * (far.distance - near.distance);
+        let mut next = secant(&far, slope);
+        for round in 0..ROUNDS {
             let width = far.distance - near.distance;
+            let is_between = near.distance < next && next < far.distance;
+            let middle = match round < SECANTS && is_between {
+                true => next,
+                false => near.distance + missing / (missing + over) * width,
+            };
             let mut trial = self.at(field, side, middle, &near, closeness, effort)?;
-            if trial.z > self.target {
+            if trial.z - self.target > close.max(MISSES * (far.z - near.z)) {
                 let other = self.at(field, side, middle, &far, closeness, effort)?;
                 trial = if other.z < trial.z { other } else { trial };
             }
             let left = self.target - trial.z;
+            let nearest = if far.z - self.target < self.target - near.z { &far } else { &near };
+            slope = slope_of(nearest, &trial);
             if width < close * (1.0 + middle) || left.abs() < close {
                 let is_met = left.abs() <= MISSES * self.target && !trial.at_edge;
-                return Ok(if is_met { End::met(trial) } else { End::open(near) });
+                return Ok(if is_met { End::met(trial, slope) } else { End::open(near) });
             }
+            next = secant(&trial, slope);
             if left > 0.0 {
                 (near, missing, over) = (trial, left, 0.5 * over);
             } else {
@@ -306,7 +336,7 @@ impl Profile<'_> {
             }
         }
         let is_met = far.z - self.target <= MISSES * self.target && !far.at_edge;
-        Ok(if is_met { End::met(far) } else { End::open(near) })
+        Ok(if is_met { End::met(far, f64::NAN) } else { End::open(near) })
     }
 
     /// The profile at a distance in standard errors.

@@ -1,6 +1,6 @@
 //! Products of the columns of a Jacobian with the correlations of a noise between them.
 
-use std::cell::OnceCell;
+use std::cell::{OnceCell, RefCell};
 
 use crate::fit::noise::autoregression::quadratic;
 use crate::fit::noise::likelihood::{Markov, Rows, steps_since};
@@ -16,6 +16,8 @@ pub(crate) struct Columns<'a> {
     product: Vec<f64>,
     rows: OnceCell<Rows>,
     of_walk: OnceCell<Vec<f64>>,
+    /// Products with sums of all before, by the correlation of neighbours: power laws share theirs.
+    with_sums: RefCell<Vec<(f64, Vec<f64>)>>,
 }
 
 impl<'a> Columns<'a> {
@@ -28,6 +30,7 @@ impl<'a> Columns<'a> {
             product,
             rows: OnceCell::new(),
             of_walk: OnceCell::new(),
+            with_sums: RefCell::default(),
         }
     }
 
@@ -58,7 +61,7 @@ impl<'a> Columns<'a> {
             _ => {
                 let mut product = self.product.clone();
                 for (share, correlation) in model.parts() {
-                    self.add_twice(&mut product, share, &self.rows().with_sums_before(correlation));
+                    self.add_sums(&mut product, share, correlation);
                 }
                 product
             }
@@ -67,6 +70,16 @@ impl<'a> Columns<'a> {
 
     fn rows(&self) -> &Rows {
         self.rows.get_or_init(|| Rows::new(self.columns))
+    }
+
+    /// Adds s (JᵀF + FᵀJ).
+    fn add_sums(&self, product: &mut [f64], share: f64, correlation: f64) {
+        let mut known = self.with_sums.borrow_mut();
+        let place = known.iter().position(|(of, _)| *of == correlation).unwrap_or_else(|| {
+            known.push((correlation, self.rows().with_sums_before(correlation)));
+            known.len() - 1
+        });
+        self.add_twice(product, share, &known[place].1);
     }
 
     /// Adds s (A + Aᵀ).

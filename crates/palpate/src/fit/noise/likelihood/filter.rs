@@ -1,4 +1,7 @@
 //! Kalman's filters of white noise with AR(1) parts, of several noises side by side: what they do with each sample, whatever the column.
+//!
+//! Noise that has settled needs no covariance matrix of its parts: from a sample to the next it falls by c l lᵀ, and c and l go on by themselves
+//! (Morf, Sidhu and Kailath 1974).
 
 use fearless_simd::{Simd, SimdBase, SimdMask, f64x8};
 
@@ -38,19 +41,19 @@ impl<const P: usize> Noises<P> {
     /// Their filters before the first sample.
     #[inline(always)]
     pub(super) fn begun<S: Simd>(&self, simd: S) -> Filters<S, P> {
-        let nothing = f64x8::splat(simd, 0.0);
-        let [shares, kept] = [&self.shares, &self.kept].map(|of| of.map(|lanes| f64x8::from_slice(simd, &lanes)));
-        let mut ahead = [[nothing; P]; P];
-        (0..P).for_each(|i| ahead[i][i] = shares[i]);
+        let one = f64x8::splat(simd, 1.0);
+        let [with_sum, kept] = [&self.shares, &self.kept].map(|of| of.map(|lanes| f64x8::from_slice(simd, &lanes)));
+        let innovation = f64x8::from_slice(simd, &self.white) + sum(&with_sum);
+        let weight = one / innovation;
         Filters {
-            white: f64x8::from_slice(simd, &self.white),
             kept,
-            both_kept: std::array::from_fn(|i| std::array::from_fn(|j| kept[i] * kept[j])),
-            fresh: std::array::from_fn(|i| shares[i] * (-(kept[i] * kept[i]) + 1.0)),
-            ahead,
-            with_sum: [nothing; P],
-            gains: [nothing; P],
-            determinants: f64x8::splat(simd, 1.0),
+            innovation,
+            weight,
+            with_sum,
+            gains: with_sum.map(|with_sum| with_sum * weight),
+            along: std::array::from_fn(|i| kept[i] * with_sum[i]),
+            fall: weight,
+            determinants: one,
             log_determinants: [0.0; LANES],
         }
     }
@@ -59,59 +62,41 @@ impl<const P: usize> Noises<P> {
 /// Filters side by side at a sample: each part is expected to be what it was, and its gain of what came beyond expectation, times its
 /// correlation.
 pub(super) struct Filters<S: Simd, const P: usize> {
-    white: f64x8<S>,
-    /// The correlation of each part with itself a sample later, and products of two.
+    /// The correlation of each part with itself a sample later.
     pub(super) kept: [f64x8<S>; P],
-    both_kept: [[f64x8<S>; P]; P],
-    /// Variance of each part that comes anew with each sample.
-    fresh: [f64x8<S>; P],
-    /// Covariance of the parts before the sample; its upper half.
-    ahead: [[f64x8<S>; P]; P],
-    /// That of each part with their sum.
+    /// Variance of what comes beyond expectation, and one over it: what its square counts.
+    innovation: f64x8<S>,
+    pub(super) weight: f64x8<S>,
+    /// Covariance of each part before the sample with the sum of all.
     with_sum: [f64x8<S>; P],
-    gains: [f64x8<S>; P],
+    pub(super) gains: [f64x8<S>; P],
+    /// l and c.
+    along: [f64x8<S>; P],
+    fall: f64x8<S>,
     /// Product of some variances of what comes beyond expectation, and Σ ln of those before.
     determinants: f64x8<S>,
     log_determinants: [f64; LANES],
 }
 
 impl<S: Simd, const P: usize> Filters<S, P> {
-    /// What a square of what comes beyond expectation counts, and the gains.
-    #[inline(always)]
-    pub(super) fn gains(&mut self) -> (f64x8<S>, [f64x8<S>; P]) {
-        let nothing = self.white * 0.0;
-        self.with_sum = [nothing; P];
-        for i in 0..P {
-            self.with_sum[i] += self.ahead[i][i];
-            for j in i + 1..P {
-                self.with_sum[i] += self.ahead[i][j];
-                self.with_sum[j] += self.ahead[i][j];
-            }
-        }
-        let mut innovation = self.white;
-        for i in 0..P {
-            innovation += self.with_sum[i];
-        }
-        let weight = (nothing + 1.0) / innovation;
-        for i in 0..P {
-            self.gains[i] = self.with_sum[i] * weight;
-        }
-        // One logarithm for many factors, which are at most 1.
-        self.determinants *= innovation;
-        if self.determinants.simd_lt(nothing + 1e-100).any_true() {
-            self.settle();
-        }
-        (weight, self.gains)
-    }
-
     /// To the next sample.
     #[inline(always)]
     pub(super) fn go_on(&mut self) {
+        // One logarithm for many factors, which are at most 1.
+        self.determinants *= self.innovation;
+        if self.determinants.simd_lt(self.determinants * 0.0 + 1e-100).any_true() {
+            self.settle();
+        }
+        let sum = sum(&self.along);
+        let by = self.fall * sum;
+        let before = self.weight;
+        self.innovation -= by * sum;
+        self.weight = (before * 0.0 + 1.0) / self.innovation;
+        self.fall *= self.innovation * before;
         for i in 0..P {
-            for j in i..P {
-                self.ahead[i][j] = self.both_kept[i][j] * (self.ahead[i][j] - self.gains[i] * self.with_sum[j]);
-            }
-            self.ahead[i][i] += self.fresh[i];
+            self.with_sum[i] -= by * self.along[i];
+            self.gains[i] = self.with_sum[i] * self.weight;
+            self.along[i] = self.kept[i] * (self.along[i] - self.gains[i] * sum);
         }
     }
 
@@ -119,7 +104,7 @@ impl<S: Simd, const P: usize> Filters<S, P> {
     fn settle(&mut self) {
         let factors: [f64; LANES] = self.determinants.into();
         self.log_determinants.iter_mut().zip(factors).for_each(|(sum, factor)| *sum += factor.ln());
-        self.determinants = self.white * 0.0 + 1.0;
+        self.determinants = self.determinants * 0.0 + 1.0;
     }
 
     /// ln |R| of the samples so far.
@@ -128,4 +113,13 @@ impl<S: Simd, const P: usize> Filters<S, P> {
         self.settle();
         self.log_determinants
     }
+}
+
+#[inline(always)]
+fn sum<S: Simd, const P: usize>(parts: &[f64x8<S>; P]) -> f64x8<S> {
+    let mut sum = parts[0];
+    for part in &parts[1..] {
+        sum += *part;
+    }
+    sum
 }

@@ -42,6 +42,9 @@ pub(crate) fn slowest(length: usize) -> f64 {
     (length as f64).ln() + 2.5
 }
 
+/// ln(s/(1 − s)) of shares s that differ from nothing and from all.
+pub(crate) const SHARES: (f64, f64) = (-8.0, 8.0);
+
 /// A kind of noise: the model of the least deviance, and models about it that stand for all of its kind.
 pub(crate) struct Kind {
     pub(crate) deviance: f64,

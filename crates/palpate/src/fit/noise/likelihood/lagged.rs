@@ -1,7 +1,7 @@
 //! The restricted likelihood of autoregressions.
 
 use super::kind::{Kind, Likelihood, slowest};
-use crate::fit::noise::autoregression::{Autoregression, MOST_ORDER};
+use crate::fit::noise::autoregression::MOST_ORDER;
 use crate::fit::noise::model::NoiseModel;
 use crate::optimise::{Few, Square, minimise};
 use crate::vector::cross_products;
@@ -82,9 +82,16 @@ impl Lagged {
 
     /// The likelihood of partial autocorrelations.
     pub(crate) fn likelihood(&self, partial: &[f64]) -> Option<Likelihood> {
-        let found = Autoregression::new(partial);
-        let variance = found.variance_at(self.order);
-        let signs: Few = std::iter::once(1.0).chain(found.at(self.order).iter().map(|by| -by)).collect();
+        // By Levinson and Durbin; |R| = Π_t σ_t², the variances of errors of predictions by the samples before.
+        let mut signs = [0.0; MOST_ORDER + 1];
+        signs[0] = 1.0;
+        let (mut variance, mut begun) = (1.0, 1.0);
+        for (order, by) in (1..).zip(partial) {
+            let before = signs;
+            (1..=order).for_each(|k| signs[k] -= by * before[order - k]);
+            begun *= variance;
+            variance *= 1.0 - by * by;
+        }
         let mut product = Square::from_elem(0.0, self.products[0].len());
         for i in 0..=self.order {
             for j in i..=self.order {
@@ -93,10 +100,8 @@ impl Lagged {
                 product.iter_mut().zip(part).for_each(|(sum, entry)| *sum += factor * entry);
             }
         }
-        // |R| = Π_t σ_t², the variances of errors of predictions by the samples before.
-        let begun: f64 = (0..self.order).map(|index| found.variance_at(index).ln()).sum();
         let series = (self.samples / self.length) as f64;
-        let log_determinant = series * (begun + (self.length - self.order) as f64 * variance.ln());
+        let log_determinant = series * (f64::ln(begun) + (self.length - self.order) as f64 * variance.ln());
         Likelihood::of(&product, log_determinant, self.samples)
     }
 
@@ -109,7 +114,7 @@ impl Lagged {
         };
         let evaluate = |points: &[Few]| points.iter().map(at).collect();
         let begin: Few = start.iter().map(|by| (2.0 * by.atanh()).clamp(0.1 - most, most - 0.1)).collect();
-        let found = minimise(&evaluate, &begin, f64::INFINITY)?;
+        let found = minimise(&evaluate, &begin, &vec![(-most, most); begin.len()], f64::INFINITY)?;
         Kind::about(&found, &evaluate, |x| Some(model(&partial(x))))
     }
 }

@@ -1,7 +1,7 @@
 //! White noise beside one Markov process: a random walk, or noise whose correlation fades in time.
 
 use super::filter::MarkovStep;
-use super::kind::{Kind, Likelihood};
+use super::kind::{Kind, Likelihood, SHARES};
 use super::rows::Rows;
 use crate::fit::noise::model::NoiseModel;
 use crate::optimise::{Few, minimise};
@@ -172,9 +172,10 @@ impl<'a> Beside<'a> {
     pub(crate) fn in_time(&self, alone: bool, deviance: f64) -> Option<Kind> {
         let times = self.times.filter(|_| self.together == 1)?;
         let (low, high) = correlation_times(times);
+        let bounds = [(low, high), SHARES];
         let model = |x: &[f64]| {
             let share = x.get(1).map_or(1.0, |x| 1.0 / (1.0 + (-x).exp()));
-            let inside = (low..=high).contains(&x[0]) && x.get(1).is_none_or(|x| x.abs() <= 8.0);
+            let inside = x.iter().zip(&bounds).all(|(x, (low, high))| (low..=high).contains(&x));
             inside.then(|| in_time(x[0].exp(), share, times))
         };
         let at = |x: &[f64]| match model(x)? {
@@ -196,7 +197,7 @@ impl<'a> Beside<'a> {
         if best > deviance {
             return None;
         }
-        let found = minimise(&evaluate, &start[..size], f64::INFINITY)?;
+        let found = minimise(&evaluate, &start[..size], &bounds, f64::INFINITY)?;
         Kind::about(&found, &evaluate, model)
     }
 

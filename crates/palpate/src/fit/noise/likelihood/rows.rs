@@ -159,14 +159,13 @@ impl Rows {
         // What is expected of each column in each series, and its parts.
         let mut columns = vec![(nothing, [nothing; P]); size * series];
         for index in 0..length {
-            let (weight, gains) = filter.gains();
             for (place, columns) in columns.chunks_exact_mut(size).enumerate() {
                 let at = place * length + index;
                 for (row, (expected, parts)) in columns.iter_mut().enumerate() {
                     let new = f64x8::splat(simd, self.blocks[row / LANES][at][row % LANES]) - *expected;
-                    weighed[row] = new * weight;
+                    weighed[row] = new * filter.weight;
                     *expected = nothing;
-                    for ((part, gain), kept) in parts.iter_mut().zip(gains).zip(filter.kept) {
+                    for ((part, gain), kept) in parts.iter_mut().zip(filter.gains).zip(filter.kept) {
                         *part = (*part + new * gain) * kept;
                         *expected += *part;
                     }

@@ -1,7 +1,7 @@
 //! Noise with slow parts beside white noise, by Kalman's filter.
 
 use super::filter::{LANES, Noises};
-use super::kind::{Kind, Likelihood, slowest};
+use super::kind::{Kind, Likelihood, SHARES, slowest};
 use super::rows::Rows;
 use crate::fit::noise::model::{MOST_PARTS, NoiseModel, Parts};
 use crate::optimise::{Few, minimise};
@@ -26,9 +26,18 @@ pub(crate) struct Slow<'a> {
     longest: f64,
 }
 
+/// κ of correlations that are slow.
+fn kappas(length: usize) -> (f64, f64) {
+    (0.05, slowest(length))
+}
+
+fn is_within(x: &[f64], bounds: &[(f64, f64)]) -> bool {
+    x.iter().zip(bounds).all(|(x, (low, high))| (low..=high).contains(&x))
+}
+
 /// ρ and s from κ and ln(s/(1 − s)).
 pub(crate) fn mixture(x: &[f64], length: usize) -> Option<NoiseModel> {
-    (x[0] >= 0.05 && x[0] <= slowest(length) && x[1].abs() <= 8.0).then(|| NoiseModel::WhiteAndAutoregressive {
+    is_within(x, &[kappas(length), SHARES]).then(|| NoiseModel::WhiteAndAutoregressive {
         correlation: (0.5 * x[0]).tanh(),
         share: share(x[1]),
     })
@@ -37,9 +46,12 @@ pub(crate) fn mixture(x: &[f64], length: usize) -> Option<NoiseModel> {
 /// ln(s/(1 − s)) of a share of all but rounding.
 const ALONE: f64 = 30.0;
 
+/// Doubles of exponents.
+const TWICE: (f64, f64) = (0.6, 4.4);
+
 /// a from its double, and the share as above.
 pub(crate) fn power_law(x: &[f64], longest: f64) -> Option<NoiseModel> {
-    ((0.6..=4.4).contains(&x[0]) && (x[1].abs() <= 8.0 || x[1] == ALONE)).then(|| NoiseModel::PowerLaw {
+    (is_within(x, &[TWICE, SHARES]) || is_within(x, &[TWICE, (ALONE, ALONE)])).then(|| NoiseModel::PowerLaw {
         exponent: 0.5 * x[0],
         share: share(x[1]),
         longest,
@@ -73,33 +85,41 @@ impl<'a> Slow<'a> {
 
     /// The best white noise with AR(1), if a first look finds a deviance that promises to fall below this one.
     pub(crate) fn mixture(&self, deviance: f64) -> Option<Kind> {
-        let kappas = (1..).map(|i| 1.2 * f64::from(i)).take_while(|kappa| *kappa < slowest(self.length));
-        let places: Vec<[f64; 2]> = kappas.flat_map(|kappa| [-2.5, 0.0, 2.5].map(|share| [kappa, share])).collect();
-        self.best(&places, deviance, |x| mixture(x, self.length))
+        let bounds = [kappas(self.length), SHARES];
+        let places = (1..).map(|i| 1.2 * f64::from(i)).take_while(|kappa| *kappa < bounds[0].1);
+        let places: Vec<[f64; 2]> = places.flat_map(|kappa| [-2.5, 0.0, 2.5].map(|share| [kappa, share])).collect();
+        let model = |x: &[f64]| mixture(x, self.length);
+        self.best(&self.start(&places, model)?, &bounds, deviance, model)
     }
 
-    /// The best power law without white noise, likewise.
-    pub(crate) fn power_alone(&self, deviance: f64) -> Option<Kind> {
-        let places = [1.0, 2.0, 3.0, 4.0].map(|twice| [twice]);
-        self.best(&places, deviance, |x| power_law(&[x[0], ALONE], self.longest))
+    /// The best power law without white noise, then the best with it, likewise below the deviance that `worth` gives after those that are known.
+    pub(crate) fn power_laws(&self, mut worth: impl FnMut(Option<Kind>) -> f64) {
+        let alone = |x: &[f64]| power_law(&[x[0], ALONE], self.longest);
+        let beside = |x: &[f64]| power_law(x, self.longest);
+        let shares = [-3.0, -1.0, 1.0, 4.0];
+        let places: Vec<[f64; 2]> =
+            [1.4, 2.4, 3.6].into_iter().flat_map(|twice| shares.map(|share| [twice, share])).collect();
+        let starts = (self.start(&[[1.0], [2.0], [3.0], [4.0]], alone), self.start(&places, beside));
+        // Neither is worth a search where both are far off.
+        let at = [starts.0.and_then(|x| alone(&x)), starts.1.and_then(|x| beside(&x))];
+        let found = self.likelihoods(&at);
+        let mut deviance = worth(None);
+        let promises = |found: &Option<Likelihood>| found.is_some_and(|found| found.deviance <= deviance - PROMISE);
+        let (first, second) = (promises(&found[0]), promises(&found[1]));
+        if let (Some(start), true) = (starts.0, first) {
+            deviance = worth(self.best(&start, &[TWICE], deviance, alone));
+        }
+        if let (Some(start), true) = (starts.1, second) {
+            worth(self.best(&start, &[TWICE, SHARES], deviance, beside));
+        }
     }
 
-    /// The best power law with white noise, likewise.
-    pub(crate) fn power_law(&self, deviance: f64) -> Option<Kind> {
-        let places: Vec<[f64; 2]> = [1.4, 2.4, 3.6]
-            .into_iter()
-            .flat_map(|twice| [-3.0, -1.0, 1.0, 4.0].map(|share| [twice, share]))
-            .collect();
-        self.best(&places, deviance, |x| power_law(x, self.longest))
-    }
-
-    fn best<const K: usize>(
+    /// Where to begin: means of neighbouring residuals can tell, as if nothing had been fitted.
+    fn start<const K: usize>(
         &self,
         places: &[[f64; K]],
-        deviance: f64,
         model: impl Fn(&[f64]) -> Option<NoiseModel>,
-    ) -> Option<Kind> {
-        // Where to begin: means of neighbouring residuals can tell, as if nothing had been fitted.
+    ) -> Option<[f64; K]> {
         let together = self.length.div_ceil(GLANCE);
         let length = self.length / together;
         let mean = |some: &[f64]| some.iter().sum::<f64>() / together as f64;
@@ -113,12 +133,21 @@ impl<'a> Slow<'a> {
             .into_iter()
             .map(|(square, log_determinant)| count * (square[0] / count).ln() + log_determinant);
         let alone = models.iter().zip(deviances).filter(|(_, deviance)| deviance.is_finite());
-        let ((_, start), _) = alone.min_by(|a, b| a.1.total_cmp(&b.1))?;
+        alone.min_by(|a, b| a.1.total_cmp(&b.1)).map(|((_, start), _)| *start)
+    }
+
+    fn best(
+        &self,
+        start: &[f64],
+        bounds: &[(f64, f64)],
+        deviance: f64,
+        model: impl Fn(&[f64]) -> Option<NoiseModel>,
+    ) -> Option<Kind> {
         let evaluate = |points: &[Few]| {
             let models: Vec<Option<NoiseModel>> = points.iter().map(|x| model(x)).collect();
             self.likelihoods(&models)
         };
-        let found = minimise(&evaluate, start, deviance - PROMISE)?;
+        let found = minimise(&evaluate, start, bounds, deviance - PROMISE)?;
         Kind::about(&found, &evaluate, &model)
     }
 }
