@@ -1355,7 +1355,7 @@ class Observer(_Moved):
     stiffness_standard_error : float
         With a material: by how much the stiffness of this body may differ, as a standard deviation of its logarithm, from 0 to 1.
     touch_standard_error_m : float
-        With a material: standard deviation to which first touch is known, m.
+        With a material: standard deviation to which first touch is known, m; intervals hold up to some 6 % of the squeeze.
 
     Raises
     ------

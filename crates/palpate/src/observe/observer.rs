@@ -12,11 +12,24 @@ pub(super) const NOISE: f64 = 5.0;
 const SERVO: f64 = 0.001;
 /// Share of its range within which a controller holds a force.
 const CONTROLLER: f64 = 0.015;
+/// Steps of rounded readings within which a signal stands.
+const FIGURE: f64 = 1.01;
 /// Share of the largest force below which there is no contact, and noise below which there is none.
 const OPEN: (f64, f64) = (0.02, 4.0);
 /// A jaw, and a force, stand once they would have gone so many tolerances at their last speed. A controller that sets a force goes in
 /// steps, and stands between them.
 pub(super) const PATIENCE: (f64, f64) = (4.0, 8.0);
+/// A force is held once the jaw has gone so far that without a controller, at the mean stiffness so far, it would have risen by so many times
+/// [`CONTROLLER`] and so many times what it may fall; or once it has stood for so many times as long as it takes to rise from nothing at its highest
+/// speed. The peak of a force whose jaw still comes is as flat, but not for as long.
+const BORNE: (f64, f64, f64) = (10.0, 4.0, 8.0);
+/// A force gives way once it falls this many times farther than it has before and come back.
+const WANDERS: f64 = 1.5;
+/// How many times farther than it may wander a force falls before it is on its way: from where it stood, and from where it was on the way, where
+/// its place follows it.
+pub(super) const FALLS: (f64, f64) = (2.0, 0.8);
+/// How many times more patience a jaw needs that slowed down before: one that comes with a lag hardly moves on the last of its way.
+const LAG: f64 = 4.0;
 /// Tolerances of the force above which a force may be held: below, noise hides how it moves.
 const PLAIN: f64 = 2.0;
 /// A fit is made again once the hold is longer by this share.
@@ -25,7 +38,7 @@ const AGAIN: f64 = 0.04;
 const READINGS: u32 = 8;
 
 /// What the bytes of an observer begin with.
-const FORMAT: [u8; 8] = *b"observe6";
+const FORMAT: [u8; 8] = *b"observe7";
 
 /// A hold that goes on.
 #[derive(Debug, Clone, Copy, Default)]
@@ -42,8 +55,12 @@ pub(super) struct Hold {
     /// Time since the hold began at which the next fit is due, s.
     pub(super) due: f64,
     pub(super) readings: u32,
+    /// Of a force that a controller holds, or held: how far it fell and came back, and how far it lies below its place, N.
+    pub(super) wanders: Option<(f64, f64)>,
+    /// Since when it has been clearly below, s.
+    falls_since: Option<f64>,
 }
-kept!(Hold: held, since, force, fit, correlation, crossing, creep, due, readings);
+kept!(Hold: held, since, force, fit, correlation, crossing, creep, due, readings, wanders, falls_since);
 
 impl Hold {
     fn new(held: Held, (since, force): (f64, f64)) -> Self {
@@ -51,7 +68,27 @@ impl Hold {
             held,
             since,
             force,
+            wanders: (held == Held::Force).then_some((0.0, 0.0)),
             ..Self::default()
+        }
+    }
+
+    /// The same with the other variable held since a time (s).
+    fn change(&mut self, held: Held, since: f64) {
+        let wanders = self.wanders;
+        *self = Self::new(held, (since, self.force));
+        self.wanders = wanders.or(self.wanders);
+    }
+
+    /// Takes how far the force lies below its place, N.
+    fn wander(&mut self, below: f64) {
+        if let Some((most, now)) = &mut self.wanders {
+            if below <= 0.0 {
+                *most = most.max(*now);
+                *now = 0.0;
+            } else {
+                *now = now.max(below);
+            }
         }
     }
 }
@@ -239,7 +276,7 @@ impl Observer {
             Some(
                 (NOISE * noise)
                     .max(share * (reached.1 - reached.0))
-                    .max(1.01 * meter.quantum().min(reached.1 - reached.0)),
+                    .max(FIGURE * meter.quantum().min(reached.1 - reached.0)),
             )
         };
         let jaw_tolerance = tolerance(&self.observed.displacement_noise, self.observed.reached[0], SERVO);
@@ -251,8 +288,10 @@ impl Observer {
         } else if let Some(displacement) = displacement {
             self.observed.creep.push(time - self.observed.grip.start, displacement);
         }
+        let lags = self.observed.hold.is_none() && self.observed.jaw.slowed();
+        let patience = if lags { LAG * PATIENCE.0 } else { PATIENCE.0 };
         let jaw = match displacement {
-            Some(displacement) => self.observed.jaw.feed(time, displacement, jaw_tolerance, PATIENCE.0),
+            Some(displacement) => self.observed.jaw.feed(time, displacement, jaw_tolerance, patience),
             None if self.observed.displacement_observed => Change::Same,
             None => {
                 let tolerance = self.observed.force_noise.deviation().map(|noise| NOISE * noise);
@@ -268,7 +307,9 @@ impl Observer {
                 self.observed.alone.feed(time, self.observed.smooth.level, tolerance, off)
             }
         };
-        let arrives = jaw_tolerance.is_some_and(|tolerance| self.observed.jaw.arrives(time, tolerance));
+        let arrives = jaw_tolerance.is_some_and(|tolerance| {
+            self.observed.jaw.arrives(time, if lags { patience * tolerance } else { tolerance })
+        });
         if matches!(jaw, Change::Moved | Change::Left | Change::Crept) || arrives || self.is_open() {
             // The first readings at a place may still belong to the way there.
             self.observed.relaxation.clear();
@@ -285,30 +326,70 @@ impl Observer {
             }
         }
         let reported = force_tolerance.is_some_and(|tolerance| self.observed.smooth.level.abs() > PLAIN * tolerance);
-        let began = self.begin_or_end(jaw, grip, reported);
+        self.settle(time);
+        let began = self.begin_or_end(jaw, grip, reported, reported && self.is_borne(time));
         self.grip(jaw_tolerance, reported);
         began
     }
 
-    /// `reported` is whether the force is large enough for its standing still to mean anything.
-    fn begin_or_end(&mut self, jaw: Change, grip: Change, reported: bool) -> bool {
+    /// Whether a force that is not held yet left its place: it rose, or fell farther than it wanders.
+    fn goes_on(&self) -> bool {
+        let (below, allowance) = (self.observed.grip.below(self.observed.smooth.level), self.allowance());
+        self.observed.grip.stands && (below < -allowance || below > FALLS.0 * allowance)
+    }
+
+    /// A force that fell from its place, and rests, has another: a controller was set to it, or overshot.
+    fn settle(&mut self, time: f64) {
+        let level = self.observed.smooth.level;
+        let Some(hold) = &self.observed.hold else {
+            if self.goes_on() {
+                self.observed.grip.go_on(time, level);
+                self.observed.creep.clear();
+                self.observed.creeps_at = level;
+            }
+            return;
+        };
+        if hold.wanders.is_none() {
+            return;
+        }
+        let (falls, since) = (self.falls(), hold.falls_since.unwrap_or(time));
+        let rests = falls && self.has_stood(since, time);
+        if rests {
+            self.observed.grip.settle(time, level);
+        }
+        if let Some(hold) = &mut self.observed.hold {
+            hold.wander(self.observed.grip.below(level));
+            hold.falls_since = (falls && !rests).then_some(since);
+        }
+    }
+
+    /// `reported` is whether the force is large enough for its standing still to mean anything, `borne` whether it stood though the jaw moved on.
+    fn begin_or_end(&mut self, jaw: Change, grip: Change, reported: bool, borne: bool) -> bool {
         let jaw_stands = self.observed.displacement_observed && self.observed.jaw.stands;
         let stands = jaw_stands || (!self.observed.displacement_observed && self.observed.alone.stands && reported);
+        // A controller that lets the force wander moves the jaw.
+        let gives_way = self.observed.hold.as_ref().is_some_and(|hold| hold.falls_since.is_some())
+            && self.observed.relaxes_at - self.observed.smooth.level > self.allowance();
         if let Some(hold) = &mut self.observed.hold {
             hold.readings = hold.readings.saturating_add(1);
             let goes_on = match hold.held {
+                // The controller that held the force takes it up again: that it gave way was how it wanders.
+                Held::Displacement if hold.wanders.is_some() && jaw != Change::Same && self.observed.grip.stands => {
+                    hold.change(Held::Force, self.observed.grip.start);
+                    hold.wander(0.0);
+                    true
+                }
                 Held::Displacement if jaw == Change::Crept && self.observed.grip.stands => {
-                    *hold = Hold::new(Held::Force, (hold.since, hold.force));
+                    *hold = Hold::new(Held::Force, (self.observed.grip.start, self.observed.creeps_at));
                     true
                 }
                 Held::Displacement => !matches!(jaw, Change::Left | Change::Crept),
-                Held::Force if grip == Change::Same => true,
-                // The force gave way, the jaw did not.
-                Held::Force if jaw_stands => {
-                    *hold = Hold::new(Held::Displacement, (hold.since, hold.force));
+                // The force gives way, the jaw does not: since it stands, the displacement has been held.
+                Held::Force if jaw_stands && (gives_way || grip != Change::Same) => {
+                    hold.change(Held::Displacement, self.observed.jaw.start);
                     true
                 }
-                Held::Force => false,
+                Held::Force => grip == Change::Same,
             };
             if !goes_on || self.is_open() {
                 self.observed.hold = None;
@@ -321,16 +402,48 @@ impl Observer {
         }
         self.observed.hold = if stands {
             Some(Hold::new(Held::Displacement, (self.observed.relaxes_from, self.observed.relaxes_at)))
-        } else if self.observed.displacement_observed
-            && self.observed.grip.stands
-            && self.observed.jaw.slowed()
-            && reported
-        {
+        } else if self.observed.displacement_observed && self.observed.jaw.slowed() && borne {
             Some(Hold::new(Held::Force, (self.observed.grip.start, self.observed.creeps_at)))
         } else {
             None
         };
         self.observed.hold.is_some()
+    }
+
+    /// Whether a force that is not held yet stood for so long, or though the jaw went on so far, that only a controller can have held it.
+    fn is_borne(&self, time: f64) -> bool {
+        if self.observed.hold.is_some() || !self.observed.grip.stands {
+            return false;
+        }
+        let [(least, most), (weakest, strongest)] = self.observed.reached;
+        let creep = self.observed.creep.as_slice();
+        let gone = creep.first().zip(creep.last()).map_or(0.0, |(first, last)| last.value - first.value);
+        let (allowance, level) = (self.allowance(), self.observed.smooth.level);
+        let steady = self.observed.grip.below(level).abs() <= allowance;
+        let far = (BORNE.0 * CONTROLLER * (strongest - weakest)).max(BORNE.1 * allowance);
+        (steady && gone * (strongest - weakest) > far * (most - least))
+            || self.has_stood(self.observed.grip.start, time)
+    }
+
+    /// Whether a time is so long ago that a force that stood since then is held.
+    fn has_stood(&self, since: f64, time: f64) -> bool {
+        self.observed.grip.would_have_gone(since, time) > BORNE.2 * self.observed.smooth.level.abs()
+    }
+
+    /// How far a filtered force may fall and still be held, N: by its noise, or as a controller lets it.
+    pub(super) fn allowance(&self) -> f64 {
+        let (weakest, strongest) = self.observed.reached[1];
+        let range = strongest - weakest;
+        let wanders = self.observed.hold.as_ref().and_then(|hold| hold.wanders).map_or(0.0, |wanders| wanders.0);
+        self.margin()
+            .max(CONTROLLER * range)
+            .max(FIGURE * self.observed.force_noise.quantum().min(range))
+            .max(WANDERS * wanders)
+    }
+
+    /// Whether the force has fallen from where it stood.
+    pub(super) fn falls(&self) -> bool {
+        self.observed.grip.stands && self.observed.grip.below(self.observed.smooth.level) > self.allowance()
     }
 
     /// Whether there is no contact.

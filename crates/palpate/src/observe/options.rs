@@ -25,7 +25,8 @@ pub struct ObserverOptions {
     pub noise: Option<(f64, f64)>,
     /// With a material: how much the stiffness of this body may differ from that of the calibrated one, as a standard deviation of its logarithm.
     pub stiffness_standard_error: f64,
-    /// With a material: how well first touch is known, as a standard deviation of the displacement (m).
+    /// With a material: how well first touch is known, as a standard deviation of the displacement (m). What it does is taken as proportional to it:
+    /// intervals of 95 % contain the truth in 97 % of contacts at 6 % of the squeeze, in 82 % at 10 %.
     pub touch_standard_error: f64,
 }
 

@@ -1,6 +1,6 @@
 //! What an observer says after a tick: its state as an observation, and warnings.
 
-use super::observer::{NOISE, PATIENCE};
+use super::observer::{FALLS, NOISE, PATIENCE};
 use super::signal::Smooth;
 use super::{ContactPhase, Held, Normal, Observation, Observer, Slip, SlipForecast};
 use crate::grip::TimeToSlip;
@@ -50,6 +50,8 @@ impl Observer {
             stated.force = self.as_read(stated.force);
             if let Some(slip) = self.options.slip_force {
                 stated.time_to_slip = Some(match (hold.held, hold.crossing) {
+                    // Whether a force that has begun to fall is still held, or how it goes on, the jaw has yet to show.
+                    (Held::Force, _) if self.falls() => SlipForecast::Unknown,
                     (Held::Force, _) => SlipForecast::NEVER,
                     (_, Some(crossing)) => crossing.observed(elapsed),
                     _ => SlipForecast::Unknown,
@@ -120,6 +122,16 @@ impl Observer {
         NOISE * self.observed.force_noise.deviation().unwrap_or(0.0) * Smooth::kept()
     }
 
+    /// Whether the force, falling on as it does while the jaw does not open, is at that of slip within `soon` (s). A force that begins to fall may
+    /// only wander.
+    fn falls_to(&self, slip: f64, time: f64, soon: f64) -> bool {
+        let (observed, level) = (&self.observed, self.observed.smooth.level);
+        let far = if observed.grip.stands { FALLS.0 } else { FALLS.1 };
+        let allowance = self.allowance();
+        let falls = observed.slip == Slip::Soon || observed.grip.below(level) > far * allowance;
+        falls && observed.jaw.direction > 0.0 && level - soon * observed.grip.fall_rate(time, level, allowance) <= slip
+    }
+
     fn warning(&self, stated: &Observation) -> Slip {
         let Some(slip) = self.options.slip_force else {
             return Slip::None;
@@ -135,6 +147,13 @@ impl Observer {
         let near = (FALSE_ALARM * self.options.warn_before).min(REACHES * (stated.time - self.observed.relaxes_from));
         match stated.time_to_slip {
             _ if stated.force <= slip + margin => Slip::Slipping,
+            // A force that falls though the jaw does not open, with no hold yet whose law tells more.
+            None | Some(SlipForecast::Unknown)
+                if (stated.held != Some(Held::Displacement) || before == Slip::Soon)
+                    && self.falls_to(slip, stated.time, early * FALSE_ALARM * self.options.warn_before) =>
+            {
+                Slip::Soon
+            }
             // Any other is of a hold.
             _ if stated.held.is_none() => Slip::None,
             Some(SlipForecast::Known {

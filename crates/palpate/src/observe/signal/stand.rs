@@ -137,6 +137,39 @@ impl Stand {
         Normal::new(self.mean, noise / count.sqrt())
     }
 
+    /// How far a filtered value lies below the place where the signal stands.
+    pub(in crate::observe) fn below(&self, level: f64) -> f64 {
+        self.place - level
+    }
+
+    /// How fast a signal falls whose filtered value is `level` at `time`: since it was at its place if it stands, else as on its way there, but not
+    /// faster than if it had gone `unnoticed` farther since.
+    pub(in crate::observe) fn fall_rate(&self, time: f64, level: f64, unnoticed: f64) -> f64 {
+        if self.stands {
+            self.below(level) / (time - self.middle)
+        } else {
+            let most = (self.below(level) + unnoticed).max(0.0) / (time - self.start);
+            self.speed.filter(|_| self.direction < 0.0).map_or(0.0, |speed| speed.min(most))
+        }
+    }
+
+    /// How far the signal would have gone since a time at its highest speed since it last stood.
+    pub(in crate::observe) fn would_have_gone(&self, since: f64, time: f64) -> f64 {
+        (time - since) * self.fastest
+    }
+
+    /// The signal, which went from its place to `level`, may begin to stand there.
+    pub(in crate::observe) fn go_on(&mut self, time: f64, level: f64) {
+        let way = -self.below(level);
+        (self.speed, self.direction) = (Some(way.abs() / (time - self.middle)), way.signum());
+        self.begin(time, level);
+    }
+
+    /// The signal stands on, at another place.
+    pub(in crate::observe) fn settle(&mut self, time: f64, level: f64) {
+        (self.place, self.mean, self.middle, self.drifts_since) = (level, level, time, None);
+    }
+
     /// Whether a signal that came to a place may still be on the last tolerance of its way.
     pub(in crate::observe) fn arrives(&self, time: f64, tolerance: f64) -> bool {
         !self.stands && self.speed.is_some_and(|speed| (time - self.start) * speed < tolerance)

@@ -1,6 +1,7 @@
 //! A contact watched tick by tick: what is found, when, and how often intervals contain the truth.
 #![expect(clippy::unwrap_used, reason = "a test that cannot run has failed")]
 
+mod controlled;
 mod material;
 mod warnings;
 
