@@ -353,6 +353,13 @@ pub enum Finding {
         /// Largest displacement since first touch, m.
         squeeze: f64,
     },
+    /// The first ramp has too few samples for a curve: first touch lies between two of them.
+    TouchBetweenSamples {
+        /// Displacements of the last sample without a force and of the first that carries one, m since first touch as it was taken.
+        between: (f64, f64),
+        /// Largest displacement since first touch, m.
+        squeeze: f64,
+    },
     /// The requested rule finds no first touch.
     TouchNotFound {
         /// The rule.

@@ -15,7 +15,7 @@ use crate::forecast::RampChoice;
 use crate::laws::Loading;
 use crate::number::significant;
 use crate::record::{Record, SignalReport};
-use crate::segment::{ContactChoice, ContactPoint, Phase, SegmentError, Segmentation, TouchMethod};
+use crate::segment::{ContactPoint, Phase, SegmentError, Segmentation};
 use crate::watch::{Cancelled, Progress, Unwatched, Watch};
 
 /// The study of one record.
@@ -128,12 +128,7 @@ fn examined(
     let (corrected, no_hold) = corrected_watched(record, options, watch)?.or_ramps_alone(options);
     let mut hear = |task: &str| watch.report(Progress::open(task, 0));
     hear("finding first touch")?;
-    // The curve of loading that finds first touch by itself needs the hold behind it.
-    let touch = match (options.touch, &no_hold) {
-        (ContactChoice::Auto, Some(_)) => ContactChoice::By(TouchMethod::Hertz),
-        (touch, _) => touch,
-    };
-    let prepared = corrected.prepared(options, touch)?;
+    let prepared = corrected.prepared(options, options.touch)?;
     hear("examining the columns")?;
     let mut findings = signal_findings((record, &signals), &corrected, &prepared, options);
     findings.extend(no_hold.as_ref().map(|error| Finding::NoHold {

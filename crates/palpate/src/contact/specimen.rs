@@ -245,10 +245,11 @@ impl Specimen {
         self.equilibrium.stiffness(&self.shape, self.modulus, self.depth(), contact_displacement)
     }
 
-    /// p of F_e ∝ uᵖ by Hertz's law on a half space: 3/2 of a round body; `None` of one without that law.
+    /// p of F_e ∝ uᵖ: that of a tip by Hertz's law on a half space, 1 of a constant section; `None` of other bodies.
     #[cfg(feature = "std")]
     pub(crate) fn hertz_power(&self) -> Option<f64> {
-        self.shape.tip().map(|(tip, _)| tip.power().1)
+        let of_tip = self.shape.tip().map(|(tip, _)| tip.power().1);
+        of_tip.or_else(|| self.has_constant_section().then_some(1.0))
     }
 
     /// Contact displacements (m) between which the stiffness is smooth, up to `reach`: the rows of tables, and ever closer places to first

@@ -8,6 +8,7 @@ mod corrections;
 mod curve_modulus;
 mod damage;
 mod exponents;
+mod first_touch;
 mod grip;
 mod instrument;
 mod linear_body;

@@ -474,6 +474,18 @@ impl Finding {
                 "first touch depends on the rule; strains, areas and a modulus from this record share that error",
                 "sample the approach faster and start it in air, or set touch in the test description to a rule or displacement",
             ),
+            Self::TouchBetweenSamples { between: (without, with), squeeze } => caution(
+                "touch_between_samples",
+                format!(
+                    "of the samples around first touch the last without a force is at {} mm, and the first that carries one at {} mm; the largest \
+                     squeeze is {} mm",
+                    significant(1e3 * without, 2),
+                    significant(1e3 * with, 2),
+                    significant(1e3 * squeeze, 4)
+                ),
+                "the ramp has too few samples for a curve: first touch lies anywhere between, and strains, areas and a modulus share that error",
+                "sample the approach faster or approach more slowly, or set touch in the test description to a displacement",
+            ),
             Self::TouchNotFound { method } => caution(
                 "touch_not_found",
                 format!("the rule \"{}\" finds no first touch", method.name()),

@@ -218,6 +218,10 @@ fn touch_findings(record: &Record, contact: &ContactPoint, requested: ContactCho
     }
     // The error contains the distance where the curve misses the ramp: one that describes it is right, and the other rules are not.
     let misses = |apart: &f64| contact.displacement_error.is_some_and(|error| error >= apart.abs());
+    if let Some((without, with)) = contact.between {
+        let between = (without - contact.tare.displacement, with - contact.tare.displacement);
+        findings.push(Finding::TouchBetweenSamples { between, squeeze });
+    }
     if let Some(apart) = contact
         .apart()
         .filter(|apart| requested == ContactChoice::Auto && apart.abs() > APART * squeeze && misses(apart))

@@ -4,6 +4,7 @@ use std::ops::Range;
 
 use serde::{Deserialize, Serialize};
 
+use super::early_rise::EarlyRise;
 use super::estimators::{Approach, TouchEstimate, TouchMethod};
 use super::loading_curve::{LoadingCurve, Touch};
 use crate::contact::Specimen;
@@ -44,6 +45,10 @@ pub struct ContactPoint {
     pub air_travel: f64,
     /// The rule that found it; `None` where it was given, or is the foot of the ramp.
     pub method: Option<TouchMethod>,
+    /// Displacements (m) of the last sample without a force and the first that carries one, where the ramp has too few samples for a curve:
+    /// first touch lies between them, and that is its error.
+    #[serde(default)]
+    pub between: Option<(f64, f64)>,
     /// Estimates of all rules that find first touch; empty where first touch was given.
     pub estimates: Vec<TouchEstimate>,
     /// Robust standard deviation of the estimates, m, if there are three or more: the sensitivity of first touch to the rule.
@@ -92,15 +97,24 @@ const AIR: f64 = 0.02;
 const SURE: f64 = 3.0;
 /// Samples that make a baseline.
 const BASELINE: usize = 5;
+/// Standard deviations beyond which a force is no noise.
+const BEYOND: f64 = 5.0;
+/// Samples of a ramp with a force from which a curve tells where it begins.
+const CARRYING: usize = 6;
+/// Share of the largest force that its noise is taken for at least.
+const LEAST: f64 = 5e-4;
 
 /// Finds first touch in a segmented record.
 ///
 /// The first ramp in which the force rises decides. The curve that a body under the latency law must draw in it, with n, v
 /// and the equilibrium force of the hold that follows, is laid over the force by least squares; where it begins is first touch.
 /// The curve takes its form from `body`, of any modulus; without one the section counts as constant.
+/// A curve of the early rise alone, which knows no law of relaxation, corrects it where that is the likelier.
 /// Only if that lies clearly behind the foot of the ramp (3 standard errors and 2 % of the travel), and the force is flat
 /// up to there, has the jaw travelled through air. Otherwise first touch is the foot of the ramp, and the zero of the force
 /// is its median at rest before it, or nothing is subtracted from a force without such a rest.
+/// In a ramp with fewer than six samples that carry a force no curve begins anywhere: first touch lies between two samples.
+/// In a record without a hold, Hertz's rule decides.
 ///
 /// A first touch that is given has a zero of the force too: its median over the first half of the way there, if the record has at least five
 /// samples of that, or else of all samples before it; nothing is subtracted where there are fewer.
@@ -174,8 +188,12 @@ fn first_rise<'a>(record: &Record, segmentation: &'a Segmentation) -> Option<(&'
     let force = record.force();
     let segments = &segmentation.segments;
     let rises = |segment: &Segment| {
-        let part = &force[segment.start.saturating_sub(1)..segment.end];
-        bounds(part).1 - part[0] > (8.0 * noise(part)).max(0.005 * range(force))
+        // The force of a ramp of few samples may rise only where the jaw arrives.
+        let few = segment.len() < CARRYING;
+        let part = &force[segment.start.saturating_sub(1)..(segment.end + usize::from(few)).min(force.len())];
+        // The bend of a few samples is no noise.
+        let noise = if few { noise(force) } else { noise(part) };
+        bounds(part).1 - part[0] > (8.0 * noise).max(0.005 * range(force))
     };
     let index = segments.iter().position(|s| s.phase == Phase::Loading && rises(s))?;
     let hold = segments.get(index + 1).filter(|next| next.phase == Phase::Hold);
@@ -197,18 +215,40 @@ fn automatic(
     // The rest right before the ramp says where the jaw stood better than its last sample alone.
     let stood = segmentation.segments.iter().find(|s| s.end == ramp.start && s.len() >= BASELINE);
     let from = stood.map_or(displacement[foot], |s| median(&mut displacement[s.start..s.end].to_vec()));
-    let travel = displacement[ramp.end - 1] - from;
+    let end = if ramp.len() < CARRYING { ramp.end.min(force.len() - 1) } else { ramp.end - 1 };
+    let travel = displacement[end] - from;
     if travel <= 0.0 {
         return None;
     }
-    let curve = hold
-        .and_then(|hold| LoadingCurve::of(record, displacement, ramp, hold, body))
-        .and_then(|curve| curve.touch(from, travel))
+    let approach = Approach::of(displacement, force, 0..foot, foot..ramp.end, body);
+    let early = approach.as_ref().and_then(|approach| EarlyRise::of(approach, body));
+    let law = hold.and_then(|hold| LoadingCurve::of(record, displacement, ramp, hold, body));
+    let curve = law
+        .as_ref()
+        .and_then(|law| law.touch(from, travel).map(|touch| (law, touch)))
+        .map(|(law, touch)| early.as_ref().map_or(touch, |early| early.with(touch, |d| law.force_of(&touch, d))))
         .filter(|touch| (from..displacement[ramp.end - 1]).contains(&touch.displacement));
-    let estimates = estimates(record, displacement, foot, ramp, (body, curve.as_ref()));
+    let estimates = estimates(approach.as_ref(), curve.as_ref());
     let spread = spread(&estimates);
-    let by_rule = estimates.iter().find(|estimate| choice == ContactChoice::By(estimate.method)).copied();
+    // The curve of loading needs the hold behind it.
+    let is_without_hold = choice == ContactChoice::Auto && segmentation.holds().next().is_none();
+    let rule = if is_without_hold { ContactChoice::By(TouchMethod::Hertz) } else { choice };
+    let by_rule = estimates.iter().find(|estimate| rule == ContactChoice::By(estimate.method)).copied();
+    let error_of = |rule: TouchEstimate| match &early {
+        Some(early) if is_without_hold => Some(early.error.hypot(rule.displacement - early.displacement)),
+        _ => spread,
+    };
+    let carrying = carrying(force, foot, ramp.start);
+    // Between many samples within the noise it is the noise that hides first touch.
+    let is_coarse = |(without, first): &(usize, usize)| first + CARRYING > ramp.end && first - without < CARRYING;
+    let between = carrying.filter(is_coarse).map(|(without, carrying)| {
+        let without = if without <= foot { from } else { displacement[without] };
+        (without, displacement[carrying].max(without))
+    });
     let by_curve = curve
+        .filter(|touch| {
+            between.is_none() && carrying.is_none_or(|(_, first)| touch.displacement <= displacement[first])
+        })
         .filter(|touch| touch.displacement - from > (SURE * touch.error).max(AIR * travel))
         .filter(|touch| is_flat(force, displacement, foot, touch, ramp));
     // Behind air the zero of the force is its median over half the way, or else the base of the curve.
@@ -218,12 +258,22 @@ fn automatic(
         let zero = if clear >= BASELINE { before } else { (base.unwrap_or(before.0), None) };
         (touch, first_beyond(displacement, foot, ramp, touch), zero)
     };
-    let (method, displacement_error, (touch, sample, (zero, force_error))) = match (by_rule, by_curve) {
-        (Some(rule), _) => (Some(rule.method), spread, behind_air(rule.displacement, None)),
-        (None, Some(touch)) => {
+    let foot_zero = || if has_rest { zero(&force[..=foot]) } else { (0.0, None) };
+    // A jaw that starts on the body is the common case, anywhere up to the next sample is as likely else. Behind air a soft body may be met
+    // before the last sample that shows no force: half the interval is the error.
+    let (method, displacement_error, (touch, sample, (zero, force_error))) = match (by_rule, by_curve, between) {
+        (Some(rule), ..) => (Some(rule.method), error_of(rule), behind_air(rule.displacement, None)),
+        (None, _, Some((without, with))) if without <= from => {
+            (None, Some((with - without) / 3f64.sqrt()), (from, foot, foot_zero()))
+        }
+        (None, _, Some((without, with))) => {
+            let middle = 0.5 * (without + with);
+            (Some(TouchMethod::Threshold), Some(0.5 * (with - without)), behind_air(middle, None))
+        }
+        (None, Some(touch), None) => {
             (Some(TouchMethod::LoadingCurve), Some(touch.error), behind_air(touch.displacement, Some(touch.base)))
         }
-        (None, None) => (None, None, (from, foot, if has_rest { zero(&force[..=foot]) } else { (0.0, None) })),
+        (None, None, None) => (None, None, (from, foot, foot_zero())),
     };
     let mut point = ContactPoint {
         sample: Some(sample),
@@ -235,6 +285,7 @@ fn automatic(
         force_error,
         air_travel: (touch - from).max(0.0),
         method,
+        between: between.filter(|_| by_rule.is_none()),
         spread,
         estimates,
     };
@@ -248,22 +299,29 @@ fn automatic(
     Some(point)
 }
 
+/// The last sample without a force behind the foot of a ramp that starts at sample `start`, and the first from which on the force stays beyond
+/// its noise; `None` for forces that are none. A force within the noise may be the first of a soft body.
+fn carrying(force: &[f64], foot: usize, start: usize) -> Option<(usize, usize)> {
+    let before = &force[..=foot];
+    let base = if before.len() >= BASELINE { median(&mut before.to_vec()) } else { before[foot] };
+    let noise = noise(force).max(LEAST * (bounds(force).1 - base));
+    let stays = |i: &usize| force[*i..force.len().min(i + 3)].iter().all(|f| *f > base + BEYOND * noise);
+    let carrying = (start..force.len()).find(stays)?;
+    let without = (foot..carrying).rfind(|i| force[*i] <= base + noise).unwrap_or(foot);
+    Some((without, carrying))
+}
+
 /// What every rule says that finds something.
-fn estimates(
-    record: &Record,
-    displacement: &[f64],
-    foot: usize,
-    ramp: &Segment,
-    (body, curve): (Option<&Specimen>, Option<&Touch>),
-) -> Vec<TouchEstimate> {
+fn estimates(approach: Option<&Approach>, curve: Option<&Touch>) -> Vec<TouchEstimate> {
     const RULES: [TouchMethod; 4] =
         [TouchMethod::Threshold, TouchMethod::TwoLines, TouchMethod::Hertz, TouchMethod::VarianceRatio];
     let curve = curve.map(|touch| TouchEstimate {
         method: TouchMethod::LoadingCurve,
         displacement: touch.displacement,
     });
-    let approach = Approach::of(displacement, record.force(), 0..foot, foot..ramp.end, body);
-    let rules = approach.iter().flat_map(|approach| RULES.into_iter().filter_map(|rule| approach.estimate(rule)));
+    let rules = approach
+        .into_iter()
+        .flat_map(|approach| RULES.into_iter().filter_map(|rule| approach.estimate(rule)));
     curve.into_iter().chain(rules).collect()
 }
 

@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 
 use super::loading_curve::solved;
 use crate::contact::Specimen;
-use crate::statistics::{median, noise};
+use crate::statistics::{dot, median, noise};
 
 /// Rule for first touch from the force over the travel of the first ramp.
 ///
@@ -23,7 +23,7 @@ pub enum TouchMethod {
     /// Where two straight lines through the first third of the rise meet, by least squares.
     TwoLines,
     /// Where Hertz's F₀ + k (d − d₀)^p begins (with a sloping F₀ where that is the likelier), by least squares over the
-    /// first third of the rise; p is 3/2, or that of the tip of an indenter.
+    /// first third of the rise; p is 3/2, that of the tip of an indenter, or 1 for a constant section.
     Hertz,
     /// Where the variance of the force right behind, over that right before, is largest.
     VarianceRatio,
@@ -56,14 +56,14 @@ pub struct TouchEstimate {
 /// The force over the travel of the first ramp.
 pub(super) struct Approach {
     /// Rising, m.
-    displacement: Vec<f64>,
+    pub(super) displacement: Vec<f64>,
     force: Vec<f64>,
     /// Force before the ramp, N.
     rest: Vec<f64>,
     /// Force without contact, its noise, and the rise above it, N.
     base: f64,
     noise: f64,
-    rise: f64,
+    pub(super) rise: f64,
     /// p of Hertz's law.
     power: f64,
 }
@@ -75,7 +75,7 @@ const BEYOND: f64 = 5.0;
 /// Share of the rise up to which curves are fitted.
 const FIRST: f64 = 0.3;
 /// Fewest samples that a curve is fitted to.
-const FEWEST: usize = 8;
+pub(super) const FEWEST: usize = 8;
 
 impl Approach {
     /// The samples `ramp` (its foot first), and the force in `rest` before them. `None` for too few, or without a rise.
@@ -121,7 +121,7 @@ impl Approach {
     }
 
     /// First sample beyond the noise for good, and where the force crosses the threshold before it.
-    fn threshold(&self) -> Option<(usize, f64)> {
+    pub(super) fn threshold(&self) -> Option<(usize, f64)> {
         let level = self.base + BEYOND * self.noise;
         let index = self.force.windows(3).position(|three| three.iter().all(|force| *force > level))?;
         let Some(before) = index.checked_sub(1) else {
@@ -136,13 +136,17 @@ impl Approach {
     fn start(&self) -> Option<(Vec<f64>, Vec<f64>)> {
         let (beyond, _) = self.threshold()?;
         let third = self.force.iter().position(|force| *force > self.base + FIRST * self.rise)?;
-        let end = third.max(beyond + FEWEST).min(self.force.len());
-        let every = end.div_ceil(MOST);
+        Some(self.up_to(third.max(beyond + FEWEST).min(self.force.len()), MOST))
+    }
+
+    /// Travel and force up to sample `end` of the ramp, at most `most`, with as much rest before it.
+    pub(super) fn up_to(&self, end: usize, most: usize) -> (Vec<f64>, Vec<f64>) {
+        let every = end.div_ceil(most);
         let ramp = (0..end).step_by(every);
         let rest = self.rest.iter().rev().step_by(every).take(end.div_ceil(every));
         let travel = rest.clone().map(|_| self.displacement[0]).chain(ramp.clone().map(|i| self.displacement[i]));
         let force = rest.copied().chain(ramp.map(|i| self.force[i]));
-        Some((travel.collect(), force.collect()))
+        (travel.collect(), force.collect())
     }
 
     fn two_lines(&self) -> Option<f64> {
@@ -166,7 +170,7 @@ impl Approach {
     }
 
     /// The touch with the smallest sum of squares: on a grid, then by golden section.
-    fn best(&self, travel: &[f64], square: &dyn Fn(f64) -> Option<f64>) -> Option<f64> {
+    pub(super) fn best(&self, travel: &[f64], square: &dyn Fn(f64) -> Option<f64>) -> Option<f64> {
         const GRID: u32 = 100;
         const SHARE: f64 = 0.381_966;
         let (low, high) = (travel[0], travel[travel.len() - 1]);
@@ -198,8 +202,8 @@ impl Approach {
     }
 }
 
-/// Sum of squared residuals of the least-squares combination of three columns of x, the last of which may be none.
-fn fitted(travel: &[f64], force: &[f64], columns: impl Fn(f64) -> [f64; 3]) -> Option<f64> {
+/// Residuals of the least-squares combination of three columns of x, the last of which may be none.
+pub(super) fn residuals(travel: &[f64], force: &[f64], columns: impl Fn(f64) -> [f64; 3]) -> Option<Vec<f64>> {
     let rows: Vec<[f64; 3]> = travel.iter().map(|x| columns(*x)).collect();
     let mut normal = [[0.0; 3]; 3];
     let mut right = [0.0; 3];
@@ -214,7 +218,12 @@ fn fitted(travel: &[f64], force: &[f64], columns: impl Fn(f64) -> [f64; 3]) -> O
         normal[2][2] = 1.0;
     }
     let [k, l, m] = solved(normal, right)?;
-    Some(rows.iter().zip(force).map(|([a, b, c], y)| (y - (a * k + b * l + c * m)).powi(2)).sum())
+    Some(rows.iter().zip(force).map(|([a, b, c], y)| y - (a * k + b * l + c * m)).collect())
+}
+
+/// Sum of squared residuals of the least-squares combination of such columns.
+fn fitted(travel: &[f64], force: &[f64], columns: impl Fn(f64) -> [f64; 3]) -> Option<f64> {
+    residuals(travel, force, columns).map(|residuals| dot(&residuals, &residuals))
 }
 
 #[cfg(test)]

@@ -23,6 +23,8 @@ pub(super) struct Touch {
     pub(super) misses: bool,
     /// Rise of the force in the ramp, N.
     pub(super) rise: f64,
+    /// The likeliest law by its place among those of the hold, with its d₀, ln X and F₀.
+    best: (usize, [f64; 3]),
 }
 
 /// A first ramp at constant speed, and the law of the hold behind it.
@@ -116,11 +118,12 @@ impl<'a> LoadingCurve<'a> {
     /// The mean over the laws, each weighted by how likely it makes ramp and hold together; a hold that leaves the exponent
     /// open adds the scatter of first touch over the laws to the error.
     pub(super) fn touch(&self, from: f64, travel: f64) -> Option<Touch> {
-        let pairs = self.laws.iter().map(|law| (self.fitted(law, self.starts(law, from, travel)), law));
-        let fits: Vec<(Curve, &HoldLaw)> = pairs.filter_map(|(curve, law)| Some((curve?, law))).collect();
-        let total = |fit: &(Curve, &HoldLaw)| fit.0.square + fit.1.fit.residual_square;
+        let pairs = self.laws.iter().enumerate();
+        let pairs = pairs.map(|(place, law)| (self.fitted(law, self.starts(law, from, travel)), place));
+        let fits: Vec<(Curve, usize)> = pairs.filter_map(|(curve, place)| Some((curve?, place))).collect();
+        let total = |fit: &(Curve, usize)| fit.0.square + self.laws[fit.1].fit.residual_square;
         let best = fits.iter().min_by(|a, b| total(a).total_cmp(&total(b)))?;
-        let samples = self.force.len() + best.1.fit.samples;
+        let samples = self.force.len() + self.laws[best.1].fit.samples;
         let variance = (total(best) / samples as f64).max(f64::MIN_POSITIVE);
         let weights: Vec<f64> = fits.iter().map(|fit| (0.5 * (total(best) - total(fit)) / variance).exp()).collect();
         let sum: f64 = weights.iter().sum();
@@ -129,7 +132,7 @@ impl<'a> LoadingCurve<'a> {
         };
         let displacement = average(&|curve| curve.parameters[0]);
         let square = average(&|curve| curve.error.powi(2) + (curve.parameters[0] - displacement).powi(2));
-        let by_hold = self.error_by_hold(&best.0, best.1);
+        let by_hold = self.error_by_hold(&best.0, &self.laws[best.1]);
         let left = (best.0.square / self.force.len() as f64).sqrt();
         Some(Touch {
             displacement,
@@ -138,7 +141,14 @@ impl<'a> LoadingCurve<'a> {
             noise: left.max(self.deviation),
             misses: left > MISSES * self.deviation.max(1e-9 * self.rise),
             rise: self.rise,
+            best: (best.1, best.0.parameters),
         })
+    }
+
+    /// The force of the likeliest curve of a touch at a displacement (m), N.
+    pub(super) fn force_of(&self, touch: &Touch, displacement: f64) -> f64 {
+        let (law, parameters) = &touch.best;
+        self.force_at(&self.laws[*law], parameters, displacement)
     }
 
     /// Standard error of d₀ that the errors of F_e and v bring in: √(gᵀ C g) with the slopes g of d₀ along the numbers of the

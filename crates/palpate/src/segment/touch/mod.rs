@@ -3,10 +3,12 @@
 //! | file | what |
 //! |---|---|
 //! | `contact_point.rs` | which rule holds, and what it gives |
+//! | `early_rise.rs` | where the first part of a ramp begins, whatever relaxes in it |
 //! | `estimators.rs` | first touch by rules that know no law |
 //! | `loading_curve.rs` | the force of a first ramp under the law, and where it begins |
 
 mod contact_point;
+mod early_rise;
 mod estimators;
 mod loading_curve;
 
