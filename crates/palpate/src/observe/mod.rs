@@ -20,7 +20,7 @@
 //! The jaw is at rest once it has stayed within its noise (five standard deviations, estimated by the observer, or 0.1 % of its travel) for
 //! as long as it would have taken at its last speed to move four times as far: some five ticks at 1 kHz; four times as long if it slowed down
 //! before, since a jaw that comes with a lag creeps in. If the force is constant and the jaw creeps, it is a force hold, and relaxation causes no
-//! slip. That only a controller can have held it shows once the jaw has gone so far that the force would have risen by 15 % of its largest value,
+//! slip once only a controller can have held it: that shows once the jaw has gone so far that the force would have risen by 15 % of its largest value,
 //! or after eight times the time of loading: the peak of a force whose jaw still comes is flat too. A force that falls by more than its noise, or
 //! 1.5 % of its range, or one and a half times what it came back from before, is held no more: if the jaw stands, the displacement is held, since it
 //! stands; as long as that is undecided, no time to slip is stated, and slip is warned of by the rate at which the force falls.

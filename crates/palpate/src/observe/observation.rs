@@ -43,7 +43,7 @@ impl Kept for Held {
 /// When the force has relaxed to the force of slip.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub enum SlipForecast {
-    /// Not known yet: no hold, too little of it, or a held force that has begun to fall.
+    /// Not known yet: no hold, too little of it, or a force that may be at its peak, or has begun to fall.
     Unknown,
     /// At the requested confidence. The force never reaches it in a force hold, or if the equilibrium force is above it.
     Known {

@@ -59,8 +59,10 @@ pub(super) struct Hold {
     pub(super) wanders: Option<(f64, f64)>,
     /// Since when it has been clearly below, s.
     falls_since: Option<f64>,
+    /// Whether only a controller can hold the force.
+    pub(super) is_borne: bool,
 }
-kept!(Hold: held, since, force, fit, correlation, crossing, creep, due, readings, wanders, falls_since);
+kept!(Hold: held, since, force, fit, correlation, crossing, creep, due, readings, wanders, falls_since, is_borne);
 
 impl Hold {
     fn new(held: Held, (since, force): (f64, f64)) -> Self {
@@ -75,9 +77,9 @@ impl Hold {
 
     /// The same with the other variable held since a time (s).
     fn change(&mut self, held: Held, since: f64) {
-        let wanders = self.wanders;
+        let (wanders, is_borne) = (self.wanders, self.is_borne);
         *self = Self::new(held, (since, self.force));
-        self.wanders = wanders.or(self.wanders);
+        (self.wanders, self.is_borne) = (wanders.or(self.wanders), is_borne);
     }
 
     /// Takes how far the force lies below its place, N.
@@ -288,7 +290,8 @@ impl Observer {
         } else if let Some(displacement) = displacement {
             self.observed.creep.push(time - self.observed.grip.start, displacement);
         }
-        let lags = self.observed.hold.is_none() && self.observed.jaw.slowed();
+        let is_free = self.observed.hold.as_ref().is_none_or(|hold| hold.held == Held::Force && !hold.is_borne);
+        let lags = is_free && self.observed.jaw.slowed();
         let patience = if lags { LAG * PATIENCE.0 } else { PATIENCE.0 };
         let jaw = match displacement {
             Some(displacement) => self.observed.jaw.feed(time, displacement, jaw_tolerance, patience),
@@ -327,49 +330,40 @@ impl Observer {
         }
         let reported = force_tolerance.is_some_and(|tolerance| self.observed.smooth.level.abs() > PLAIN * tolerance);
         self.settle(time);
-        let began = self.begin_or_end(jaw, grip, reported, reported && self.is_borne(time));
+        let began = self.begin_or_end(jaw, grip, reported);
         self.grip(jaw_tolerance, reported);
         began
-    }
-
-    /// Whether a force that is not held yet left its place: it rose, or fell farther than it wanders.
-    fn goes_on(&self) -> bool {
-        let (below, allowance) = (self.observed.grip.below(self.observed.smooth.level), self.allowance());
-        self.observed.grip.stands && (below < -allowance || below > FALLS.0 * allowance)
     }
 
     /// A force that fell from its place, and rests, has another: a controller was set to it, or overshot.
     fn settle(&mut self, time: f64) {
         let level = self.observed.smooth.level;
-        let Some(hold) = &self.observed.hold else {
-            if self.goes_on() {
-                self.observed.grip.go_on(time, level);
-                self.observed.creep.clear();
-                self.observed.creeps_at = level;
-            }
+        let Some(hold) = self.observed.hold.as_ref().filter(|hold| hold.wanders.is_some()) else {
             return;
         };
-        if hold.wanders.is_none() {
-            return;
-        }
         let (falls, since) = (self.falls(), hold.falls_since.unwrap_or(time));
-        let rests = falls && self.has_stood(since, time);
-        if rests {
+        let rests = falls && hold.is_borne && self.has_stood(since, time);
+        // A force that still rises is not held yet.
+        let rises = !hold.is_borne && self.observed.grip.below(level) < -self.allowance();
+        if rests || rises {
             self.observed.grip.settle(time, level);
+            self.observed.creep.clear();
         }
+        let is_borne = hold.is_borne || (!falls && self.is_borne(time));
         if let Some(hold) = &mut self.observed.hold {
+            hold.is_borne = is_borne;
             hold.wander(self.observed.grip.below(level));
             hold.falls_since = (falls && !rests).then_some(since);
         }
     }
 
-    /// `reported` is whether the force is large enough for its standing still to mean anything, `borne` whether it stood though the jaw moved on.
-    fn begin_or_end(&mut self, jaw: Change, grip: Change, reported: bool, borne: bool) -> bool {
+    /// `reported` is whether the force is large enough for its standing still to mean anything.
+    fn begin_or_end(&mut self, jaw: Change, grip: Change, reported: bool) -> bool {
         let jaw_stands = self.observed.displacement_observed && self.observed.jaw.stands;
         let stands = jaw_stands || (!self.observed.displacement_observed && self.observed.alone.stands && reported);
         // A controller that lets the force wander moves the jaw.
-        let gives_way = self.observed.hold.as_ref().is_some_and(|hold| hold.falls_since.is_some())
-            && self.observed.relaxes_at - self.observed.smooth.level > self.allowance();
+        let lets_go = self.observed.relaxes_at - self.observed.smooth.level > self.allowance();
+        let gives_way = |hold: &Hold| hold.falls_since.is_some() && (lets_go || !hold.is_borne);
         if let Some(hold) = &mut self.observed.hold {
             hold.readings = hold.readings.saturating_add(1);
             let goes_on = match hold.held {
@@ -385,7 +379,7 @@ impl Observer {
                 }
                 Held::Displacement => !matches!(jaw, Change::Left | Change::Crept),
                 // The force gives way, the jaw does not: since it stands, the displacement has been held.
-                Held::Force if jaw_stands && (gives_way || grip != Change::Same) => {
+                Held::Force if jaw_stands && (gives_way(hold) || grip != Change::Same) => {
                     hold.change(Held::Displacement, self.observed.jaw.start);
                     true
                 }
@@ -402,7 +396,11 @@ impl Observer {
         }
         self.observed.hold = if stands {
             Some(Hold::new(Held::Displacement, (self.observed.relaxes_from, self.observed.relaxes_at)))
-        } else if self.observed.displacement_observed && self.observed.jaw.slowed() && borne {
+        } else if self.observed.displacement_observed
+            && self.observed.grip.stands
+            && self.observed.jaw.slowed()
+            && reported
+        {
             Some(Hold::new(Held::Force, (self.observed.grip.start, self.observed.creeps_at)))
         } else {
             None
@@ -410,11 +408,8 @@ impl Observer {
         self.observed.hold.is_some()
     }
 
-    /// Whether a force that is not held yet stood for so long, or though the jaw went on so far, that only a controller can have held it.
+    /// Whether the force stood for so long, or though the jaw went on so far, that only a controller can have held it.
     fn is_borne(&self, time: f64) -> bool {
-        if self.observed.hold.is_some() || !self.observed.grip.stands {
-            return false;
-        }
         let [(least, most), (weakest, strongest)] = self.observed.reached;
         let creep = self.observed.creep.as_slice();
         let gone = creep.first().zip(creep.last()).map_or(0.0, |(first, last)| last.value - first.value);

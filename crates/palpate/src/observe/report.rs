@@ -50,8 +50,8 @@ impl Observer {
             stated.force = self.as_read(stated.force);
             if let Some(slip) = self.options.slip_force {
                 stated.time_to_slip = Some(match (hold.held, hold.crossing) {
-                    // Whether a force that has begun to fall is still held, or how it goes on, the jaw has yet to show.
-                    (Held::Force, _) if self.falls() => SlipForecast::Unknown,
+                    // Whether a force is held that may be at its peak, or has begun to fall, has yet to show.
+                    (Held::Force, _) if !hold.is_borne || self.falls() => SlipForecast::Unknown,
                     (Held::Force, _) => SlipForecast::NEVER,
                     (_, Some(crossing)) => crossing.observed(elapsed),
                     _ => SlipForecast::Unknown,

@@ -158,16 +158,10 @@ impl Stand {
         (time - since) * self.fastest
     }
 
-    /// The signal, which went from its place to `level`, may begin to stand there.
-    pub(in crate::observe) fn go_on(&mut self, time: f64, level: f64) {
-        let way = -self.below(level);
-        (self.speed, self.direction) = (Some(way.abs() / (time - self.middle)), way.signum());
-        self.begin(time, level);
-    }
-
     /// The signal stands on, at another place.
     pub(in crate::observe) fn settle(&mut self, time: f64, level: f64) {
-        (self.place, self.mean, self.middle, self.drifts_since) = (level, level, time, None);
+        (self.place, self.mean, self.count) = (level, level, 1.0);
+        (self.start, self.middle, self.drifts_since) = (time, time, None);
     }
 
     /// Whether a signal that came to a place may still be on the last tolerance of its way.
