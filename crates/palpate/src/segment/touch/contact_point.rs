@@ -68,13 +68,15 @@ impl ContactPoint {
         }
     }
 
-    /// Distance of first touch before (negative) or behind the median of the other rules, m; `None` for fewer than three.
+    /// Distance of what its rule alone finds before (negative) or behind the median of the other rules, m; `None` for fewer than three.
     #[must_use]
     pub fn apart(&self) -> Option<f64> {
         let method = self.method?;
-        let others = self.estimates.iter().filter(|estimate| estimate.method != method);
-        let mut others: Vec<f64> = others.map(|estimate| estimate.displacement).collect();
-        (others.len() >= 3).then(|| self.tare.displacement - median(&mut others))
+        let (own, others): (Vec<&TouchEstimate>, Vec<&TouchEstimate>) =
+            self.estimates.iter().partition(|estimate| estimate.method == method);
+        let mut others: Vec<f64> = others.iter().map(|estimate| estimate.displacement).collect();
+        let own = own.first()?.displacement;
+        (others.len() >= 3).then(|| own - median(&mut others))
     }
 }
 
@@ -223,12 +225,12 @@ fn automatic(
     let approach = Approach::of(displacement, force, 0..foot, foot..ramp.end, body);
     let early = approach.as_ref().and_then(|approach| EarlyRise::of(approach, body));
     let law = hold.and_then(|hold| LoadingCurve::of(record, displacement, ramp, hold, body));
-    let curve = law
-        .as_ref()
-        .and_then(|law| law.touch(from, travel).map(|touch| (law, touch)))
+    let within = |touch: &Touch| (from..displacement[ramp.end - 1]).contains(&touch.displacement);
+    let alone = law.as_ref().and_then(|law| Some((law, law.touch(from, travel).filter(within)?)));
+    let curve = alone
         .map(|(law, touch)| early.as_ref().map_or(touch, |early| early.with(touch, |d| law.force_of(&touch, d))))
-        .filter(|touch| (from..displacement[ramp.end - 1]).contains(&touch.displacement));
-    let estimates = estimates(approach.as_ref(), curve.as_ref());
+        .filter(within);
+    let estimates = estimates(approach.as_ref(), alone.map(|(_, touch)| touch).as_ref());
     let spread = spread(&estimates);
     // The curve of loading needs the hold behind it.
     let is_without_hold = choice == ContactChoice::Auto && segmentation.holds().next().is_none();
