@@ -55,13 +55,18 @@ pub enum Equilibrium {
     Table,
 }
 
+/// The latency law with its exponent estimated.
+const LATENCY: Law = Law::Latency {
+    exponent: palpate::laws::ExponentChoice::Free,
+};
+
 impl Default for Calibrate {
     fn default() -> Self {
         Self {
-            law: Law::Latency {
-                exponent: palpate::laws::ExponentChoice::Free,
-            },
+            law: LATENCY,
+            // It is none to itself.
             alternatives: vec![
+                LATENCY,
                 Law::StandardLinearSolid,
                 Law::Prony { terms: 2 },
                 Law::Prony { terms: 3 },

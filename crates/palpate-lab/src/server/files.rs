@@ -32,7 +32,7 @@ pub(super) async fn vocabulary() -> Json<Value> {
     };
     let Calibrate { law, alternatives, .. } = Calibrate::default();
     Json(json!({
-        "laws": std::iter::once(law).chain(alternatives).map(|law| law.to_string()).collect::<Vec<_>>(),
+        "laws": std::iter::once(law).chain(alternatives.into_iter().filter(|other| *other != law)).map(|law| law.to_string()).collect::<Vec<_>>(),
         "version": Software::this().release(),
         "quantities": Quantity::ALL.map(units),
         "shapes": shapes(),

@@ -341,7 +341,7 @@ shown! {
     ///     A test description in place of that of the record; one of them has to know the body: ``{"specimen": {"shape": "ball", "radius":
     ///     "35 mm"}}``.
     /// alternatives : sequence of str, optional
-    ///     Laws to hold against it on the same record; "standard-linear-solid", "prony:2", "prony:3" and "fung:2" if left out, none for
+    ///     Laws to hold against it on the same record; "latency", "standard-linear-solid", "prony:2", "prony:3" and "fung:2" if left out, none for
     ///     an empty list.
     /// equilibrium : str, optional
     ///     Law of the force once relaxation is over: "uniform-strain" (modulus x displacement/depth x contact area, equation (11)), "hertz", or

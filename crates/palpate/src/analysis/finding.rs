@@ -35,6 +35,8 @@ pub enum Finding {
     },
     /// The fitted equilibrium and its interval lie beyond zero, where the body would pull.
     EquilibriumBeyondZero {
+        /// Law that is to be used.
+        law: Law,
         /// Equilibrium over the value at the end of the hold.
         share: f64,
         /// Its interval.
@@ -171,6 +173,8 @@ pub enum Finding {
     Ruptured(Rupture),
     /// Residuals of neighbouring samples are correlated.
     ResidualsCorrelated {
+        /// Law that is to be used.
+        law: Law,
         /// Their correlation.
         correlation: f64,
         /// Equivalent number of independent samples.
@@ -178,6 +182,8 @@ pub enum Finding {
     },
     /// The residuals are of no kind of noise that is known.
     NoiseUnexplained {
+        /// Law that is to be used.
+        law: Law,
         /// The closest kind.
         noise: String,
         /// Probability that it leaves such residuals.
@@ -493,7 +499,7 @@ impl Finding {
         Self::ForceLags {
             rise: delay.rise_s,
             time_constant: delay.time_constant_s,
-            from: fit_start_s - delay.stop_s,
+            from: (fit_start_s - delay.stop_s).max(0.0),
         }
     }
 
@@ -543,7 +549,8 @@ impl Finding {
 
     /// That no noise model describes the residuals of a fit of the latency law.
     pub(crate) fn of_noise(fit: &Fit) -> Option<Self> {
-        refused(fit).map(|(noise, p_value)| Self::NoiseUnexplained { noise, p_value })
+        let law = fit.law;
+        refused(fit).map(|(noise, p_value)| Self::NoiseUnexplained { law, noise, p_value })
     }
 }
 

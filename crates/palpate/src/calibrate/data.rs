@@ -145,23 +145,21 @@ impl CalibrationData {
         let held: Vec<f64> =
             segmentation.holds().map(|hold| median(&mut displacement[hold.start..hold.end].to_vec())).collect();
         let segments = &segmentation.segments;
-        let delayed: Vec<Range<usize>> = (0..segments.len())
-            .filter_map(|index| {
-                let delay = force_delay(&record, segments, index)?;
-                findings.push(Finding::of_delay(&delay, record.time()[delay.settled]));
-                let ramp = ramps_before(segments, index).last()?;
-                Some(ramp.start..delay.settled)
-            })
-            .collect();
+        let delays = (0..segments.len()).filter_map(|index| force_delay(&record, segments, index));
+        let delay = delays.max_by(|a, b| a.time_constant_s.total_cmp(&b.time_constant_s));
+        let fades_s = delay.map(|delay| record.time()[delay.settled] - delay.stop_s);
+        findings.extend(delay.zip(fades_s).map(|(delay, fades)| Finding::of_delay(&delay, delay.stop_s + fades)));
         findings.extend(between_samples(&record, segments));
         let (times, forces) = (record.time(), record.force());
         let pressed = segmentation.holds().filter(|hold| hold.mode == Some(HoldMode::ForceHeld));
         let force_held = pressed.map(|hold| (times[hold.start], times[hold.end - 1])).collect();
         let motion = measured.motion.clone();
         // Behind a filter the force of a ramp is that of an earlier moment.
-        let (times, forces) = (0..times.len())
-            .filter(|i| !delayed.iter().any(|rows| rows.contains(i)))
-            .map(|i| (times[i], forces[i]))
+        let ramps = segments.iter().filter(|segment| segment.is_ramp());
+        let delayed: Vec<Range<f64>> = fades_s
+            .map_or_else(Vec::new, |fades| ramps.map(|ramp| times[ramp.start]..times[ramp.end - 1] + fades).collect());
+        let (times, forces) = (times.iter().zip(forces))
+            .filter(|(time, _)| !delayed.iter().any(|span| span.contains(*time)))
             .unzip();
         Ok(Self {
             measured: Some(measured),

@@ -107,7 +107,7 @@ fn an_equilibrium_at_which_a_pressed_body_would_pull_is_reported() {
         analysis.holds.iter().map(of_hold).collect::<Vec<_>>()
     };
     for finding in codes(-0.03) {
-        let Some(Finding::EquilibriumBeyondZero { share, interval }) = finding else {
+        let Some(Finding::EquilibriumBeyondZero { share, interval, .. }) = finding else {
             panic!("no finding")
         };
         // The force at the end is −0.03 + (1 + 2 · 5 · 20)^−½ = 0.0405.

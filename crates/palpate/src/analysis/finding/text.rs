@@ -72,10 +72,10 @@ impl Finding {
                 "this term rests on the first samples alone: a spike of the load cell or a jaw that swings looks like it, and its amplitude and time are not those of the body",
                 "begin the fit later (hold_start), or sample faster at the start of holds",
             ),
-            Self::EquilibriumBeyondZero { share, interval } => caution(
+            Self::EquilibriumBeyondZero { law, share, interval } => caution(
                 "equilibrium_beyond_zero",
                 format!(
-                    "by the latency law, the equilibrium is {} of the force at the end of the hold, below zero",
+                    "by the law {law}, the equilibrium is {} of the force at the end of the hold, below zero",
                     with_interval(*share, *interval)
                 ),
                 "a body that is only pressed does not pull at rest: the law falls too far beyond the end of the hold, or the zero of the force has shifted",
@@ -240,18 +240,22 @@ impl Finding {
                 "data after the rupture are not fitted: a broken body is a different specimen",
                 "squeeze less; if nothing broke, give the limits of the hold ([[phases.hold]] in the test description)",
             ),
-            Self::ResidualsCorrelated { correlation, independent } => caution(
+            Self::ResidualsCorrelated {
+                law,
+                correlation,
+                independent,
+            } => caution(
                 "residuals_correlated",
                 format!(
-                    "neighbouring residuals of the latency law have a correlation of {}; the samples are equivalent to {independent:.0} independent ones",
+                    "neighbouring residuals of the law {law} have a correlation of {}; the samples are equivalent to {independent:.0} independent ones",
                     significant(*correlation, 2)
                 ),
                 "the law misses part of the shape, or the noise is slow (drift, quantisation); the intervals account for the correlation",
-                "inspect the residuals in the report; try a free exponent or a later start of the hold",
+                "inspect the residuals in the report; try another law, a free exponent or a later start of the hold",
             ),
-            Self::NoiseUnexplained { noise, p_value } => caution(
+            Self::NoiseUnexplained { law, noise, p_value } => caution(
                 "noise_unexplained",
-                no_noise_model("the latency law", noise, *p_value),
+                no_noise_model(&law.to_string(), noise, *p_value),
                 NOISE_UNEXPLAINED,
                 "inspect the residuals in the report; compare the intervals with those by bootstrap",
             ),
@@ -286,9 +290,9 @@ impl Finding {
             Self::RampBetweenSamples { holds, interval } => caution(
                 "ramp_between_samples",
                 format!(
-                    "the jaw goes most of its way to {} between two samples, {} s apart: when it started and stopped is unknown by as much",
-                    listed_holds(holds),
-                    significant(*interval, 3)
+                    "fewer than two samples, {} s apart, show the jaw on its way to {}: when it started and stopped is unknown by as much",
+                    significant(*interval, 3),
+                    listed_holds(holds)
                 ),
                 "the ramp is drawn straight between the samples; rate coefficient, exponent and layer thickness depend on it, beyond their intervals",
                 "sample faster, or press more slowly; laws of the holds do not depend on the ramps",
@@ -301,7 +305,7 @@ impl Finding {
                 "force_lags",
                 format!(
                     "the force goes on for {} s after the jaw has stopped, as behind a filter with a time constant of {} s or more; laws are \
-                     fitted to it from {} s after the stop on",
+                     fitted to what comes {} s and more after the stop",
                     significant(*rise, 2),
                     significant(*time_constant, 2),
                     significant(*from, 2)

@@ -395,6 +395,7 @@ fn judge_fit(hold: &mut HoldAnalysis, fit: &Fit) {
             && end > 0.0
         {
             hold.findings.push(Finding::EquilibriumBeyondZero {
+                law: fit.law,
                 share: estimate.value / end,
                 interval: (low / end, high / end),
             });
@@ -406,6 +407,7 @@ fn judge_fit(hold: &mut HoldAnalysis, fit: &Fit) {
     }
     if fit.residual_correlation > 0.5 && fit.rmse > 1e-9 * (start - end).abs() {
         hold.findings.push(Finding::ResidualsCorrelated {
+            law: fit.law,
             correlation: fit.residual_correlation,
             independent: fit.effective_samples(),
         });

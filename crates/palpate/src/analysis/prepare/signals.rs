@@ -5,7 +5,8 @@ use crate::analysis::{AnalysisOptions, Corrected, Finding, Prepared};
 use crate::contact::Specimen;
 use crate::record::{Astray, Column, Correction, Record, SignalReport, Values};
 use crate::segment::{
-    ContactChoice, ContactPoint, HoldMode, Phase, Segment, SegmentOptions, Segmentation, find_contact_of, find_phases,
+    ContactChoice, ContactPoint, HoldMode, Phase, Segment, SegmentOptions, Segmentation, TouchMethod, find_contact_of,
+    find_phases,
 };
 use crate::statistics::{mean, median, noise};
 
@@ -222,9 +223,10 @@ fn touch_findings(record: &Record, contact: &ContactPoint, requested: ContactCho
         let between = (without - contact.tare.displacement, with - contact.tare.displacement);
         findings.push(Finding::TouchBetweenSamples { between, squeeze });
     }
+    let by_curve = contact.method == Some(TouchMethod::LoadingCurve);
     if let Some(apart) = contact
         .apart()
-        .filter(|apart| requested == ContactChoice::Auto && apart.abs() > APART * squeeze && misses(apart))
+        .filter(|apart| requested == ContactChoice::Auto && by_curve && apart.abs() > APART * squeeze && misses(apart))
     {
         findings.push(Finding::TouchApart { apart, squeeze });
     }

@@ -115,15 +115,23 @@ fn strays(values: &[f64], run: &Range<usize>, least: f64) -> bool {
     goes_on || run.len() == 1 && meet(before, after, ALIKE) && !is_tip(values, run.start, 0.5 * nearest)
 }
 
-/// Whether row `i` goes no farther, by `least`, than the line through the two rows before it or the two after: the corner of a triangle of few
-/// samples, or the end of a ramp from which a body relaxes within a sample to where the ramp was a sample before.
+/// Whether row `i` is no farther than `least` from the lines through the two rows before and the two after, the corner of a triangle of few samples;
+/// or no farther on than the line of the ramp that leads to it, the end of one from which a body relaxes within a sample to where the ramp was a sample
+/// before.
 fn is_tip(values: &[f64], i: usize, least: f64) -> bool {
-    let side = (values[i] - values[i - 1]).signum();
-    let leads = |next: usize, far: Option<usize>| {
-        let far = far.and_then(|far| values.get(far));
-        far.is_some_and(|far| side * (values[i] - (2.0 * values[next] - far)) < least)
+    let beyond = |next: usize, far: Option<usize>| {
+        let far = far.and_then(|far| values.get(far))?;
+        Some(values[i] - (2.0 * values[next] - far))
     };
-    leads(i - 1, i.checked_sub(2)) || leads(i + 1, Some(i + 2))
+    let (before, after) = (beyond(i - 1, i.checked_sub(2)), beyond(i + 1, Some(i + 2)));
+    let is_corner = before.zip(after).is_some_and(|(before, after)| before.abs().max(after.abs()) < least);
+    let rows = i.checked_sub(3).map(|first| [values[first], values[first + 1], values[first + 2]]);
+    let side = (values[i] - values[i - 1]).signum();
+    let is_end = rows.zip(before).is_some_and(|([a, b, c], before)| {
+        let is_ramp = side * (c - b) > least && (a + c - 2.0 * b).abs() < CALM * (c - b).abs();
+        is_ramp && side * before < least
+    });
+    is_corner || is_end
 }
 
 /// Rows, few of all, alike where they are successive, and tens of times larger than nearly all others: what a load cell shows beyond its range, or a

@@ -22,6 +22,8 @@ const CHANGE_LEFT: f64 = 1e-3;
 const SWINGS: usize = 8;
 /// Share of what the force would rise at the rate of the ramp that a filter leaves at most; e^−x falls behind a line by half at x = 1.6.
 const AT_ONCE: f64 = 0.7;
+/// Rate after the stop, over that of the ramp, that a filter does not reach.
+const LEAP: f64 = 1.5;
 /// Share of a hold that a delay takes at most.
 const MOST: f64 = 0.25;
 
@@ -60,14 +62,20 @@ pub(crate) fn force_delay(record: &Record, segments: &[Segment], index: usize) -
     }
     let last = last(time, ramp);
     let travels = slope(jaw, force, last.clone()).unwrap_or(0.0);
-    let level = median(&mut jaw[hold.start..hold.end].to_vec());
-    let still = sign * travels * (level - jaw[stop]);
+    // A jaw that overshoots or drifts on presses by itself.
+    let farthest = jaw[stop..=stop + at].iter().map(|place| sign * (place - jaw[stop])).fold(0.0, f64::max);
+    let still = travels * farthest;
     let way = (force[ramp.end - 1] - force[ramp.start]).abs();
     if signed[at] - signed[0] < still.max(0.0) + turn.max(MATTERS * way) {
         return None;
     }
     let rises = sign * slope(time, force, last)?;
     let rise_s = time[stop + at] - time[stop];
+    // Behind a filter the force goes on no faster than in the ramp; rows that stray leap.
+    let leaps = |i: &usize| signed[i + 1] - signed[*i] > LEAP * rises * (time[stop + i + 1] - time[stop + i]) + turn;
+    if (0..at).any(|i| leaps(&i)) {
+        return None;
+    }
     let relaxes = -sign * slope(time, force, stop + 2 * at..(stop + 3 * at + 1).max(stop + 2 * at + 3))?;
     if !(rises > 0.0 && relaxes > 0.0) {
         return None;

@@ -46,7 +46,7 @@ pub struct ContactPoint {
     /// The rule that found it; `None` where it was given, or is the foot of the ramp.
     pub method: Option<TouchMethod>,
     /// Displacements (m) of the last sample without a force and the first that carries one, where the ramp has too few samples for a curve:
-    /// first touch lies between them, and that is its error.
+    /// first touch lies between them, and its error follows from how far they are apart.
     #[serde(default)]
     pub between: Option<(f64, f64)>,
     /// Estimates of all rules that find first touch; empty where first touch was given.

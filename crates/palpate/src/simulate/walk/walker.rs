@@ -119,6 +119,9 @@ impl<'a, L: Layer> Walker<'a, L> {
             }
             self.contact = after(&stretch, event, self.model, &mut self.work)?;
             start = stretch.end;
+            // First touch of a jaw that begins off the body is no return.
+            let returns = |event: &ContactEvent| event.kind == ContactEventKind::Lost || !self.events.is_empty();
+            let event = event.filter(returns);
             self.events.extend(event);
             if reached.is_some() {
                 return Ok(reached);

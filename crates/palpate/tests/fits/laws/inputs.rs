@@ -156,6 +156,24 @@ fn columns() -> impl Strategy<Value = [Vec<f64>; 3]> {
         })
 }
 
+/// Values whose squares run out of doubles left a search with bounds that are no numbers, and it panicked.
+#[test]
+fn values_whose_squares_overflow_make_no_fit_panic() {
+    let times = [0.001, 1.09, 2.7, 4.1, 6.6, 7.5, 9.7, 9.701, 12.4, 12.9, 14.9];
+    let values = [1.9e167, 0.0, -7.7e103, 0.0, -5.0, 0.0, -5.6, 8.5, 0.0, -6.7, 6.7];
+    for law in LAWS {
+        for loss in [Loss::Squares, Loss::Huber, Loss::Tukey] {
+            let options = LawOptions {
+                loss,
+                ..LawOptions::default()
+            };
+            if let Ok(fit) = fit_law(&Samples::new(&times, &values), law.parse().unwrap(), &options) {
+                assert!(fit.termination != Termination::Converged || is_valid(&fit), "{fit:?}");
+            }
+        }
+    }
+}
+
 proptest! {
     #![proptest_config(ProptestConfig { cases: 400, failure_persistence: None, ..ProptestConfig::default() })]
 

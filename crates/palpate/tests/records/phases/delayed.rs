@@ -98,6 +98,25 @@ fn a_calibration_leaves_out_what_a_filter_delays() {
     assert!(low < 5.0 && 5.0 < high && high - low < 0.8, "{low} {high}");
 }
 
+/// A jaw that overshoots by 1 % and creeps back presses by itself: no filter.
+#[test]
+fn a_jaw_that_overshoots_is_no_filter() {
+    let mut random = Rng::new(2);
+    let time: Vec<f64> = (0..6000).map(|i| 0.01 * f64::from(i)).collect();
+    let jaw: Vec<f64> = time
+        .iter()
+        .map(|t| {
+            let since = (t - STOP).max(0.0) / 0.3;
+            1e-3 * ((t - 1.0) / 2.0).clamp(0.0, 1.0) * (1.0 + 0.01 * since * (1.0 - since).exp())
+        })
+        .collect();
+    let relaxes = |t: f64| 1.0 + 0.1 * (-(t - STOP).max(0.0) / 20.0).exp();
+    let force = time.iter().zip(&jaw).map(|(t, jaw)| 45e3 * jaw * relaxes(*t) + 0.005 * random.normal()).collect();
+    let jaw = jaw.iter().map(|jaw| jaw + 2e-7 * random.normal()).collect();
+    let analysis = analyze(&Record::new(time, Some(jaw), force).unwrap(), &AnalysisOptions::default()).unwrap();
+    assert_eq!(lag(&analysis), None, "{:?}", analysis.holds[0].findings);
+}
+
 /// A force without a filter, or of a late clock, turns at once.
 #[test]
 fn a_late_clock_is_no_filter() {

@@ -247,7 +247,8 @@ fn inside(
         let mut leaving = false;
         for (&i, &by) in free.iter().zip(&change) {
             let (low, high) = shapes.bounds(i);
-            let allowed = by.clamp(-LONGEST, LONGEST).clamp(low - theta[i], high - theta[i]);
+            // Of numbers that ran out no bound is one.
+            let allowed = by.clamp(-LONGEST, LONGEST).max(low - theta[i]).min(high - theta[i]);
             if allowed != by {
                 step[i] = Some(allowed);
                 leaving = true;
