@@ -251,6 +251,7 @@ mod tests {
     fn many_different_texts_are_counted() {
         let findings: Vec<RecordFinding> = (0..12)
             .map(|i| RecordFinding::EquilibriumExtrapolated {
+                law: palpate::laws::Law::StandardLinearSolid,
                 beyond: 0.2 + 0.05 * f64::from(i),
             })
             .collect();

@@ -53,7 +53,10 @@ pub(super) fn start_behind(strays: &[Range<usize>], segments: &mut [Segment]) {
     let answers = |segment: &&mut Segment| segment.phase == Phase::Hold && segment.mode != Some(HoldMode::ForceHeld);
     for hold in segments.iter_mut().filter(answers) {
         for run in strays {
-            if run.end > hold.fit_start && run.start < hold.fit_start + DECIDES && run.end + FEWEST < hold.end {
+            // The line on which rows that stray were put looks like a delay.
+            let is_no_delay = hold.fit_start_rule == Some(FitStartRule::DelayFaded) && run.end > hold.start;
+            let decides = run.end > hold.fit_start || is_no_delay;
+            if decides && run.start < hold.fit_start + DECIDES && run.end + FEWEST < hold.end {
                 (hold.fit_start, hold.fit_start_rule) = (run.end, Some(FitStartRule::BehindStrays));
             }
         }
