@@ -102,7 +102,7 @@ const BASELINE: usize = 5;
 /// Standard deviations beyond which a force is no noise.
 const BEYOND: f64 = 5.0;
 /// Samples of a ramp with a force from which a curve tells where it begins.
-const CARRYING: usize = 6;
+const CARRYING: usize = 4;
 /// Share of the largest force that its noise is taken for at least.
 const LEAST: f64 = 5e-4;
 
@@ -115,7 +115,7 @@ const LEAST: f64 = 5e-4;
 /// Only if that lies clearly behind the foot of the ramp (3 standard errors and 2 % of the travel), and the force is flat
 /// up to there, has the jaw travelled through air. Otherwise first touch is the foot of the ramp, and the zero of the force
 /// is its median at rest before it, or nothing is subtracted from a force without such a rest.
-/// In a ramp with fewer than six samples that carry a force no curve begins anywhere: first touch lies between two samples.
+/// In a ramp with fewer than four samples that carry a force no curve begins anywhere: first touch lies between two samples.
 /// In a record without a hold, Hertz's rule decides.
 ///
 /// A first touch that is given has a zero of the force too: its median over the first half of the way there, if the record has at least five
