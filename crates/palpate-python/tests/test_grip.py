@@ -302,3 +302,27 @@ def test_a_quantity_of_another_unit_is_refused_by_the_name_of_the_argument(mater
     torque: Any = UNITS.Quantity(1.0, "m")
     with pytest.raises(palpate.OptionError, match="^expected a quantity in N m, found one in m"):
         material.grip(mass_kg=0.3, friction=0.6, torque_n_m=torque)
+
+
+def test_a_law_that_the_record_refutes_is_stated(material: palpate.Material) -> None:
+    assert material.misfit is None
+    step, terms = 0.1, ((0.5, 0.8), (0.4, 15.0))
+    time = np.arange(0.0, 60.0, step)
+    squeeze = 4e-3 * np.clip(time, 0.0, 1.0)
+    # Two exponentials beside an equilibrium of 200 kPa, on 100 mm² and 20 mm.
+    excess = np.zeros((2, time.size))
+    for i in range(1, time.size):
+        for row, (overshoot, tau) in zip(excess, terms, strict=True):
+            keeps = math.exp(-step / tau)
+            row[i] = keeps * row[i - 1] + overshoot * (squeeze[i] - squeeze[i - 1]) / step * tau * (1 - keeps)
+    noise = 5e-3 * np.random.default_rng(3).normal(size=time.size)
+    record = palpate.Record.from_arrays(time_s=time, displacement_m=squeeze, force_n=2e5 * 1e-4 / 20e-3 * (squeeze + excess.sum(axis=0)) + noise)
+    body = {"specimen": {"shape": "block", "area": "100 mm²", "length": "20 mm"}, "contact": {"touch": "as recorded", "separation": True}}
+    refuted = record.calibrate(test=body, alternatives=["prony:2"]).material
+    assert refuted.misfit is not None
+    assert refuted.misfit.startswith("The record refutes this law: prony:2")
+    with pytest.warns(palpate.PalpateWarning, match="The record refutes this law: prony:2"):
+        grip = refuted.grip(mass_kg=0.1, friction=0.6, squeeze_m=3e-3, hold_s=10.0)
+    assert grip.misfit == refuted.misfit
+    assert "by a law that the record refutes" in str(grip)
+    assert record.calibrate(test=body, law="prony:2", alternatives=["standard-linear-solid"]).material.misfit is None
