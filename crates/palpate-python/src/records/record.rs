@@ -419,7 +419,7 @@ shown! {
         let alternatives = alternatives.map_or(Ok(usual.alternatives), other_laws)?;
         let job = Calibrate {
             law,
-            alternatives: alternatives.into_iter().filter(|alternative| *alternative != law).collect(),
+            alternatives,
             equilibrium: equilibrium
                 .map(|name| choice("equilibrium", &["uniform-strain", "hertz", "table"], name))
                 .transpose()?,
