@@ -318,11 +318,11 @@ def test_a_law_that_the_record_refutes_is_stated(material: palpate.Material) -> 
     noise = 5e-3 * np.random.default_rng(3).normal(size=time.size)
     record = palpate.Record.from_arrays(time_s=time, displacement_m=squeeze, force_n=2e5 * 1e-4 / 20e-3 * (squeeze + excess.sum(axis=0)) + noise)
     body = {"specimen": {"shape": "block", "area": "100 mm²", "length": "20 mm"}, "contact": {"touch": "as recorded", "separation": True}}
-    refuted = record.calibrate(test=body, alternatives=["prony:2"]).material
+    refuted = record.calibrate(law="standard-linear-solid", test=body, alternatives=["prony:2"]).material
     assert refuted.misfit is not None
     assert refuted.misfit.startswith("The record refutes this law: prony:2")
     with pytest.warns(palpate.PalpateWarning, match="The record refutes this law: prony:2"):
         grip = refuted.grip(mass_kg=0.1, friction=0.6, squeeze_m=3e-3, hold_s=10.0)
     assert grip.misfit == refuted.misfit
-    assert "by a law that the record refutes" in str(grip)
+    assert "by a law that the record refutes" in " ".join(str(grip).split())
     assert record.calibrate(test=body, law="prony:2", alternatives=["standard-linear-solid"]).material.misfit is None
