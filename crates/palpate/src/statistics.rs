@@ -113,6 +113,13 @@ pub(crate) fn mean(values: &[f64]) -> f64 {
     values.iter().sum::<f64>() / values.len() as f64
 }
 
+/// The slope of the least-squares line through points; not finite where all have one x.
+pub(crate) fn slope(x: &[f64], y: &[f64]) -> f64 {
+    let (middle, level) = (mean(x), mean(y));
+    let square: f64 = x.iter().map(|x| (x - middle).powi(2)).sum();
+    x.iter().zip(y).map(|(x, y)| (x - middle) * (y - level)).sum::<f64>() / square
+}
+
 /// Root of the mean square of measured less simulated.
 pub(crate) fn rms(measured: &[f64], simulated: &[f64]) -> f64 {
     let square: f64 = measured.iter().zip(simulated).map(|(m, s)| (m - s).powi(2)).sum();

@@ -4,7 +4,7 @@ use crate::analysis::Finding;
 use crate::fit::{Assessed, Scale};
 use crate::record::Record;
 use crate::segment::{After, HoldMode, Phase, Segment, Segmentation, free_samples};
-use crate::statistics::{mean, noise};
+use crate::statistics::{self, mean, noise};
 
 /// Fewest samples of a rest that tell a drift from noise.
 const FEWEST: usize = 30;
@@ -71,8 +71,7 @@ fn relaxation(force: &[f64], drift: f64) -> Option<f64> {
 fn slope(time: &[f64], force: &[f64]) -> Option<(f64, f64)> {
     let (middle, level) = (mean(time), mean(force));
     let from_middle: Vec<f64> = time.iter().map(|t| t - middle).collect();
-    let square: f64 = from_middle.iter().map(|t| t * t).sum();
-    let slope = from_middle.iter().zip(force).map(|(t, force)| t * (force - level)).sum::<f64>() / square;
+    let slope = statistics::slope(time, force);
     let left = from_middle.iter().zip(force).map(|(t, force)| force - level - slope * t).collect();
     let columns = vec![vec![1.0; time.len()], from_middle];
     let line = Assessed::of_columns(columns, (force, left), SURE).ok()?;

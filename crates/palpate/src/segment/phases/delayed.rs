@@ -3,10 +3,9 @@
 use std::ops::Range;
 
 use super::turning::extremes;
-use crate::optimise::fit_linear;
 use crate::record::Record;
 use crate::segment::{After, HoldMode, Segment, ramps_before};
-use crate::statistics::{mean, median, noise, quantum, range};
+use crate::statistics::{median, noise, quantum, range, slope};
 
 /// How far the force rises beyond what the jaw still travels, in standard deviations of its noise, and as a share of the ramp.
 const RISES: f64 = 6.0;
@@ -61,22 +60,24 @@ pub(crate) fn force_delay(record: &Record, segments: &[Segment], index: usize) -
         return None;
     }
     let last = last(time, ramp);
-    let travels = slope(jaw, force, last.clone()).unwrap_or(0.0);
+    let travels = slope(&jaw[last.clone()], &force[last.clone()]);
     // A jaw that overshoots or drifts on presses by itself.
     let farthest = jaw[stop..=stop + at].iter().map(|place| sign * (place - jaw[stop])).fold(0.0, f64::max);
-    let still = travels * farthest;
+    // A line through one place of the jaw has no slope.
+    let still = if travels.is_finite() { travels * farthest } else { 0.0 };
     let way = (force[ramp.end - 1] - force[ramp.start]).abs();
     if signed[at] - signed[0] < still.max(0.0) + turn.max(MATTERS * way) {
         return None;
     }
-    let rises = sign * slope(time, force, last)?;
+    let rises = sign * slope(&time[last.clone()], &force[last]);
     let rise_s = time[stop + at] - time[stop];
     // Behind a filter the force goes on no faster than in the ramp; rows that stray leap.
     let leaps = |i: &usize| signed[i + 1] - signed[*i] > LEAP * rises * (time[stop + i + 1] - time[stop + i]) + turn;
     if (0..at).any(|i| leaps(&i)) {
         return None;
     }
-    let relaxes = -sign * slope(time, force, stop + 2 * at..(stop + 3 * at + 1).max(stop + 2 * at + 3))?;
+    let behind = stop + 2 * at..stop + 3 * at + 1;
+    let relaxes = -sign * slope(&time[behind.clone()], &force[behind]);
     if !(rises > 0.0 && relaxes > 0.0) {
         return None;
     }
@@ -114,11 +115,4 @@ fn last(time: &[f64], ramp: &Segment) -> Range<usize> {
     let from = time[ramp.end - 1] - LAST * (time[ramp.end - 1] - time[ramp.start]);
     let first = time.partition_point(|t| *t < from).min(ramp.end.saturating_sub(3)).max(ramp.start);
     first..ramp.end
-}
-
-/// The slope of a line through samples, by least squares.
-fn slope(x: &[f64], y: &[f64], samples: Range<usize>) -> Option<f64> {
-    let centre = mean(&x[samples.clone()]);
-    let points = samples.map(|i| ([1.0, x[i] - centre], y[i], 1.0));
-    Some(fit_linear(points, 0.0)?.factors[1]).filter(|slope| slope.is_finite())
 }

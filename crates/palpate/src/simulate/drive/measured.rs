@@ -192,18 +192,7 @@ impl<'a> Sums<'a> {
     /// between two samples leaves two knots or three.
     fn with_single_corners(&self, knots: &mut Vec<f64>, tolerance: f64) {
         let variance = self.variance(knots, tolerance);
-        let mut at = 1;
-        while at + 2 < knots.len() {
-            let together = (2..=TOGETHER.min(knots.len() - 1 - at)).rev();
-            let single = together
-                .filter_map(|count| Some((count, self.single_corner(&knots[at - 1..=at + count], variance)?)))
-                .next();
-            if let Some((count, corner)) = single {
-                knots[at] = corner;
-                knots.drain(at + 1..at + count);
-            }
-            at += 1;
-        }
+        replace(knots, |together| self.single_corner(together, variance).map(|corner| [corner]));
     }
 
     /// The corner that stands for all of these knots but the first and the last.
@@ -231,17 +220,7 @@ impl<'a> Sums<'a> {
 
     /// The corners of ramps of a few samples between two lines: where the line of these samples meets both.
     fn with_short_ramps(&self, knots: &mut Vec<f64>, tolerance: f64) {
-        let mut at = 1;
-        while at + 2 < knots.len() {
-            let together = (2..=TOGETHER.min(knots.len() - 1 - at)).rev();
-            let ramp = together
-                .filter_map(|count| Some((count, self.short_ramp(&knots[at - 1..=at + count], tolerance)?)))
-                .next();
-            if let Some((count, corners)) = ramp {
-                knots.splice(at..at + count, corners);
-            }
-            at += 1;
-        }
+        replace(knots, |together| self.short_ramp(together, tolerance));
     }
 
     /// The two corners that stand for all of these knots but the first and the last.
@@ -315,6 +294,19 @@ impl<'a> Sums<'a> {
                 knots[at] = time;
             }
         }
+    }
+}
+
+/// Puts the corners of knots that lie together, with one knot before them and one behind, in their place: of as many together as have any.
+fn replace<const N: usize>(knots: &mut Vec<f64>, corners: impl Fn(&[f64]) -> Option<[f64; N]>) {
+    let mut at = 1;
+    while at + 2 < knots.len() {
+        let mut together = (2..=TOGETHER.min(knots.len() - 1 - at)).rev();
+        let found = together.find_map(|count| Some((count, corners(&knots[at - 1..=at + count])?)));
+        if let Some((count, corners)) = found {
+            knots.splice(at..at + count, corners);
+        }
+        at += 1;
     }
 }
 
