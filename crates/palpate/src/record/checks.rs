@@ -108,6 +108,16 @@ pub enum RecordError {
         /// Length of the record, s.
         duration: f64,
     },
+    /// A filter that no record of this length shows.
+    #[error(
+        "the time constant of the filter of the force must be above 0 and below the {lasts} s of the record, found {found} s"
+    )]
+    TimeConstant {
+        /// The time constant, s.
+        found: f64,
+        /// Length of the record, s.
+        lasts: f64,
+    },
     /// A force that the table of a machine's compliance does not reach.
     #[error("the force must lie within the table of compliance, {low} to {high} N, found {found} N in row {row}")]
     OutsideTable {
@@ -217,6 +227,7 @@ impl RecordError {
                 "if the clock restarts, the file holds several tests: name each in a column test_id, or split it there; otherwise check the time column"
             }
             Self::Rate { .. } => "resample at a rate between about one sample per second and the rate of the record",
+            Self::TimeConstant { .. } => "check its unit; a corner frequency f is a time constant of 1/(2π f)",
             Self::OutsideTable { .. } => {
                 "measure the compliance over all forces of the test, tare the force, or give a constant compliance"
             }

@@ -174,6 +174,11 @@ pub enum Correction {
         /// Rows at the ends for which no force is left.
         left_out: usize,
     },
+    /// What a filter of first order in the channel of the force took away was restored.
+    FilterRemoved {
+        /// Its time constant, s.
+        time_constant: f64,
+    },
     /// A second record of the same test was put behind the first.
     Continued {
         /// When the second begins, s, as the record counts time.
@@ -313,6 +318,10 @@ impl fmt::Display for Correction {
             Self::SkewRemoved { skew, left_out, .. } => {
                 let (moved, left_out) = (significant(1e3 * skew, 4), counted(*left_out, "row"));
                 write!(f, "force shifted by {moved} ms towards earlier times, {left_out} left out")
+            }
+            Self::FilterRemoved { time_constant } => {
+                let time_constant = significant(*time_constant, 4);
+                write!(f, "force restored from behind a filter with a time constant of {time_constant} s")
             }
             Self::Resampled {
                 rate,

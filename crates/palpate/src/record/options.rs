@@ -23,6 +23,8 @@ pub enum SkewChoice {
 pub struct CorrectionOptions {
     /// Stamps of the force.
     pub skew: SkewChoice,
+    /// Time constant (s) of a filter of first order in the channel of the force.
+    pub force_filter: Option<f64>,
     /// Samples a second, Hz.
     pub resample: Option<f64>,
     /// The force without contact.

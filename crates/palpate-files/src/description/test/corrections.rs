@@ -1,12 +1,14 @@
 //! The tables `[clock]`, `[force]` and `[machine]` of a test: corrections that are made only on request.
 
+use std::f64::consts::TAU;
+
 use palpate::{
     record::{Baseline, Compliance, ComplianceTable, CorrectionOptions, SkewChoice},
     units::{self, Dimension},
 };
 
 use super::tables::{BaselineName, ClocksTable, ForceTable, MachineTable};
-use crate::description::text::{error::DescriptionError, source::Source};
+use crate::description::text::{error::DescriptionError, quantity::QuantityText, source::Source};
 
 const SKEW: &str = "\"report\", \"auto\" or a time such as \"35 ms\"";
 
@@ -27,6 +29,7 @@ pub(super) fn checked(
         return Err(source.unused("force.baseline_window", reason, "set baseline = \"constant\" or \"sloped\""));
     }
     let skew = clock.skew.as_deref().map_or(Ok(SkewChoice::Report), |text| skew(source, text))?;
+    let force_filter = force.filter.as_ref().map(|text| filter(source, text)).transpose()?;
     let resample = source.positive_if("clock.resample", clock.resample.as_ref(), Dimension::Frequency)?;
     let key = "force.baseline_window";
     let window = force.baseline_window.as_slice();
@@ -38,6 +41,7 @@ pub(super) fn checked(
     }
     Ok(CorrectionOptions {
         skew,
+        force_filter,
         resample,
         baseline,
         baseline_window,
@@ -55,6 +59,16 @@ fn skew(source: &Source<'_>, text: &str) -> Result<SkewChoice, DescriptionError>
             Err(units::UnitError::NotANumber { .. }) => Err(source.value(key, SKEW, &format!("\"{text}\""))),
             Err(error) => Err(source.no_quantity(key, text, error)),
         },
+    }
+}
+
+/// The time constant of a filter, s, which its corner frequency tells too: f = 1/(2π τ).
+fn filter(source: &Source<'_>, text: &QuantityText) -> Result<f64, DescriptionError> {
+    let key = "force.filter";
+    match units::parse(&text.text, Dimension::Frequency) {
+        Ok(corner) if corner > 0.0 => Ok(1.0 / (TAU * corner)),
+        Ok(_) => Err(source.value(key, "a frequency above 0 Hz or a time above 0 s", text)),
+        Err(_) => source.positive(key, text, Dimension::Time),
     }
 }
 

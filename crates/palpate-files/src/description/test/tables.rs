@@ -157,6 +157,10 @@ pub(crate) struct ClocksTable {
 #[serde(deny_unknown_fields)]
 #[schemars(rename = "ForceCorrections")]
 pub(crate) struct ForceTable {
+    /// Filter of first order behind which the force was recorded, which is undone: its time constant such as "0.2 s" or its corner
+    /// frequency such as "0.8 Hz".
+    #[schemars(extend("examples" = ["0.2 s", "0.8 Hz"]))]
+    pub(crate) filter: Option<QuantityText>,
     /// Baseline to subtract from the force: "none" (the default), "constant" (its median without contact) or "sloped" (a line in
     /// time, for a load cell that drifts).
     pub(crate) baseline: Option<BaselineName>,

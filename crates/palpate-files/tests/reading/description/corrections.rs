@@ -18,12 +18,15 @@ fn nothing_is_corrected_without_a_request() {
 fn all_that_can_be_requested_for() {
     let text = r#"
         clock = { skew = "-35 ms", resample = "1 kHz" }
-        force = { baseline = "sloped", baseline_window = ["0 s", "1 min"] }
+        force = { filter = "0.2 s", baseline = "sloped", baseline_window = ["0 s", "1 min"] }
         machine = { compliance = "0.5 um/N" }
     "#;
     let requested = test(text).unwrap().analysis.corrections;
     assert_eq!((requested.skew, requested.resample), (SkewChoice::Given(-0.035), Some(1000.0)));
     assert_eq!((requested.baseline, requested.baseline_window), (Some(Baseline::Sloped), Some((0.0, 60.0))));
+    assert_eq!(requested.force_filter, Some(0.2));
+    let corner = test("force.filter = \"0.8 Hz\"").unwrap().analysis.corrections.force_filter.unwrap();
+    assert!((corner - 0.198_943_7).abs() < 1e-7, "{corner}");
     assert_eq!(requested.compliance, Some(Compliance::Constant(5e-7)));
     assert_eq!(test(text).unwrap().analysis.corrections, requested);
     assert_eq!(test("clock.skew = \"auto\"").unwrap().analysis.corrections.skew, SkewChoice::Auto);
@@ -39,6 +42,8 @@ fn wrong_corrections_are_named() {
     says(test("clock.skew = \"much\""), "clock.skew", "expected \"report\", \"auto\" or a time", "");
     says(test("clock.skew = \"35\""), "clock.skew", "expected a unit after the number", "");
     says(test("clock.resample = \"0 Hz\""), "clock.resample", "a frequency above 0 Hz", "");
+    says(test("force.filter = \"0 s\""), "force.filter", "a time above 0 s", "");
+    says(test("force.filter = \"0 Hz\""), "force.filter", "a frequency above 0 Hz", "");
     says(test("clock.rate = \"1 Hz\""), "clock.rate", "skew", "");
     says(test("force.baseline = \"curved\""), "force.baseline", "\"none\", \"constant\" or \"sloped\"", "");
     let backwards = "force = { baseline = \"constant\", baseline_window = [\"2 s\", \"1 s\"] }";

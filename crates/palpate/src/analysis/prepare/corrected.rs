@@ -73,8 +73,8 @@ impl Corrected {
     }
 }
 
-/// Repairs single-row dropouts and makes the requested corrections, as [`analyze`](crate::analysis::analyze) does: skew, sample
-/// times, baseline, compliance, in this order, since each needs those before it.
+/// Repairs single-row dropouts and makes the requested corrections, as [`analyze`](crate::analysis::analyze) does: skew, filter of
+/// the force, sample times, baseline, compliance, in this order, since each needs those before it.
 ///
 /// Edges are sought where they were measured; a baseline is the force where nothing touches; and a table of compliance
 /// counts forces from zero.
@@ -113,6 +113,9 @@ pub fn corrected_watched(
         (SkewChoice::Given(given), _) => next = next.without_skew(given, None)?,
         (SkewChoice::Auto, Some(observed)) => next = next.without_skew(observed.skew, Some(observed.standard_error))?,
         (SkewChoice::Auto, None) | (SkewChoice::Report, _) => {}
+    }
+    if let Some(time_constant) = requested.force_filter {
+        next = next.without_filter(time_constant)?;
     }
     if let Some(rate) = requested.resample {
         next = next.resampled(rate)?;

@@ -4,6 +4,7 @@
 //! |---|---|
 //! | `dropouts.rs` | single rows that strayed |
 //! | `clocks.rs` | force and displacement stamped by different clocks brought onto one |
+//! | `filter.rs` | what a filter of the force took away |
 //! | `resample.rs` | other sample times, and values between samples |
 //! | `baseline.rs` | the force without contact |
 //! | `compliance.rs` | what the machine gives way, the deflection of a cantilever |
@@ -15,6 +16,7 @@ mod baseline;
 mod clocks;
 mod compliance;
 mod dropouts;
+mod filter;
 mod resample;
 mod then;
 
