@@ -29,5 +29,6 @@ pub use unit_words::unit_factor;
 pub(crate) use unit_words::{is_share, is_unit_in_words, unit_behind_number, volts_are};
 pub(crate) use vocabulary::{
     AXIAL, BENDING, COUNTS, EXTENSOMETERS, MEANS, OTHER_CHARACTERS, RATES_OF_SHEAR, SHEAR, SHEAR_RATES,
-    SIGNS_OF_LENGTH, STORAGE, STRAIN_GAUGES, STRAINS, UNCALIBRATED, VOCABULARY, is_listed, is_other, names_statistic,
+    SIGNS_OF_LENGTH, STORAGE, STRAIN_GAUGES, STRAINS, UNCALIBRATED, VOCABULARY, is_listed, names_statistic,
+    other_words,
 };

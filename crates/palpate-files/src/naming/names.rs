@@ -6,7 +6,7 @@ use super::{
     quantity::Quantity,
     unit_words::{is_share, unit_factor},
     vocabulary::{
-        BENDING, COMMANDED, COUNTS, OF_A_PART, OTHER_CHARACTERS, VOCABULARY, Vocabulary, is_listed, is_other,
+        BENDING, COMMANDED, COUNTS, OF_A_PART, OTHER_CHARACTERS, VOCABULARY, Vocabulary, is_listed, other_words,
     },
 };
 
@@ -72,7 +72,7 @@ fn rank_of_words(name: &str, vocabulary: &Vocabulary) -> Option<u8> {
     let contains = |parts: &str| parts.split_whitespace().any(|part| name.contains(part));
     let commanded =
         |word: &String| COMMANDED.split_whitespace().any(|start| word.len() > start.len() && word.starts_with(start));
-    if words.iter().any(|word| is_other(word)) || contains(OTHER_CHARACTERS) || words.iter().any(commanded) {
+    if other_words(&words).next().is_some() || contains(OTHER_CHARACTERS) || words.iter().any(commanded) {
         return None;
     }
     if vocabulary.quantity == Quantity::Displacement && BENDING.contains(&name.trim()) {
@@ -109,7 +109,7 @@ pub(crate) fn names_another(name: &str, quantity: Quantity) -> bool {
     let has = |known: &str| words.iter().any(|word| is_listed(word, known));
     let others = VOCABULARY.iter().filter(|other| other.quantity != quantity);
     let plainly = |other: &Vocabulary| rank_of_name(name, other).is_some_and(|rank| rank < 4);
-    words.iter().any(|word| is_other(word)) || has(COUNTS) || others.into_iter().any(plainly)
+    other_words(&words).next().is_some() || has(COUNTS) || others.into_iter().any(plainly)
 }
 
 /// Whether a name says that its values are multiples: `Force x1000`, `Weg*10`, `Load ×10^3`, `Kraft (x 10^-3)`.

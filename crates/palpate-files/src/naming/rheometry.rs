@@ -5,7 +5,7 @@ use super::{
     names::{measured, words},
     quantity::Quantity,
     unit_words::unit_factor,
-    vocabulary::{STRAINS, TRUE_CHARACTERS, TRUE_MEASURES, is_listed, is_other},
+    vocabulary::{STRAINS, TRUE_CHARACTERS, TRUE_MEASURES, is_listed, other_words},
 };
 
 /// Words that name the quantity, and names that are signs for it.
@@ -21,6 +21,8 @@ const ANGLES: &str =
     "displacement position angle angular winkel auslenkwinkel drehwinkel déplacement deflection rotation twist ángulo";
 const DEFORMATIONS: &str =
     "strain dehnung deformation déformation verformung scherdeformation scherung deformación деформация 변형률";
+/// Words of a travel that is a strain where its unit is one of strains.
+const COMPRESSIONS: &str = "compression stauchung compresión compresion compressione deflection сжатие 压缩率 圧縮率";
 const MODULI: &str = "modulus modul module relaxationsmodul módulo";
 const COMPLIANCES: &str = "compliance nachgiebigkeit kriechnachgiebigkeit complaisance";
 
@@ -44,8 +46,7 @@ fn signs(quantity: Quantity) -> Option<Signs> {
 pub(crate) fn names_strain(name: &str) -> bool {
     let words = words(measured(name));
     let has = |list: &str| words.iter().any(|word| is_listed(word, list));
-    let other = |word: &String| is_other(word) && !is_listed(word, STRAINS);
-    has(DEFORMATIONS) && !has(NOT_OVER_TIME) && !words.iter().any(other)
+    has(DEFORMATIONS) && !has(NOT_OVER_TIME) && other_words(&words).all(|word| is_listed(word, STRAINS))
 }
 
 /// Whether a name is that of a strain, and `unit` one of strains.
@@ -71,8 +72,9 @@ pub(crate) fn rank_in_rheometry(name: &str, unit: Option<&str>, quantity: Quanti
     let fits = unit.is_some_and(|unit| unit_factor(unit, quantity.dimension()).is_some());
     // A single letter says nothing without its unit.
     let is_sign = is_listed(&sign, signs) && (fits || bare && sign.len() > 1);
-    let named = has(known) && !has(NOT_OVER_TIME) && (fits || bare && unit.is_none());
-    let others = || words.iter().any(|word| is_other(word) && !is_listed(word, STRAINS) && !is_listed(word, known));
+    let is_compression = quantity == Quantity::Strain && fits && has(COMPRESSIONS);
+    let named = (has(known) || is_compression) && !has(NOT_OVER_TIME) && (fits || bare && unit.is_none());
+    let others = || other_words(&words).any(|word| !is_listed(word, STRAINS) && !is_listed(word, known));
     match named && !others() {
         true if words.len() == 1 => Some(0),
         true => Some(1),
@@ -94,6 +96,9 @@ mod tests {
             ("Creep Compliance", Some("1/Pa"), Quantity::Compliance),
             ("J(t)", Some("1/MPa"), Quantity::Compliance),
             ("Shear strain", Some("%"), Quantity::Strain),
+            ("Nominal strain", Some("%"), Quantity::Strain),
+            ("Stauchung", Some("%"), Quantity::Strain),
+            ("Compression", Some("mm/mm"), Quantity::Strain),
             ("Déformation de Cisaillement", Some("%"), Quantity::Strain),
             ("Torque", Some("µN.m"), Quantity::Torque),
             ("Couple", Some("mN·m"), Quantity::Torque),
@@ -110,6 +115,7 @@ mod tests {
             ("Oscillation strain", Some("%"), Quantity::Strain),
             ("Strain", None, Quantity::Strain),
             ("Strain", Some("mm"), Quantity::Strain),
+            ("Compression", Some("mm"), Quantity::Strain),
             ("Displacement", Some("mm"), Quantity::Angle),
             ("Machine compliance", Some("mm/N"), Quantity::Compliance),
         ] {

@@ -62,10 +62,17 @@ pub(crate) const VOCABULARY: [Vocabulary; 4] = [
     },
 ];
 
-/// Whether a column with this word in its name is no measurement of the quantity that it names.
-pub(crate) fn is_other(word: &str) -> bool {
-    is_listed(word, OTHER) || is_listed(word, EXTREMES)
+/// The words of a name that say that its column is no measurement of the quantity that it names. A nominal stress or strain is one per section or
+/// length of the body at rest, and no setpoint.
+pub(crate) fn other_words(words: &[String]) -> impl Iterator<Item = &String> {
+    let is_engineering = words.iter().any(|word| is_listed(word, PER_DIMENSION));
+    let is_other = |word: &str| is_listed(word, OTHER) || is_listed(word, EXTREMES);
+    words.iter().filter(move |word| is_other(word) && !(is_engineering && *word == "nominal"))
 }
+
+/// Words of what is a force per section, or a travel per length.
+const PER_DIMENSION: &str =
+    "strain dehnung deformation déformation deformación verformung stress spannung contrainte esfuerzo tensione";
 
 /// Words of the largest, the smallest and the spread of values.
 const EXTREMES: &str =

@@ -5,8 +5,8 @@ use palpate::units::Dimension;
 use super::part::{ColumnInfo, ColumnKind};
 use crate::naming::{
     AXIAL, BENDING, EXTENSOMETERS, OTHER_CHARACTERS, Quantity, RATES_OF_SHEAR, SHEAR, SHEAR_RATES, SIGNS_OF_LENGTH,
-    STORAGE, STRAIN_GAUGES, STRAINS, VOCABULARY, is_listed, is_other, is_share, measured, measures_another,
-    names_another, names_multiples_of, names_strain, names_true_measure, own_topics, rank_in_rheometry, rank_of_name,
+    STORAGE, STRAIN_GAUGES, STRAINS, VOCABULARY, is_listed, is_share, measured, measures_another, names_another,
+    names_multiples_of, names_strain, names_true_measure, other_words, own_topics, rank_in_rheometry, rank_of_name,
     unit_factor, words,
 };
 
@@ -192,7 +192,7 @@ pub(crate) fn possible_displacements(columns: &[ColumnInfo]) -> impl Iterator<It
         };
         let words = words(measured(name));
         // What is stated per finger is a displacement all the same.
-        let other = words.iter().any(|word| is_other(word) && !is_listed(word, STRAINS) && word != "per")
+        let other = other_words(&words).any(|word| !is_listed(word, STRAINS) && word != "per")
             || OTHER_CHARACTERS.split_whitespace().any(|part| name.contains(part))
             || BENDING.contains(&name.trim());
         let sign = || SIGNS_OF_LENGTH.split_whitespace().any(|sign| sign.to_lowercase() == name.trim().to_lowercase());
