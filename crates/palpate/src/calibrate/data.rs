@@ -42,6 +42,9 @@ const MOST_SAMPLES: usize = 20_000;
 /// Share of the deepest squeeze that a row of a table stands for at most.
 const WIDE: f64 = 0.3;
 
+/// Farthest displacement of the jaw over which a held one, a median of noisy readings, lies at most.
+const BEYOND: f64 = 2.0;
+
 /// Share of the deepest squeeze by which two levels differ at least.
 const APART: f64 = 0.02;
 
@@ -73,8 +76,8 @@ impl CalibrationData {
     /// ```
     ///
     /// # Errors
-    /// [`CalibrateError`] for columns of different lengths, parameters that are not finite, times that do not rise or lie outside the motion,
-    /// and a geometry that is none or that the jaw goes through.
+    /// [`CalibrateError`] for columns of different lengths or without a sample, numbers that are not finite, times that do not rise or lie outside
+    /// the motion, held displacements more than twice as far as the jaw goes, and a geometry that is none or that the jaw goes through.
     pub fn new(
         geometry: Geometry,
         separation: Separation,
@@ -87,6 +90,12 @@ impl CalibrationData {
             return Err(CalibrateError::Lengths {
                 times: times.len(),
                 forces: forces.len(),
+            });
+        }
+        if times.is_empty() {
+            return Err(CalibrateError::TooFewSamples {
+                samples: 0,
+                parameters: 1,
             });
         }
         if let Some(index) = (0..times.len()).find(|i| !(times[*i].is_finite() && forces[*i].is_finite())) {
@@ -104,6 +113,10 @@ impl CalibrationData {
         }
         let body = geometry.specimen(geometry.modulus.unwrap_or(1.0))?;
         deep_enough(&body, &motion, separation)?;
+        let farthest = motion.displacements().iter().copied().fold(0.0, f64::max);
+        if let Some(&found) = held.iter().find(|found| !(found.is_finite() && **found <= BEYOND * farthest)) {
+            return Err(CalibrateError::Held { found, farthest });
+        }
         let samples = times.len();
         let every = samples.div_ceil(MOST_SAMPLES).max(1);
         let (times, forces): (Vec<f64>, Vec<f64>) = times.into_iter().zip(forces).step_by(every).unzip();
@@ -351,4 +364,31 @@ fn between_samples(record: &Record, segments: &[Segment]) -> Option<Finding> {
         holds,
         interval: record.sample_interval(),
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::test_problems::{paper_ball, paper_test_a};
+
+    fn with(times: Vec<f64>, held: &[f64]) -> Result<CalibrationData, CalibrateError> {
+        let model = paper_ball(Separation::Unilateral);
+        let body = Geometry {
+            shape: model.specimen.shape().clone(),
+            sides: model.specimen.sides(),
+            modulus: None,
+            equilibrium: crate::contact::Equilibrium::default(),
+        };
+        CalibrationData::new(body, model.separation, paper_test_a(), times.clone(), times, held)
+    }
+
+    /// No sample made `calibrate` subtract with overflow; an infinite held displacement asked for 34 GB, and mm for m made 1635 levels.
+    #[test]
+    fn data_without_a_sample_and_holds_where_no_jaw_was_are_refused() {
+        assert!(with(vec![0.0, 1.0], &[0.005, -0.001]).is_ok());
+        assert!(matches!(with(Vec::new(), &[]), Err(CalibrateError::TooFewSamples { samples: 0, .. })));
+        for held in [f64::INFINITY, f64::NAN, 5.0] {
+            assert!(matches!(with(vec![0.0, 1.0], &[held]), Err(CalibrateError::Held { .. })), "{held}");
+        }
+    }
 }

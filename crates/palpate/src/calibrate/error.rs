@@ -68,6 +68,14 @@ pub enum CalibrateError {
         /// Which, from 1.
         sample: usize,
     },
+    /// A held displacement that the jaw does not reach.
+    #[error("held displacements must be finite numbers up to where the jaw goes, {farthest} m; found {found}")]
+    Held {
+        /// What was given, m.
+        found: f64,
+        /// The farthest displacement of the motion, m.
+        farthest: f64,
+    },
     /// A time that does not rise or lies outside the motion.
     #[error("sample times must rise and lie from {from} s to {until} s, found {found} s at sample {sample}")]
     SampleTime {

@@ -44,8 +44,8 @@ pub enum MaterialUnit {
 /// A parameter of a material; all are above zero.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct MaterialParameter {
-    /// Name without unit: `modulus` or `equilibrium_force_1`, …; `exponent`, `rate_coefficient`, `layer_thickness`,
-    /// `strain_factor` or `unloading_factor`; or `overshoot_1`, `time_1`, ….
+    /// Name, which ends with the unit: `modulus_pa` or `equilibrium_force_1_n`, …; `exponent`, `rate_coefficient_per_s`, `layer_thickness_m`,
+    /// `strain_factor` or `unloading_factor`; or `overshoot_1`, `time_constant_1_s`, ….
     pub name: String,
     /// Its unit.
     pub unit: MaterialUnit,
@@ -84,6 +84,15 @@ pub struct MaterialUncertainty {
     /// The part of it that comes from the instrument and from the body, by cause.
     #[serde(default)]
     pub systematic: Vec<SystematicEffect>,
+}
+
+/// Whether a square matrix is finite, with variances of 0 or more and correlations up to 1, but for rounding.
+pub(in crate::calibrate) fn correlates(covariance: &[Vec<f64>]) -> bool {
+    /// Square of the largest correlation that rounding makes of 1.
+    const ROUNDED: f64 = 1.0 + 2e-6;
+    let size = covariance.len();
+    let fits = |i: usize, j: usize| covariance[i][j].powi(2) <= ROUNDED * covariance[i][i] * covariance[j][j];
+    (0..size).all(|i| covariance[i][i] >= 0.0 && (0..size).all(|j| covariance[i][j].is_finite() && fits(i, j)))
 }
 
 /// Content of a [`Material`], not yet checked.
@@ -216,8 +225,7 @@ impl MaterialParts {
             let covariance = &uncertainty.covariance;
             let is_square = covariance.len() == size && covariance.iter().all(|row| row.len() == size);
             let is_sound = is_square
-                && covariance.iter().flatten().all(|entry| entry.is_finite())
-                && (0..size).all(|index| covariance[index][index] >= 0.0)
+                && correlates(covariance)
                 && uncertainty.systematic.iter().all(|effect| {
                     effect.logs.len() == size + self.body.shape.dimensions().len()
                         && effect.logs.iter().all(|log| log.is_finite())
@@ -407,5 +415,19 @@ impl Material {
                     exponent: ExponentChoice::Free
                 }
             )
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::correlates;
+
+    /// A covariance of a calibration that leaves all open, with a correlation of −1.0045 from rounding, was written into a file that `predict` refused.
+    #[test]
+    fn a_covariance_of_rounding_is_none() {
+        let with = |covariance: f64| vec![vec![1.0547e7, covariance], vec![covariance, 0.1578]];
+        assert!(correlates(&with(-1290.0)) && correlates(&with(0.0)));
+        assert!(!correlates(&with(-1296.0)) && !correlates(&with(f64::NAN)));
+        assert!(!correlates(&[vec![f64::INFINITY, 0.0], vec![0.0, 1.0]]));
     }
 }

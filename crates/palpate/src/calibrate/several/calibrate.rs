@@ -10,6 +10,7 @@ use super::spread::{Differences, Spread, one_value_p};
 use super::start::{is_determined, log_of, log_variance, start};
 use super::{SeveralError, Sharing};
 use crate::analysis::Finding;
+use crate::calibrate::material::correlates;
 use crate::calibrate::prepared::Prepared;
 use crate::calibrate::problem::sum_of_squares;
 use crate::calibrate::uncertainty::FARTHEST;
@@ -379,7 +380,7 @@ impl Batch<'_> {
         systematic.iter().for_each(|effect| effect.add_to(&mut full));
         Ok(Material::new(MaterialParts {
             parameters,
-            uncertainty: Some(MaterialUncertainty {
+            uncertainty: correlates(&full).then_some(MaterialUncertainty {
                 confidence: self.confidence,
                 freedom,
                 covariance: full,

@@ -2,6 +2,7 @@
 
 use super::displacement::from_displacement;
 use super::systematic::systematic_effects;
+use crate::calibrate::material::correlates;
 use crate::calibrate::prepared::Prepared;
 use crate::calibrate::problem::{Found, Problem};
 use crate::calibrate::{
@@ -113,10 +114,8 @@ impl<'a> AssessedMaterial<'a> {
         let uncertainty = self.found()?.uncertainty.as_ref()?;
         let mut covariance = transformed(&uncertainty.covariance, &self.gradients);
         self.systematic.iter().for_each(|effect| effect.add_to(&mut covariance));
-        // Parameters that the data leave open have variances of which others are lost in rounding.
-        let is_sound = (0..covariance.len())
-            .all(|i| covariance[i][i] >= 0.0 && covariance[i].iter().all(|entry| entry.is_finite()));
-        is_sound.then_some(MaterialUncertainty {
+        // Parameters that the data leave open have variances of which others are lost in rounding: correlations come out above 1.
+        correlates(&covariance).then_some(MaterialUncertainty {
             confidence: self.confidence,
             freedom: uncertainty.freedom,
             covariance,
