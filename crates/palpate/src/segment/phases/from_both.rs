@@ -114,9 +114,10 @@ fn creeps(
         level.value.abs().min(level.value - low).min(from_air) <= OPEN * range + 3.0 * found.settings.noise
     };
     let (mut pressed, mut likely, mut unseen) = (Vec::new(), Vec::new(), Vec::new());
-    // A body that recovers does so ever more slowly, and stands at the end alone; a jaw that is clear of it goes at its speed, then stands.
+    // A body that recovers does so ever more slowly, and stands at the end alone; a jaw that is clear of it goes at its speed, then stands or turns.
     let recovers = |level: &Level| {
-        slows_down(record, level, FIRST_HALF_TO_REST) && still.iter().all(|still| rests_late(record, still, level))
+        let first_half = share_of_first_half(record, level);
+        (FIRST_HALF_TO_REST..TURNS).contains(&first_half) && still.iter().all(|still| rests_late(record, still, level))
     };
     let settled: Vec<Level> = found
         .levels
@@ -224,10 +225,18 @@ const FIRST_HALF: f64 = 0.51;
 /// The same of a creep that ends before the force is let go.
 const FIRST_HALF_TO_REST: f64 = 0.6;
 
+/// Share of its way from first to last that a jaw has gone at half the time, from which on it comes back.
+const TURNS: f64 = 1.1;
+
 /// Whether the jaw goes more slowly the longer the force is held: its first half sees more than a share of the way.
 fn slows_down(record: &Record, level: &Level, share: f64) -> bool {
+    share_of_first_half(record, level) > share
+}
+
+/// Share of the way of the jaw, from its first place to its last, that the first half of the time sees; NaN without a displacement.
+fn share_of_first_half(record: &Record, level: &Level) -> f64 {
     let Some(displacement) = record.displacement() else {
-        return false;
+        return f64::NAN;
     };
     let time = record.time();
     let middle = 0.5 * (time[level.start] + time[level.end - 1]);
@@ -235,7 +244,7 @@ fn slows_down(record: &Record, level: &Level, share: f64) -> bool {
     let few = ((level.end - level.start) / 20).max(1);
     let at = |from: usize| median(&mut displacement[from..from + few].to_vec());
     let (first, middle, last) = (at(level.start), at(half.min(level.end - few)), at(level.end - few));
-    (middle - first) / (last - first) > share
+    (middle - first) / (last - first)
 }
 
 /// Share of the speed of its ramps, and of its way, at which no machine ramps, but a body creeps.

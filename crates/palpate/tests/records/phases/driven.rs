@@ -307,3 +307,34 @@ fn a_fit_begins_behind_rows_that_stray_where_it_would_begin() {
         assert!(begins.contains(&hold.fit_start), "{start} {length}: {hold:?}");
     }
 }
+
+/// A plate that leaves the body as it unloads and turns in the air: each turn was "a force that is held, the body creeps", 48 of 72 cycles.
+#[test]
+fn a_plate_that_turns_clear_of_the_body_holds_no_force() {
+    for (seed, speed) in [(1, 0.83), (2, 1.67), (3, 4.2)] {
+        let mut random = Rng::new(seed);
+        let (deepest, cycle) = (20.0, 40.0 / speed);
+        let rested = 3.0 * cycle + 60.0;
+        let (mut time, mut jaw, mut force) = (vec![], vec![], vec![]);
+        for i in 0..((rested + 200.0) / 0.1) as usize {
+            let t = 0.1 * f64::from(i as u32);
+            let (through, way) = ((t / cycle).floor(), speed * (t % cycle));
+            let pressed = speed * (t - rested).max(0.0);
+            let (at, of_body) = match () {
+                // The body follows the plate late, and meets it above where it was at first.
+                () if t < 3.0 * cycle && way <= deepest => (way, 75.0 * ((way - 2.5 * through.min(1.0)) / deepest)),
+                () if t < 3.0 * cycle => (40.0 - way, 75.0 * ((34.0 - way) / 14.0)),
+                () if pressed < 12.5 => (pressed, 3.6 * pressed),
+                () => (12.5, 36.0 + 9.0 * (-(t - rested - 12.5 / speed) / 40.0).exp()),
+            };
+            time.push(t);
+            jaw.push(1e-3 * at + 1e-7 * random.normal());
+            force.push(of_body.max(0.0) + 0.05 * random.normal());
+        }
+        let segmentation = phases(&Record::new(time, Some(jaw), force).unwrap()).unwrap();
+        let found: Vec<f64> = segmentation.holds().map(|hold| 0.1 * hold.start as f64).collect();
+        let expected = rested + 12.5 / speed;
+        assert!(found.iter().all(|start| *start >= 3.0 * cycle - 0.5), "{speed}: {found:?}");
+        assert!(found.iter().any(|start| (start - expected).abs() < 0.5), "{speed}: {found:?} {expected}");
+    }
+}
