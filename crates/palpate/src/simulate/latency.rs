@@ -178,6 +178,11 @@ impl Layer for Latency<'_> {
         self.model.separation
     }
 
+    /// That over which v changes by a factor of e.
+    fn farthest_piece(&self) -> f64 {
+        self.model.specimen.depth() / self.rate.slope().abs()
+    }
+
     fn relaxed(&self) -> f64 {
         0.0
     }

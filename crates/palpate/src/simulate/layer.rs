@@ -44,6 +44,11 @@ pub(super) trait Layer {
         true
     }
 
+    /// The farthest travel (m of contact displacement) that one piece of motion follows with the accuracy of the law.
+    fn farthest_piece(&self) -> f64 {
+        f64::INFINITY
+    }
+
     fn relaxed(&self) -> Self::Excess;
     /// Excess strain at contact displacement `u` (m).
     fn strain_of(&self, excess: &Self::Excess, u: f64) -> f64;

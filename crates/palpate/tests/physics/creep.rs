@@ -2,10 +2,10 @@
 
 #![allow(clippy::unwrap_used, reason = "in a test a panic is the verdict")]
 
-use palpate::contact::{Curve, Layers, Shape, Sides, Specimen};
+use palpate::contact::{Curve, Layers, RateDependence, Shape, Sides, Specimen};
 use palpate::latency::LatencyLaw;
 use palpate::simulate::{
-    ContactEventKind, ContactModel, ForceHistory, LinearContact, LinearLaw, Memory, Motion, ProgramStep,
+    ContactEventKind, ContactModel, ContactRef, ForceHistory, LinearContact, LinearLaw, Memory, Motion, ProgramStep,
     ProtocolStep as ProtocolMotion, Sampling, Separation, SimulateError, Trajectory, protocol, simulate, step_ends,
     strain_wave,
 };
@@ -318,6 +318,42 @@ fn a_force_let_down_to_nothing_ends_at_nothing() {
                 let ends = ends.unwrap_or_else(|error| panic!("{force} N at {rate} N/s: {error}"));
                 assert!(ends[1].force == force && ends[2].force == 0.0 && ends[3].displacement > 0.0);
             }
+        }
+    }
+}
+
+/// A move to a force was divided over all that the jaw may travel: with v that depends on the strain it ended 1.6 % of the peak away.
+#[test]
+fn a_move_to_a_force_ends_where_the_same_motion_has_that_force() {
+    let block = ContactModel {
+        specimen: Specimen::new(
+            Shape::Prism {
+                area: 4e-4,
+                length: 0.06,
+            },
+            1e5,
+            Sides::One,
+        )
+        .unwrap(),
+        law: LatencyLaw::new(5.0, 2e4).unwrap(),
+        layers: Layers::new(8.0).unwrap(),
+        separation: Separation::Bonded,
+    };
+    for factor in [0.3, 0.6, 0.95] {
+        let contact = ContactRef::Latency(&block, RateDependence::Strain { factor });
+        let head = [ProgramStep::Move { to: 0.015, rate: 0.008 }, ProgramStep::HoldPosition { duration: 5.0 }];
+        let ends = step_ends(&head, contact).unwrap();
+        for share in [0.2, 0.8, 1.3] {
+            let force = share * ends[1].force;
+            let moved = [&head[..], &[ProgramStep::MoveToForce { force, rate: 0.008 }]].concat();
+            let to = step_ends(&moved, contact).unwrap()[2].displacement;
+            let steps = (1..=40).map(|part| ProgramStep::Move {
+                to: 0.015 + (to - 0.015) * f64::from(part) / 40.0,
+                rate: 0.008,
+            });
+            let stepped: Vec<ProgramStep> = head.iter().copied().chain(steps).collect();
+            let off = (step_ends(&stepped, contact).unwrap().last().unwrap().force - force) / ends[0].force;
+            assert!(off.abs() < 1e-4, "{factor} {share}: {off}");
         }
     }
 }

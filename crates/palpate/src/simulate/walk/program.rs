@@ -156,14 +156,21 @@ impl<L: Layer> Runner<'_, '_, L> {
             (false, true) => self.jaw.min(0.0) - 100.0 * depth,
         };
         let speed = rate * specimen.contact_displacement(1.0);
-        let duration = (farthest - self.jaw).abs() / speed;
-        match self.line(duration, farthest, Some(force))? {
-            true => Ok(()),
-            false => Err(SimulateError::Unreachable {
-                step: number,
-                target: force,
-                most: self.force(),
-            }),
+        // How far the jaw will go is not known: a piece for all that it may go would be too long for a law that depends on the strain.
+        let piece = self.model.farthest_piece();
+        loop {
+            let left = farthest - self.jaw;
+            let to = if left.abs() > piece { self.jaw + piece.copysign(left) } else { farthest };
+            if self.line((to - self.jaw).abs() / speed, to, Some(force))? {
+                return Ok(());
+            }
+            if to == farthest || self.jaw != to {
+                return Err(SimulateError::Unreachable {
+                    step: number,
+                    target: force,
+                    most: self.force(),
+                });
+            }
         }
     }
 
