@@ -33,6 +33,15 @@ pub enum Finding {
         /// Share of the fitted relaxation that lies beyond the end of the hold.
         beyond: f64,
     },
+    /// Laws that are not distinguishable from the one to use have another equilibrium, or none.
+    EquilibriumByLaw {
+        /// Law that is to be used.
+        law: Law,
+        /// Laws whose equilibrium its interval leaves out.
+        outside: Vec<Law>,
+        /// Laws without an equilibrium.
+        without: Vec<Law>,
+    },
     /// The fitted equilibrium and its interval lie beyond zero, where the body would pull.
     EquilibriumBeyondZero {
         /// Law that is to be used.

@@ -38,6 +38,20 @@ impl Finding {
                 "the estimated equilibrium depends on the law and, by the latency law, on the exponent: another one gives another equilibrium",
                 "hold longer, or compare holds at one law and one fixed exponent",
             ),
+            Self::EquilibriumByLaw { law, outside, without } => caution(
+                "equilibrium_by_law",
+                {
+                    let have = |laws: &[Law], what: &str| {
+                        let verb = if laws.len() == 1 { "has" } else { "have" };
+                        (!laws.is_empty()).then(|| format!("{} {verb} {what}", listed(laws)))
+                    };
+                    let outside = have(outside, "another equilibrium, outside its interval");
+                    let others: Vec<String> = outside.into_iter().chain(have(without, "none")).collect();
+                    format!("of the laws that are not distinguishable from {law}, {}", others.join(", and "))
+                },
+                "the interval of the equilibrium counts the law as exact; the hold does not show which law goes on, and the equilibrium is known no better",
+                "hold longer, or state what each of these laws makes of the equilibrium",
+            ),
             Self::ForceStep { time, step, gap } => caution(
                 "force_step",
                 format!(
@@ -72,7 +86,7 @@ impl Finding {
                 "this term rests on the first samples alone: a spike of the load cell or a jaw that swings looks like it, and its amplitude and time are not those of the body",
                 "begin the fit later (hold_start), or sample faster at the start of holds",
             ),
-            Self::EquilibriumBeyondZero { law, share, interval } => caution(
+            Self::EquilibriumBeyondZero { law, share, interval } => warning(
                 "equilibrium_beyond_zero",
                 format!(
                     "by the law {law}, the equilibrium is {} of the force at the end of the hold, below zero",
@@ -310,8 +324,9 @@ impl Finding {
                     significant(*time_constant, 2),
                     significant(*from, 2)
                 ),
-                "a body relaxes as soon as the jaw stops: forces of the ramp and up to there are those of an amplifier or a filter",
-                "record the force with a faster filter, or press more slowly",
+                "a body relaxes as soon as the jaw stops: forces of the ramp and up to there are those of an amplifier or a filter, and first touch, \
+                 modulus and layer thickness are not to be relied on",
+                "give the time constant of the amplifier as filter in [force] of the test description, so that this finding is gone; or record with a faster filter",
             ),
             Self::NoContactArea => warning(
                 "no_contact_area",
@@ -435,17 +450,29 @@ impl Finding {
                 "displacement and force are measured from first touch",
                 "set touch in the test description if first touch is elsewhere",
             ),
-            Self::ModulusEstimated { modulus, standard_error } => info(
+            Self::ModulusEstimated {
+                modulus,
+                standard_error: Some(error),
+            } => info(
                 "modulus_estimated",
                 format!(
                     "no modulus was given; the equilibrium forces imply {} kPa",
-                    standard_error.map_or_else(
-                        || significant(modulus / 1e3, 4),
-                        |error| with_standard_error(modulus / 1e3, error / 1e3)
-                    )
+                    with_standard_error(modulus / 1e3, error / 1e3)
                 ),
                 "strains and v depend on this estimate; n and the relative rate do not",
                 "give the modulus in the test description if it is known",
+            ),
+            Self::ModulusEstimated {
+                modulus,
+                standard_error: None,
+            } => caution(
+                "modulus_estimated",
+                format!(
+                    "no modulus was given, and its error is not known: the laws that describe these holds best have no equilibrium; strains count on {} kPa",
+                    significant(modulus / 1e3, 2)
+                ),
+                "strains, v and all that rests on the modulus are known up to a factor that is not known; n and the relative rate do not depend on it",
+                "give the modulus in the test description, or hold until the force is level",
             ),
             Self::ModulusMismatch { given, implied } => caution(
                 "modulus_mismatch",

@@ -45,10 +45,37 @@ pub(super) fn comparison_findings(comparison: &Comparison, interval: f64) -> Vec
     if !merged.is_empty() {
         findings.push(Finding::TermsIndistinguishable { laws: merged });
     }
+    findings.extend(equilibrium_by_law(comparison, &alike));
     if alike.len() > 1 {
         findings.push(Finding::LawsIndistinguishable { laws: alike });
     }
     findings
+}
+
+/// Where the first of laws that are not distinguishable has an interval of the equilibrium that leaves out those of others, or others have none.
+fn equilibrium_by_law(comparison: &Comparison, alike: &[Law]) -> Option<Finding> {
+    let (law, others) = alike.split_first()?;
+    let equilibrium = |law: &Law| {
+        let row = comparison.rows.iter().find(|row| row.law == *law)?;
+        let fit = row.fit.as_ref().ok()?;
+        Some(fit.parameter(ParameterKind::Equilibrium).map(|parameter| parameter.estimate))
+    };
+    let (low, high) = equilibrium(law)??.interval?;
+    // Far beyond a hold a dense spectrum goes where its ridge takes it.
+    let fitted = others.iter().filter(|law| !matches!(law, Law::Spectrum));
+    let (mut outside, mut without) = (Vec::new(), Vec::new());
+    for other in fitted {
+        match equilibrium(other) {
+            Some(Some(estimate)) if !(low..=high).contains(&estimate.value) => outside.push(*other),
+            Some(None) => without.push(*other),
+            _ => {}
+        }
+    }
+    (!outside.is_empty() || !without.is_empty()).then_some(Finding::EquilibriumByLaw {
+        law: *law,
+        outside,
+        without,
+    })
 }
 
 /// Sample intervals up to which a time constant is that of the first samples.

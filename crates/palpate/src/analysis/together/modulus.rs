@@ -73,8 +73,16 @@ struct RelaxedHold {
     fits: Vec<Option<Fit>>,
 }
 
-/// Laws that end at an equilibrium, besides the latency law.
-const OTHERS: [Law; 4] = [Law::StandardLinearSolid, Law::Prony { terms: 2 }, Law::Prony { terms: 3 }, Law::Stretched];
+/// Laws besides the latency law: those that end at an equilibrium, and two that have none, beside which the others may be unlikely.
+const OTHERS: [Law; 7] = [
+    Law::StandardLinearSolid,
+    Law::Prony { terms: 2 },
+    Law::Prony { terms: 3 },
+    Law::Stretched,
+    Law::FractionalZener,
+    Law::Power,
+    Law::Logarithmic,
+];
 
 /// A law of a smaller probability, over that of the likeliest, is left out.
 const LEAST: f64 = 1e-3;
@@ -86,8 +94,9 @@ const KNOWN: f64 = 0.05;
 /// equation (11).
 ///
 /// F_e is where the force of each hold tends to by a law that all holds have in common; it needs no E, since force and strain of a hold differ by
-/// a factor. The laws are the latency law with the exponents of the options, and series of exponentials and the stretched one; each counts by exp(−½ Σ ΔBIC) over
-/// the holds, and its E and their scatter between laws are those of the mixture (Buckland, Burnham and Augustin 1997). Holds whose fit did not end well do
+/// a factor. The laws are the latency law with the exponents of the options, series of exponentials, the stretched one and the fractional Zener model; each counts by exp(−½ Σ ΔBIC) over
+/// the holds, and its E and their scatter between laws are those of the mixture (Buckland, Burnham and Augustin 1997); where a power or a logarithm of time, which
+/// have no equilibrium, are far likelier than all of these, E has no error. Holds whose fit did not end well do
 /// not count; the others count by the standard error of their F_e, and the error of E is widened where they scatter by more. Where nothing can be fitted
 /// (a body that does not relax) the last forces of the holds after loading stand in. `None` if no hold has an area, or the
 /// forces are negative.
