@@ -1,6 +1,6 @@
 //! The state of a contact, what it is at an instant, and its bytes.
 
-use palpate::simulate::{ContactState, StepError};
+use palpate::simulate::{ContactState, Separation, StepError};
 
 use crate::call::{Status, exclusive, guarded, shared};
 use crate::model::Model;
@@ -22,8 +22,15 @@ pub struct State {
 
 impl State {
     /// The state of the library, if its numbers are finite.
-    pub(crate) fn contact(self) -> Result<ContactState, StepError> {
+    fn contact(self) -> Result<ContactState, StepError> {
         ContactState::from_displacements(self.jaw_m, self.behind_m)
+    }
+
+    /// The same of a contact of this model, whose jaw is not beyond the body.
+    pub(crate) fn contact_of(self, Model { contact: model }: &Model) -> Result<ContactState, StepError> {
+        let contact = self.contact()?;
+        model.specimen.check_contact_displacement(self.jaw_m, model.separation == Separation::Bonded)?;
+        Ok(contact)
     }
 }
 
@@ -50,7 +57,7 @@ unsafe fn look(
         let state = unsafe { shared(state) }?;
         // SAFETY: the same.
         let to = unsafe { exclusive(to) }?;
-        let found = of(model, &state.contact()?);
+        let found = of(model, &state.contact_of(model)?);
         if !found.is_finite() {
             return Err(Status::Range);
         }
@@ -120,7 +127,7 @@ pub unsafe extern "C" fn palpate_is_touching(model: *const Model, state: *const 
         let state = unsafe { shared(state) }?;
         // SAFETY: the same.
         let touching = unsafe { exclusive(touching) }?;
-        *touching = i32::from(state.contact()?.is_touching(&model.contact));
+        *touching = i32::from(state.contact_of(model)?.is_touching(&model.contact));
         Ok(())
     })
 }

@@ -22,10 +22,13 @@
 //! | [`contact`] | the body, its layers and its contact, equations (7) and (11) |
 //! | [`simulate`] | the force under a motion of the jaw |
 //! | [`batch`] | thousands of contacts at once |
+//! | [`statistics`] | means over specimens, medians, coverage factors |
 //! | [`budget`] | uncertainty budgets (JCGM 100 and 101) |
 //! | [`instrument`] | the uncertainty of the instrument and of the body |
 //! | [`analysis`] | the complete analysis of one record, with findings |
 //! | [`observe`] | a contact observed tick by tick: holds, their equilibrium, time to slip |
+//! | [`calibrate`](mod@calibrate) | a body calibrated on a whole record, and what it does under any drive |
+//! | [`grip`] | how a grip holds: time to slip, squeezes, moves |
 //! | [`export`] | a calibrated contact in the terms of other simulators: Prony series, contacts without memory |
 //! | [`paper`] | the paper claim by claim, each with a verdict |
 //!

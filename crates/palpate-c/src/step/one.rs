@@ -28,7 +28,7 @@ impl Drive {
 
 /// Steps a state, or leaves it as it is. What results is finite.
 pub(crate) fn stepped(model: &Model, state: &mut State, dt: f64, drive: Drive) -> Result<f64, Status> {
-    let mut contact = state.contact()?;
+    let mut contact = state.contact_of(model)?;
     let result = drive.step(&mut contact, model, dt)?;
     let next = State::from(contact);
     if !(result.is_finite() && next.jaw_m.is_finite() && next.behind_m.is_finite()) {

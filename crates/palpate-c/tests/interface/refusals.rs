@@ -7,7 +7,7 @@ use palpate_c::{
     Model, PALPATE_STATE_BYTES, State, Status, palpate_force, palpate_model_calibrated_m, palpate_model_deepest_m,
     palpate_model_depth_m, palpate_model_free, palpate_model_from_file, palpate_model_from_text, palpate_model_sides,
     palpate_state_restore, palpate_state_save, palpate_step, palpate_step_force, palpate_step_force_message,
-    palpate_step_message,
+    palpate_step_message, palpate_stiffness,
 };
 
 use crate::common::{BALL, PAD, model};
@@ -104,6 +104,28 @@ fn a_model_states_its_range() {
     let mut number = 0.0;
     // SAFETY: null pointers where values are needed.
     assert_eq!(unsafe { palpate_model_depth_m(ptr::null(), &raw mut number) }, Status::NullPointer);
+}
+
+/// A state that an engine had overwritten was answered with 1005 N and −5027 N/m for a ball of 35 mm.
+#[test]
+fn a_state_beyond_the_body_has_no_force_and_makes_no_step() {
+    let owned = model(BALL);
+    let (mut state, mut number) = (
+        State {
+            jaw_m: 0.05,
+            behind_m: 0.0,
+        },
+        -1.0,
+    );
+    // SAFETY: pointers to values of this test.
+    let statuses = unsafe {
+        [
+            palpate_force(owned.0, &raw const state, &raw mut number),
+            palpate_stiffness(owned.0, &raw const state, &raw mut number),
+            palpate_step(owned.0, &raw mut state, 0.1, 0.004, &raw mut number),
+        ]
+    };
+    assert_eq!((statuses, number), ([Status::Displacement; 3], -1.0));
 }
 
 #[test]

@@ -92,7 +92,7 @@ impl ParameterKind {
     }
 }
 
-/// A parameter of a law: its kind, and the number of its term in a series; written `time_2`.
+/// A parameter of a law: its kind, and the number of its term in a series; written `time_constant_2_s`.
 ///
 /// ```
 /// use palpate::fit::{ParameterKind, ParameterName};

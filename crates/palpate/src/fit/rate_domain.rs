@@ -80,7 +80,8 @@ fn found(
         }
     }
     let solution = polished(&shapes, target, best.ok_or(FitError::NoDecay)?, effort)?;
-    LatencyFit::new(scaled.fit(strains, &solution, choice, options, effort)?).ok_or(FitError::NoDecay)
+    let fit = LatencyFit::new(scaled.fit(strains, &solution, choice, options, effort)?).ok_or(FitError::NoDecay)?;
+    if fit.rmse.is_finite() { Ok(fit) } else { Err(FitError::OutOfRange) }
 }
 
 /// Strains in units of their range about their middle, rates in units of the largest.

@@ -59,7 +59,7 @@ pub enum ParameterRole {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[non_exhaustive]
 pub struct Parameter {
-    /// Which it is, such as `equilibrium`, `time_1`, `exponent`.
+    /// Which it is, such as `equilibrium`, `time_constant_1_s`, `exponent`.
     pub name: ParameterName,
     /// Its unit.
     pub unit: ParameterUnit,

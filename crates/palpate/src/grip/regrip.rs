@@ -17,7 +17,7 @@ pub enum Regrip {
     },
     /// Work: moves go only as far up as pauses of a least length need.
     LeastWork {
-        /// The shortest pause between two moves, s.
+        /// The shortest pause between two moves, s; above 0.
         shortest_pause: f64,
     },
 }

@@ -17,8 +17,8 @@ pub enum ObserveError {
     /// A material whose law has no closed form of a hold here.
     #[error("the observer knows a hold of the latency law alone, the material obeys a linear law")]
     LinearMaterial,
-    /// A reading that is NaN or infinite.
-    #[error("the {what} at {time} s must be a finite number, found {found}")]
+    /// A reading that is NaN or infinite, or larger than any sensor shows.
+    #[error("the {what} at {time} s must be a finite number, found {found}{}", beyond(*.found))]
     NotFinite {
         /// Which reading.
         what: &'static str,
@@ -46,6 +46,11 @@ pub enum ObserveError {
     /// Bytes that hold no observer, or one with other options.
     #[error("expected the bytes of an observer with these options, found others")]
     Bytes,
+}
+
+/// What a finite reading that counts as none has against it.
+fn beyond(found: f64) -> &'static str {
+    if found.is_finite() { ", which no sensor shows" } else { "" }
 }
 
 impl ObserveError {

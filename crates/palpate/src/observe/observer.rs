@@ -6,6 +6,8 @@ use super::signal::{Alone, Change, Correlation, NoiseMeter, Smooth, Stand};
 use super::{Held, Kept, Normal, Observation, ObserveError, ObserverOptions, Slip, kept};
 use crate::statistics::coverage_factor;
 
+/// No sensor shows a number as large in SI.
+const LARGEST: f64 = 1e30;
 /// Noise (standard deviations of one reading) within which a signal stands.
 pub(super) const NOISE: f64 = 5.0;
 /// Share of its range within which a jaw stands that has no noise.
@@ -257,7 +259,7 @@ impl Observer {
         let readings =
             [("time", place, time), ("displacement", time, displacement.unwrap_or(0.0)), ("force", time, force)];
         for (what, at, found) in readings {
-            if !found.is_finite() {
+            if !(found.abs() < LARGEST) {
                 return Err(ObserveError::NotFinite { what, time: at, found });
             }
         }

@@ -73,7 +73,7 @@ impl JointFit {
         self.parameters.len()
     }
 
-    /// A shared parameter by its name, such as `rate_coefficient`.
+    /// A shared parameter by its name, such as `rate_coefficient_per_s`.
     #[must_use]
     pub fn shared(&self, name: &str) -> Option<&Parameter> {
         self.shared.iter().find(|parameter| parameter.name == *name)

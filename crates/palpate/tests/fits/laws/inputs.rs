@@ -6,7 +6,7 @@
 mod any_hold;
 
 use any_hold::{LAWS, fit_any, is_valid};
-use palpate::fit::{FitError, LawOptions, Loss, Samples, Termination, fit_law};
+use palpate::fit::{ExponentChoice, FitError, FitOptions, LawOptions, Loss, Samples, Termination, fit_law, fit_rates};
 use palpate::laws::{Law, Response};
 use palpate::test_problems::Rng;
 use proptest::prelude::*;
@@ -197,4 +197,14 @@ proptest! {
     fn no_bytes_make_the_fit_of_a_law_panic(bytes in prop::collection::vec(any::<u8>(), 0..400)) {
         fit_any(&bytes);
     }
+}
+
+/// One rate near the largest number there is made a fit that ended well, with an infinite residual.
+#[test]
+fn rates_whose_squares_are_no_numbers_are_refused() {
+    let strains: Vec<f64> = (0..40).map(|i| 0.2 + 0.05 * (-0.1 * f64::from(i)).exp()).collect();
+    let mut rates: Vec<f64> = strains.iter().map(|strain| -(strain - 0.2)).collect();
+    rates[7] = 1.7e308;
+    let found = fit_rates(&strains, &rates, ExponentChoice::Free, &FitOptions::default());
+    assert!(found.as_ref().map_or(true, |fit| fit.rmse.is_finite()), "{found:?}");
 }
