@@ -27,7 +27,7 @@ void let_go(mjtNum* memory) {
   memory[MEMORY_TWIST] = 0;
 }
 
-traction bristle(const contact* c, const placement* at, const mjtNum jaw_frame[9], double normal_force, double dt, mjtNum* memory) {
+traction bristle(const contact* c, const placement* at, const mjtNum jaw_frame[9], double normal_force, mjtNum* memory) {
   traction friction = {{0, 0, 0}, 0, 0, c->friction * normal_force};
   const double radius = c->friction > 0 ? c->torsion / c->friction : 0;
   mjtNum slip[3], twist, total;
@@ -37,8 +37,8 @@ traction bristle(const contact* c, const placement* at, const mjtNum jaw_frame[9
     return friction;
   }
   carried_along(jaw_frame, at->normal, memory, slip);
-  mju_addToScl3(slip, at->velocity, dt);
-  twist = memory[MEMORY_TWIST] + at->spin * dt;
+  mju_addTo3(slip, at->path);
+  twist = memory[MEMORY_TWIST] + at->turn;
   friction.load = c->tangential_stiffness * hypot(mju_norm3(slip), radius * twist);
   if (friction.load > friction.limit) {
     mju_scl3(slip, slip, friction.limit / friction.load);

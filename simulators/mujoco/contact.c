@@ -101,6 +101,7 @@ static void compute(const mjModel* m, mjData* d, int instance, int capability) {
     at.closing = c->closing * d->qvel[m->jnt_dofadr[c->joint]];
   } else {
     place_geoms(m, d, c, &at);
+    follow(d, c, dt > 0, memory, &at);
     to = c->sides * at.displacement;
     /* Farther away nothing changes any more. */
     if (to < -c->sides * c->depth) to = -c->sides * c->depth;
@@ -116,7 +117,7 @@ static void compute(const mjModel* m, mjData* d, int instance, int capability) {
   if (c->joint >= 0) {
     d->qfrc_passive[m->jnt_dofadr[c->joint]] -= c->closing * force;
   } else if (at.displacement > -c->depth) {
-    friction = bristle(c, &at, d->geom_xmat + 9 * c->geom1, force, dt, memory);
+    friction = bristle(c, &at, d->geom_xmat + 9 * c->geom1, force, memory);
     if (force != 0) apply(m, c, &at, force, &friction, d->qfrc_passive);
   } else {
     let_go(memory);

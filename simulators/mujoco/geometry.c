@@ -56,6 +56,37 @@ void place_geoms(const mjModel* m, mjData* d, contact* c, placement* at) {
   if (distance < c->depth) relative_motion(m, d, c, at);
 }
 
+/* From positions, not from speeds by time, so that the deflection of friction is the same whichever way the engine integrates: what is
+ * held does not creep. All is made of differences of the poses: what has not moved has moved by 0 to the last bit. */
+void follow(const mjData* d, const contact* c, int has_begun, mjtNum* memory, placement* at) {
+  const mjtNum *frame1 = d->geom_xmat + 9 * c->geom1, *frame2 = d->geom_xmat + 9 * c->geom2;
+  mjtNum offset[3], place[3], turn[9], arm[3], turned[9], path[3], across[9], spin[3];
+  mju_sub3(offset, d->geom_xpos + 3 * c->geom2, d->geom_xpos + 3 * c->geom1);
+  mju_mulMatTVec3(place, frame1, offset);
+  mju_mulMatTMat(turn, frame1, frame2, 3, 3, 3);
+  mju_zero3(at->path);
+  at->turn = 0;
+  if (has_begun) {
+    /* That point of the body which is at the contact now. */
+    mju_sub3(offset, at->point, d->geom_xpos + 3 * c->geom2);
+    mju_mulMatTVec3(arm, frame2, offset);
+    mju_sub(turned, turn, memory + MEMORY_TURN, 9);
+    mju_mulMatVec3(path, turned, arm);
+    mju_addTo3(path, place);
+    mju_subFrom3(path, memory + MEMORY_PLACE);
+    mju_mulMatVec3(at->path, frame1, path);
+    mju_addToScl3(at->path, at->normal, -mju_dot3(at->path, at->normal));
+    mju_mulMatMatT(across, turned, memory + MEMORY_TURN, 3, 3, 3);
+    spin[0] = 0.5 * (across[7] - across[5]);
+    spin[1] = 0.5 * (across[2] - across[6]);
+    spin[2] = 0.5 * (across[3] - across[1]);
+    mju_mulMatVec3(arm, frame1, spin);
+    at->turn = mju_dot3(arm, at->normal);
+  }
+  mju_copy3(memory + MEMORY_PLACE, place);
+  mju_copy(memory + MEMORY_TURN, turn, 9);
+}
+
 void apply(const mjModel* m, const contact* c, const placement* at, double normal_force, const traction* friction, mjtNum* qfrc) {
   const int nv = m->nv;
   mjtNum force[3], moment[3];

@@ -28,7 +28,9 @@ typedef enum {
   MEMORY_BEHIND, /* palpate_state.behind_m */
   MEMORY_SLIP,   /* deflection of the bristle in the frame of geom1, m: three numbers */
   MEMORY_TWIST = MEMORY_SLIP + 3, /* its twist about the normal, rad */
-  MEMORY_COUNT
+  MEMORY_PLACE,                   /* centre of geom2 in the frame of geom1, m: three numbers */
+  MEMORY_TURN = MEMORY_PLACE + 3, /* rotation from the frame of geom2 to that of geom1: nine numbers */
+  MEMORY_COUNT = MEMORY_TURN + 9
 } memory_index;
 
 /* What a contact measures at the latest computed instant; the sensor copies it. */
@@ -84,6 +86,8 @@ typedef struct {
   mjtNum velocity[3];  /* of the body relative to the jaw, across the normal, m/s */
   mjtNum closing;      /* speed at which they come together along the normal, m/s */
   mjtNum spin;         /* of the body relative to the jaw about the normal, rad/s */
+  mjtNum path[3];      /* of the body relative to the jaw, across the normal, since the start of the step, m */
+  mjtNum turn;         /* and about the normal, rad */
 } placement;
 
 /* Friction at an instant. */
@@ -101,8 +105,12 @@ void contact_free(contact* c);
 /* Where the contact of two geoms is. */
 void place_geoms(const mjModel* m, mjData* d, contact* c, placement* at);
 
-/* Deflects the bristle of `memory` by the motion during dt and returns the friction under a normal force. */
-traction bristle(const contact* c, const placement* at, const mjtNum jaw_frame[9], double normal_force, double dt, mjtNum* memory);
+/* How far the body has moved relative to the jaw since the poses of `memory`, which become the present ones; not at all if nothing moved
+ * before. */
+void follow(const mjData* d, const contact* c, int has_begun, mjtNum* memory, placement* at);
+
+/* Deflects the bristle of `memory` by the motion since the start of the step and returns the friction under a normal force. */
+traction bristle(const contact* c, const placement* at, const mjtNum jaw_frame[9], double normal_force, mjtNum* memory);
 
 /* Takes the deflection from the bristle of `memory`: nothing deflects what is apart. */
 void let_go(mjtNum* memory);
