@@ -11,7 +11,7 @@ from typing import Any, Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from palpate._palpate import Material, OptionError
+from palpate._palpate import ContactStates, Material, ModelError, OptionError
 
 #: A ball of 35 mm that relaxes by the latency law with n = 5.
 BALL: dict[str, Any] = {
@@ -112,6 +112,16 @@ def task_of(settings: Mapping[str, Any]) -> SoftGripTask:
         if name not in known:
             raise OptionError(f"settings: expected names among {', '.join(known)}, found {name}")
     return SoftGripTask(**settings)
+
+
+def refuse_bond(task: SoftGripTask) -> None:
+    """Refuses a body that is bonded to its jaws, which would pull: fingers only press."""
+    contact = ContactStates(task.model, 1)
+    # Off the body there is no force; a bond pulls there, or cannot be taken there.
+    force = contact.step(0.0, -1e-6, errors="mask")
+    if contact.failed[0] or force[0] < 0.0:
+        hint = "set separation = true under [contact] of the test description where the jaws only press, and calibrate again"
+        raise ModelError(f"model: separation = false in the material: its contacts can pull, fingers can only press\nhint: {hint}")
 
 
 def slid(

@@ -23,7 +23,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from palpate._grip_task import Bodies, Control, SoftGripTask, slid, task_of
+from palpate._grip_task import Bodies, Control, SoftGripTask, refuse_bond, slid, task_of
 from palpate._palpate import ContactStates, ModelError, OptionError
 
 try:
@@ -103,7 +103,7 @@ class SoftGripVectorEnv(VectorEnv[_Floats, _Floats, NDArray[Any]]):
     Raises
     ------
     OptionError, ModelError
-        Settings out of range, a body that is none.
+        Settings out of range, a body that is none, a body that is bonded to its jaws (``separation = false``).
 
     Examples
     --------
@@ -127,6 +127,7 @@ class SoftGripVectorEnv(VectorEnv[_Floats, _Floats, NDArray[Any]]):
         **settings: Any,
     ) -> None:
         self.task = task_of(settings)
+        refuse_bond(self.task)
         if max_episode_steps is not None:
             max_episode_steps = _steps("max_episode_steps", max_episode_steps)
         self.num_envs = _steps("num_envs", num_envs)

@@ -47,6 +47,20 @@ def test_make_vec_makes_the_vector_environment() -> None:
         assert rewards.shape == terminations.shape == truncations.shape == (6,) and terminations.dtype == np.bool_
 
 
+def test_a_body_that_is_bonded_to_its_jaws_is_refused() -> None:
+    # It pulled with 13 N while the jaws opened, slipped under no load, and the force below 0 was rewarded.
+    block = {
+        "specimen": {"shape": "block", "area": "9 cm^2", "length": "40 mm", "modulus": "30 kPa"},
+        "law": {"name": "latency", "exponent": 4, "rate_coefficient": "1e3 /s"},
+    }
+    for specimen in (block["specimen"], {"shape": "ball", "radius": "35 mm", "modulus": "28 kPa"}):
+        for law in (block["law"], {"name": "prony", "terms": [{"overshoot": 1.0, "time": "2 s"}]}):
+            model = {"specimen": specimen, "law": law}
+            SoftGripVectorEnv(2, model={**model, "contact": {"separation": True}})
+            with pytest.raises(palpate.ModelError, match="separation = false in the material: .* fingers can only press\n.*separation = true"):
+                SoftGripVectorEnv(2, model={**model, "contact": {"separation": False}})
+
+
 def run(seed: int, mode: AutoresetMode = AutoresetMode.NEXT_STEP, steps: int = 120, **settings: Any) -> list[Any]:
     envs = SoftGripVectorEnv(32, autoreset_mode=mode, ranges=RANGES, max_episode_steps=50, **settings)
     found: list[Any] = [envs.reset(seed=seed)[0]]
