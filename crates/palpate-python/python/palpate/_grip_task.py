@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import itertools
 import math
+import re
 from collections.abc import Mapping
 from dataclasses import dataclass, field, fields
 from os import PathLike
@@ -124,6 +126,20 @@ def refuse_bond(task: SoftGripTask) -> None:
         raise ModelError(f"model: separation = false in the material: its contacts can pull, fingers can only press\nhint: {hint}")
 
 
+def refuse_ranges(task: SoftGripTask) -> None:
+    """Refuses ranges some of whose draws would be no body, such as layers thicker than it: what an end of each makes is one, so is all between."""
+    ends = {name: ends for name, ends in task.ranges.items() if name in OF_BODY}
+    names, logs, _ = _posterior(task.model) if task.posterior else ((), np.empty(0), None)
+    likely = dict(zip(names, np.exp(logs).tolist(), strict=True))
+    for corner in itertools.product(*ends.values()):
+        try:
+            ContactStates(task.model, 1, **likely, **dict(zip(ends, corner, strict=True)))
+        except ModelError as error:
+            reason = re.sub(r", contact \d+", "", str(error))
+            found = ", ".join(f"{name} = {value:g}" for name, value in zip(ends, corner, strict=True))
+            raise ModelError(f"ranges: expected a body at both ends of each, found none at {found}: {reason}\nhint: narrow the range") from None
+
+
 def slid(
     speed: NDArray[np.float64], before: NDArray[np.float64], after: NDArray[np.float64], dt: float
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
@@ -192,15 +208,20 @@ class Bodies:
         #: Values of contacts, for `ContactStates.reset`.
         self.of_body = {name: np.ones(count) for name in names}
 
+    def draw_posterior(self, rng: np.random.Generator, mask: NDArray[np.bool_]) -> None:
+        """Draws what is drawn from the covariance of a material, in the environments that the mask marks."""
+        if self.posterior is None:
+            return
+        names, mean, root = self.posterior
+        draws = rng.standard_normal((int(np.count_nonzero(mask)), len(names))).clip(-_WIDEST, _WIDEST)
+        values = np.exp(mean + draws @ root.T)
+        for place, name in enumerate(names):
+            self.of_body[name][mask] = values[:, place]
+
     def draw(self, rng: np.random.Generator, mask: NDArray[np.bool_]) -> None:
         """Draws the parameters of the environments that the mask marks."""
         count = int(np.count_nonzero(mask))
-        if self.posterior is not None:
-            names, mean, root = self.posterior
-            draws = rng.standard_normal((count, len(names))).clip(-_WIDEST, _WIDEST)
-            values = np.exp(mean + draws @ root.T)
-            for place, name in enumerate(names):
-                self.of_body[name][mask] = values[:, place]
+        self.draw_posterior(rng, mask)
         for name, (low, high) in self.task.ranges.items():
             column = self.of_body[name] if name in OF_BODY else getattr(self, name)
             column[mask] = rng.uniform(low, high, count)

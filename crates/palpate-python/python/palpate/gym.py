@@ -23,7 +23,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from palpate._grip_task import Bodies, Control, SoftGripTask, refuse_bond, slid, task_of
+from palpate._grip_task import Bodies, Control, SoftGripTask, refuse_bond, refuse_ranges, slid, task_of
 from palpate._palpate import ContactStates, ModelError, OptionError
 
 try:
@@ -41,8 +41,8 @@ ID = "palpate/SoftGrip-v0"
 EPISODE = 500
 #: Slip that costs all of the cost of slip, m/s.
 _FAST_M_PER_S = 0.1
-#: Draws that are tried until one is a body.
-_TRIES = 20
+#: Draws from a posterior that are tried until one is a body. Its middle is one, and so is about every second draw or more.
+_TRIES = 200
 
 _Doubles = NDArray[np.float64]
 _Floats = NDArray[np.float32]
@@ -128,6 +128,7 @@ class SoftGripVectorEnv(VectorEnv[_Floats, _Floats, NDArray[Any]]):
     ) -> None:
         self.task = task_of(settings)
         refuse_bond(self.task)
+        refuse_ranges(self.task)
         if max_episode_steps is not None:
             max_episode_steps = _steps("max_episode_steps", max_episode_steps)
         self.num_envs = _steps("num_envs", num_envs)
@@ -199,14 +200,14 @@ class SoftGripVectorEnv(VectorEnv[_Floats, _Floats, NDArray[Any]]):
         self._begin_again(mask)
 
     def _take_bodies(self, places: NDArray[np.intp], mask: _Marks, tries: int) -> None:
-        """Contacts with the bodies that were drawn; draws that are no body, such as layers thicker than it, are repeated."""
+        """Contacts with the bodies that were drawn; draws from a posterior that are no body, such as layers thicker than it, are repeated."""
         try:
             self.contacts.reset(mask, **self.bodies.of_body)
         except ModelError:
             if len(places) == 1:
                 if tries == 0:
                     raise
-                self.bodies.draw(self.np_random, mask)
+                self.bodies.draw_posterior(self.np_random, mask)
                 self._take_bodies(places, mask, tries - 1)
                 return
             for some in np.array_split(places, 2):

@@ -61,6 +61,31 @@ def test_a_body_that_is_bonded_to_its_jaws_is_refused() -> None:
                 SoftGripVectorEnv(2, model={**model, "contact": {"separation": False}})
 
 
+def test_ranges_whose_ends_make_no_body_are_refused_at_once() -> None:
+    # Such draws were repeated: the largest was 0.035 m for 0.1, and of 10 resets of 4096 environments 6 raised.
+    expected = (
+        "ranges: expected a body at both ends of each, found none at layer_thickness_m = 0.1: layer_thickness_m: "
+        "layer thickness must be above 0 m and at most the depth of 0.035 m, found 0.1 m\nhint: narrow the range"
+    )
+    with pytest.raises(palpate.ModelError) as refused:
+        SoftGripVectorEnv(2, ranges={"layer_thickness_m": (1e-3, 0.1)})
+    assert str(refused.value) == expected
+    # Each end alone is one, both together are not.
+    with pytest.raises(palpate.ModelError, match="found none at radius_m = 0.01, layer_thickness_m = 0.02: .*at most the depth of 0.01 m"):
+        SoftGripVectorEnv(2, ranges={"radius_m": (0.01, 0.04), "layer_thickness_m": (1e-3, 0.02)})
+    with pytest.raises(palpate.ModelError, match="exponent: the body and its law have no such parameter"):
+        law = {"name": "prony", "terms": [{"overshoot": 1.0, "time": "2 s"}]}
+        SoftGripVectorEnv(2, model={"specimen": {"shape": "ball", "radius": "35 mm", "modulus": "28 kPa"}, "law": law}, ranges={"exponent": (2, 3)})
+
+
+def test_ranges_are_drawn_evenly_up_to_the_largest_that_is_a_body() -> None:
+    envs = SoftGripVectorEnv(4096, ranges={"layer_thickness_m": (1e-3, 0.035)})
+    envs.reset(seed=0)
+    shares = np.sort((envs.bodies.of_body["layer_thickness_m"] - 1e-3) / 0.034)
+    # Kolmogorov and Smirnov's distance at 0.1 %.
+    assert np.abs(shares - (np.arange(4096) + 0.5) / 4096).max() < 1.95 / np.sqrt(4096)
+
+
 def run(seed: int, mode: AutoresetMode = AutoresetMode.NEXT_STEP, steps: int = 120, **settings: Any) -> list[Any]:
     envs = SoftGripVectorEnv(32, autoreset_mode=mode, ranges=RANGES, max_episode_steps=50, **settings)
     found: list[Any] = [envs.reset(seed=seed)[0]]
@@ -394,15 +419,21 @@ def test_the_time_that_is_observed_is_that_of_the_episode_however_it_is_made(ste
     assert truncated
 
 
-def test_draws_that_are_no_body_are_repeated() -> None:
+def test_draws_from_a_posterior_that_are_no_body_are_repeated() -> None:
     # Layers cannot be thicker than the ball of 35 mm: half of the draws are none.
-    envs = SoftGripVectorEnv(300, ranges={"layer_thickness_m": (0.03, 0.04)})
+    material = palpate.Material.read(Path(__file__).resolve().parents[4] / "examples/records/ball-material.toml")
+    envs = SoftGripVectorEnv(300, model=material, posterior=True, ranges={"mass_kg": (0.1, 0.2)})
+    assert envs.bodies.posterior is not None
+    names, mean, root = envs.bodies.posterior
+    layer = names.index("layer_thickness_m")
+    mean[layer], root[layer] = np.log(0.035), 0.05
     envs.reset(seed=1)
     thickness = envs.bodies.of_body["layer_thickness_m"]
     assert thickness.max() <= 0.035 and len(np.unique(thickness)) == 300
-    never = SoftGripVectorEnv(2, ranges={"layer_thickness_m": (0.04, 0.05)})
+    shares = np.sort((envs.bodies.mass_kg - 0.1) / 0.1)
+    assert np.abs(shares - (np.arange(300) + 0.5) / 300).max() < 1.95 / np.sqrt(300)
     with pytest.raises(palpate.ModelError, match="layer thickness must be above 0 m and at most the depth"):
-        never.reset(seed=1)
+        SoftGripVectorEnv(2, ranges={"layer_thickness_m": (0.04, 0.05)})
 
 
 @pytest.mark.parametrize(
