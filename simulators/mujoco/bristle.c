@@ -30,7 +30,7 @@ void let_go(mjtNum* memory) {
 traction bristle(const contact* c, const placement* at, const mjtNum jaw_frame[9], double normal_force, mjtNum* memory) {
   traction friction = {{0, 0, 0}, 0, 0, c->friction * normal_force};
   const double radius = c->friction > 0 ? c->torsion / c->friction : 0;
-  mjtNum slip[3], twist, total;
+  mjtNum slip[3], twist, elastic;
   if (!(friction.limit > 0)) {
     let_go(memory);
     friction.limit = 0;
@@ -39,21 +39,21 @@ traction bristle(const contact* c, const placement* at, const mjtNum jaw_frame[9
   carried_along(jaw_frame, at->normal, memory, slip);
   mju_addTo3(slip, at->path);
   twist = memory[MEMORY_TWIST] + at->turn;
-  friction.load = c->tangential_stiffness * hypot(mju_norm3(slip), radius * twist);
-  if (friction.load > friction.limit) {
-    mju_scl3(slip, slip, friction.limit / friction.load);
-    twist *= friction.limit / friction.load;
-    friction.load = friction.limit;
+  elastic = c->tangential_stiffness * hypot(mju_norm3(slip), radius * twist);
+  if (elastic > friction.limit) {
+    mju_scl3(slip, slip, friction.limit / elastic);
+    twist *= friction.limit / elastic;
   }
   mju_mulMatTVec3(memory + MEMORY_SLIP, jaw_frame, slip);
   memory[MEMORY_TWIST] = twist;
   mju_scl3(friction.force, slip, -c->tangential_stiffness);
   mju_addToScl3(friction.force, at->velocity, -c->tangential_damping);
   friction.moment = -radius * radius * (c->tangential_stiffness * twist + c->tangential_damping * at->spin);
-  total = hypot(mju_norm3(friction.force), radius > 0 ? friction.moment / radius : 0);
-  if (total > friction.limit) {
-    mju_scl3(friction.force, friction.force, friction.limit / total);
-    friction.moment *= friction.limit / total;
+  friction.load = hypot(mju_norm3(friction.force), radius > 0 ? friction.moment / radius : 0);
+  if (friction.load > friction.limit) {
+    mju_scl3(friction.force, friction.force, friction.limit / friction.load);
+    friction.moment *= friction.limit / friction.load;
+    friction.load = friction.limit;
   }
   return friction;
 }

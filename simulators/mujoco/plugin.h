@@ -94,7 +94,7 @@ typedef struct {
 typedef struct {
   mjtNum force[3]; /* on the body, across the normal, N */
   mjtNum moment;   /* on the body about the normal, N m */
-  double load;     /* of the elastic part, as a tangential force, N */
+  double load;     /* force and moment as a tangential force that loads the contact as much, N */
   double limit;    /* Coulomb's, N */
 } traction;
 

@@ -303,6 +303,30 @@ def test_what_is_held_too_weakly_slips_and_falls() -> None:
     assert d.body("body").xpos[2] < -0.002
 
 
+def test_the_load_of_a_sensor_is_the_whole_of_the_tangential_force() -> None:
+    # The deflection of the bristle alone had a load of 0.30 N beside 1.80 N of friction, and a margin while it slid.
+    m = mujoco.MjModel.from_xml_string(f"""<mujoco><option timestep="0.0002" gravity="0 0 0"/>
+      <default><geom contype="0" conaffinity="0" friction="0.6"/></default>
+      <extension><plugin plugin="palpate.contact">{instance("tip", TIP, geom1="plate", geom2="tip")}</plugin>
+        <plugin plugin="palpate.sensor"/></extension>
+      <worldbody><body pos="0 0 -0.01"><joint name="x" type="slide" axis="1 0 0"/><geom name="plate" type="box" size="0.1 0.1 0.01" mass="0.5"/></body>
+        <body pos="0 0 0.012"><joint name="z" type="slide" axis="0 0 -1"/><geom name="tip" size="0.012" mass="0.3"/></body></worldbody>
+      <sensor><plugin name="tip" plugin="palpate.sensor"><config key="contact" value="tip"/></plugin></sensor></mujoco>""")
+    d = mujoco.MjData(m)
+    d.joint("z").qpos[0] = 0.002
+    mujoco.mj_step(m, d)
+    # Struck: its force is that of the damping, then of both.
+    d.joint("x").qvel[0] = 0.5
+    slid, stuck = 0, 0
+    for _ in range(2000):
+        d.joint("z").qpos[0], d.joint("z").qvel[0] = 0.002, 0.0
+        mujoco.mj_step(m, d)
+        _, force, margin, load, _ = d.sensor("tip").data
+        assert load == pytest.approx(abs(d.joint("x").qfrc_passive[0]), abs=1e-12) and margin == pytest.approx(0.6 * force - load, abs=1e-12)
+        slid, stuck = slid + (margin < 1e-12), stuck + (margin > 0.1 * force)
+    assert slid > 50 and stuck > 50
+
+
 def test_runge_kutta_and_others_agree() -> None:
     forces = []
     for integrator in ("Euler", "RK4", "implicit", "implicitfast"):
