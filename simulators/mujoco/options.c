@@ -88,6 +88,25 @@ static void read_model(const mjModel* m, int instance, contact* c) {
   c->sides = sides;
 }
 
+/* A body that counts as bonded pulls from any distance: at a joint only from first touch on, between geoms nowhere. Their friction, which
+ * is none in tension, is no bond either. */
+static void refuse_bond(const mjModel* m, int instance, const contact* c) {
+  static const char* const hint = "hint: set separation = true under [contact] of the test description where the jaw only presses, and calibrate again";
+  int32_t is_bonded = 0;
+  palpate_model_is_bonded(c->model, &is_bonded);
+  if (!is_bonded) return;
+  if (c->joint < 0) {
+    mju_error("%s \"%s\": separation = false in the description: a bonded body would pull a geom from any distance; %s", CONTACT_PLUGIN,
+              name_of(m, instance), hint);
+  } else {
+    const double ahead = c->closing * (c->touch - m->qpos0[m->jnt_qposadr[c->joint]]);
+    if (ahead > 0) {
+      mju_error("%s \"%s\": separation = false in the description: a bonded body would pull the joint, which starts %g m before first touch; %s",
+                CONTACT_PLUGIN, name_of(m, instance), ahead, hint);
+    }
+  }
+}
+
 static void read_joint(const mjModel* m, int instance, contact* c) {
   static const char* const others[] = {"friction", "torsional_friction", "tangential_stiffness", "tangential_damping", NULL};
   refuse_keys(m, instance, others, "a joint");
@@ -181,6 +200,7 @@ contact* contact_of(const mjModel* m, int instance) {
   } else {
     read_geoms(m, instance, c);
   }
+  refuse_bond(m, instance, c);
   c->jacobian = (mjtNum*)calloc(12 * (size_t)mjMAX(1, m->nv), sizeof(mjtNum));
   if (!c->jacobian) mju_error("%s: out of memory", CONTACT_PLUGIN);
   c->other = c->jacobian + 6 * m->nv;

@@ -226,6 +226,15 @@ palpate_status palpate_model_deepest_m(const struct palpate_model *model,
                                        double *deepest_m);
 
 /*
+ 1 where the body counts as bonded to its jaw (`separation = false`), which then pulls below 0 m from any distance; 0 where the jaw lets go.
+
+ # Safety
+ Each pointer is null or valid.
+ */
+palpate_status palpate_model_is_bonded(const struct palpate_model *model,
+                                       int32_t *is_bonded);
+
+/*
  The deepest displacement of the jaw in m in the test that a material was calibrated by; infinite of a body that was described.
 
  # Safety

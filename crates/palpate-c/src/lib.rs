@@ -26,7 +26,7 @@ mod version;
 pub use call::{Status, palpate_status_text};
 pub use model::{
     Model, palpate_model_calibrated_m, palpate_model_deepest_m, palpate_model_depth_m, palpate_model_free,
-    palpate_model_from_file, palpate_model_from_text, palpate_model_sides,
+    palpate_model_from_file, palpate_model_from_text, palpate_model_is_bonded, palpate_model_sides,
 };
 pub use state::{
     PALPATE_STATE_BYTES, State, palpate_excess_strain, palpate_force, palpate_is_touching, palpate_state_restore,

@@ -224,6 +224,16 @@ pub unsafe extern "C" fn palpate_model_deepest_m(model: *const Model, deepest_m:
     unsafe { query(model, deepest_m, Model::deepest) }
 }
 
+/// 1 where the body counts as bonded to its jaw (`separation = false`), which then pulls below 0 m from any distance; 0 where the jaw lets go.
+///
+/// # Safety
+/// Each pointer is null or valid.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn palpate_model_is_bonded(model: *const Model, is_bonded: *mut i32) -> Status {
+    // SAFETY: by the contract of this function.
+    unsafe { query(model, is_bonded, |model| i32::from(model.contact.separation == Separation::Bonded)) }
+}
+
 /// The deepest displacement of the jaw in m in the test that a material was calibrated by; infinite of a body that was described.
 ///
 /// # Safety

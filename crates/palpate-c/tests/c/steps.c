@@ -143,6 +143,7 @@ int main(int count, char **arguments) {
   palpate_model *model = ball(), *material = NULL;
   char message[300];
   double calibrated = 0.0;
+  int32_t is_bonded = -1;
   golden(model);
   bytes(model);
   refusals(model);
@@ -151,6 +152,7 @@ int main(int count, char **arguments) {
   CHECK(count == 2);
   CHECK(palpate_model_from_file(arguments[1], &material, message, sizeof message) == PALPATE_STATUS_OK);
   CHECK(palpate_model_calibrated_m(material, &calibrated) == PALPATE_STATUS_OK && calibrated < 0.1);
+  CHECK(palpate_model_is_bonded(material, &is_bonded) == PALPATE_STATUS_OK && is_bonded == 0);
   CHECK(palpate_model_from_file("/no/such/file.toml", &material, message, sizeof message) == PALPATE_STATUS_DESCRIPTION);
   CHECK(strstr(message, "/no/such/file.toml") != NULL);
   CHECK(palpate_model_free(material) == PALPATE_STATUS_OK);

@@ -8,6 +8,9 @@ use palpate_c::{
     palpate_model_depth_m, palpate_model_free, palpate_model_from_file, palpate_model_from_text, palpate_model_sides,
     palpate_state_restore, palpate_state_save, palpate_step, palpate_step_force, palpate_step_force_message,
     palpate_step_message, palpate_stiffness,
+    palpate_model_depth_m, palpate_model_free, palpate_model_from_file, palpate_model_from_text,
+    palpate_model_is_bonded, palpate_model_sides, palpate_state_restore, palpate_state_save, palpate_step, palpate_step_force, palpate_step_force_message,
+    palpate_step_message,
 };
 
 use crate::common::{BALL, PAD, model};
@@ -126,6 +129,19 @@ fn a_state_beyond_the_body_has_no_force_and_makes_no_step() {
         ]
     };
     assert_eq!((statuses, number), ([Status::Displacement; 3], -1.0));
+}
+
+#[test]
+fn a_model_states_whether_its_jaw_pulls() {
+    for (sentence, expected, pulls) in [("", 0, false), ("separation = true", 0, false), ("separation = false", 1, true)] {
+        let owned = model(&format!("{BALL}[contact]\n{sentence}\n"));
+        let (mut is_bonded, mut state, mut force) = (-1, State::default(), f64::NAN);
+        // SAFETY: pointers to values of this test, here and below.
+        assert_eq!(unsafe { palpate_model_is_bonded(owned.0, &raw mut is_bonded) }, Status::Ok);
+        unsafe { palpate_step(owned.0, &raw mut state, 1.0, 0.002, &raw mut force) };
+        unsafe { palpate_step(owned.0, &raw mut state, 0.01, 0.0002, &raw mut force) };
+        assert_eq!((is_bonded, force < 0.0), (expected, pulls), "{sentence}");
+    }
 }
 
 #[test]

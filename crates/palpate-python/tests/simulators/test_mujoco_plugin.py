@@ -468,6 +468,27 @@ def test_wrong_configurations_are_refused_with_a_reason(keys: dict[str, Any], ex
         mujoco.MjData(mujoco.MjModel.from_xml_string(xml))
 
 
+BONDED = DESCRIPTION + "[contact]\nseparation = false\n"
+
+
+def test_a_bonded_body_does_not_pull_a_jaw_across_a_gap() -> None:
+    # A block as `palpate calibrate` has it by default drew a finger across 5 mm with 27 N in the first step.
+    words = "separation = false in the description: a bonded body would pull"
+    hint = ".*set separation = true under .contact. of the test description where the jaw only presses, and calibrate again"
+    with pytest.raises((ValueError, mujoco.FatalError), match=f"{words} a geom from any distance{hint}"):
+        mujoco.MjData(gripper(description=BONDED))
+    with pytest.raises((ValueError, mujoco.FatalError), match=f"{words} the joint, which starts 0.005 m before first touch{hint}"):
+        mujoco.MjData(jaw(BONDED, touch=0.005))
+    with pytest.raises((ValueError, mujoco.FatalError), match="starts 0.005 m before first touch"):
+        mujoco.MjData(jaw(BONDED, touch=-0.005, closing=-1))
+
+
+def test_a_jaw_that_is_bonded_to_a_body_pulls_it_from_first_touch_on() -> None:
+    places = np.concatenate([np.linspace(0, 0.004, 50), np.linspace(0.004, 0, 50)])
+    forces = along(jaw(BONDED), places)
+    assert forces.max() > 0.5 and forces.min() < -0.05
+
+
 @pytest.mark.skipif(not hasattr(mujoco, "mjtSleepPolicy"), reason="this version does not put bodies to sleep")
 def test_a_body_that_may_fall_asleep_is_refused() -> None:
     # A ball that slept on the table stayed there while the fingers closed on it and rose.
