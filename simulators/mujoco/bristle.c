@@ -22,6 +22,28 @@ static void carried_along(const mjtNum jaw_frame[9], const mjtNum normal[3], con
   if (across > 0) mju_scl3(slip, slip, length / across);
 }
 
+static double mobility_of_body(const mjModel* m, const contact* c, int geom, double arm) {
+  const mjtNum* inverse = m->body_invweight0 + 2 * m->geom_bodyid[geom];
+  const double radius = c->friction > 0 ? c->torsion / c->friction : 0;
+  return inverse[0] + (arm * arm + radius * radius) * inverse[1];
+}
+
+double mobility_of(const mjModel* m, const contact* c, double arm1, double arm2) {
+  return mobility_of_body(m, c, c->geom1, arm1) + mobility_of_body(m, c, c->geom2, arm2);
+}
+
+/* A step v += -h (k s + c v) w, s += h v of a body of the mobility w settles while 2 h c w + h^2 k w < 4; Runge's and Kutta's while the
+ * roots of x^2 + c w x + k w = 0 are within 2.6/h, a half circle that its region of stability contains. The fastest motion of a body with
+ * several contacts is at most as fast as all of them together make one. */
+double longest_step(const mjModel* m, const mjData* d, const contact* c, const mjtNum point[3]) {
+  const double arm1 = mju_dist3(point, d->xipos + 3 * m->geom_bodyid[c->geom1]);
+  const double arm2 = mju_dist3(point, d->xipos + 3 * m->geom_bodyid[c->geom2]);
+  const double mobility = c->neighbours * mobility_of(m, c, arm1, arm2);
+  const double rate = c->tangential_damping * mobility, square = c->tangential_stiffness * mobility;
+  if (m->opt.integrator != mjINT_RK4) return 4 / (rate + sqrt(rate * rate + 4 * square));
+  return 2.6 / (rate * rate > 4 * square ? 0.5 * (rate + sqrt(rate * rate - 4 * square)) : sqrt(square));
+}
+
 void let_go(mjtNum* memory) {
   mju_zero3(memory + MEMORY_SLIP);
   memory[MEMORY_TWIST] = 0;

@@ -26,6 +26,17 @@ static void report(const mjModel* m, contact* c, int instance, finding what, dou
   }
 }
 
+/* Compares the time step with that of friction, once in the life of the data, at first touch. */
+static void check_step(const mjModel* m, const mjData* d, contact* c, int instance, const mjtNum point[3]) {
+  const double longest = longest_step(m, d, c, point);
+  const char* name = mj_id2name(m, mjOBJ_PLUGIN, instance);
+  if (m->opt.timestep > longest) {
+    mju_warning("%s \"%s\": friction may shake for ever: expected a time step of %.3g s or less, found %g s", CONTACT_PLUGIN,
+                name ? name : "without a name", longest, m->opt.timestep);
+  }
+  c->is_step_known = 1;
+}
+
 /* One step of the jaw; what is bonded to it and cannot be pulled stays at first touch. */
 static palpate_status step(const contact* c, palpate_state* state, double dt, double place, double* force) {
   palpate_status status = palpate_step(c->model, state, dt, place, force);
@@ -118,6 +129,7 @@ static void compute(const mjModel* m, mjData* d, int instance, int capability) {
     d->qfrc_passive[m->jnt_dofadr[c->joint]] -= c->closing * force;
   } else if (at.displacement > -c->depth) {
     friction = bristle(c, &at, d->geom_xmat + 9 * c->geom1, force, memory);
+    if (force > 0 && !c->is_step_known) check_step(m, d, c, instance, at.point);
     if (force != 0) apply(m, c, &at, force, &friction, d->qfrc_passive);
   } else {
     let_go(memory);

@@ -145,16 +145,30 @@ static double own_tangential_stiffness(const contact* c) {
   return 2.0 / 3.0 * c->sides * stiffness;
 }
 
-/* Mass that a geom moves with: its body with all that is welded to it or hangs on it; none of what does not move. */
-static double moving_mass(const mjModel* m, int geom) {
-  const int body = m->body_weldid[m->geom_bodyid[geom]];
-  return body ? m->body_subtreemass[body] : 0;
+/* Distance of the farthest point of a geom from the centre of mass of its body, m. */
+static double reach_of(const mjModel* m, int geom) {
+  return mju_dist3(m->geom_pos + 3 * geom, m->body_ipos + 3 * m->geom_bodyid[geom]) + m->geom_rbound[geom];
 }
 
-/* Half of critical damping of the lighter of the two bodies on its bristle. */
+/* Half of critical damping of what the bristle moves: the two bodies, which rotate too. */
 static double own_tangential_damping(const mjModel* m, const contact* c) {
-  const double mass1 = moving_mass(m, c->geom1), mass2 = moving_mass(m, c->geom2);
-  return sqrt(c->tangential_stiffness * (mass1 > 0 && mass2 > 0 ? fmin(mass1, mass2) : fmax(mass1, mass2)));
+  const double mobility = mobility_of(m, c, reach_of(m, c->geom1), reach_of(m, c->geom2));
+  return mobility > 0 ? sqrt(c->tangential_stiffness / mobility) : 0;
+}
+
+/* Number of contacts of this plug-in between geoms that move the same body as a geom; none of a body that does not move. */
+static int contacts_of_body(const mjModel* m, int instance, int geom) {
+  static const char* const keys[] = {"geom1", "geom2"};
+  const int body = m->body_weldid[m->geom_bodyid[geom]];
+  int other, key, count = 0;
+  for (other = 0; body && other < m->nplugin; other++) {
+    for (key = 0; m->plugin[other] == m->plugin[instance] && key < 2; key++) {
+      const char* name = text_of(m, other, keys[key]);
+      const int found = name ? mj_name2id(m, mjOBJ_GEOM, name) : -1;
+      count += found >= 0 && m->body_weldid[m->geom_bodyid[found]] == body;
+    }
+  }
+  return count;
 }
 
 static void read_geoms(const mjModel* m, int instance, contact* c) {
@@ -172,6 +186,7 @@ static void read_geoms(const mjModel* m, int instance, contact* c) {
   c->torsion = number_of(m, instance, "torsional_friction", fmax(friction1[1], friction2[1]), 0);
   c->tangential_stiffness = number_of(m, instance, "tangential_stiffness", own_tangential_stiffness(c), 0);
   c->tangential_damping = number_of(m, instance, "tangential_damping", own_tangential_damping(m, c), 0);
+  c->neighbours = mjMAX(contacts_of_body(m, instance, c->geom1), contacts_of_body(m, instance, c->geom2));
   if (collide(m, c->geom1, c->geom2)) {
     mju_warning("%s \"%s\": MuJoCo computes a contact between the same geoms: add <exclude body1=... body2=...> to <contact>",
                 CONTACT_PLUGIN, name_of(m, instance));

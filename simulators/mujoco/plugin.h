@@ -72,6 +72,8 @@ typedef struct {
   double normal_damping;       /* N s/m, beside that of the material; 0 unless requested */
   double tangential_stiffness; /* N/m */
   double tangential_damping;   /* N s/m */
+  int neighbours;    /* contacts that move the same body, this one included: the larger number of the two bodies */
+  int is_step_known; /* whether the time step was compared with that at which friction settles */
   int substeps;
   mjtNum* jacobian; /* (3 + 3) x nv: of the velocity and the rotation of the body relative to the jaw */
   mjtNum* other;    /* the same of one body */
@@ -111,6 +113,12 @@ void follow(const mjData* d, const contact* c, int has_begun, mjtNum* memory, pl
 
 /* Deflects the bristle of `memory` by the motion since the start of the step and returns the friction under a normal force. */
 traction bristle(const contact* c, const placement* at, const mjtNum jaw_frame[9], double normal_force, mjtNum* memory);
+
+/* What a tangential force of 1 N accelerates the contact by, m/s^2, at two distances (m) from the centres of mass: an inverse mass. */
+double mobility_of(const mjModel* m, const contact* c, double arm1, double arm2);
+
+/* Time step up to which friction is sure to settle at a contact, s; infinite where nothing moves. */
+double longest_step(const mjModel* m, const mjData* d, const contact* c, const mjtNum point[3]);
 
 /* Takes the deflection from the bristle of `memory`: nothing deflects what is apart. */
 void let_go(mjtNum* memory);
