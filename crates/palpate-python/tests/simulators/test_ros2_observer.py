@@ -182,6 +182,40 @@ def test_messages_that_are_late_are_left_out(bridge_module: Any) -> None:
     assert grip.values("equilibrium_force_n") == clean.values("equilibrium_force_n")
 
 
+class Recorder:
+    """An observer that keeps what it is fed with."""
+
+    def __init__(self, observer: palpate.Observer) -> None:
+        self.observer, self.fed = observer, []  # type: ignore[var-annotated]
+
+    def feed(self, time: float, force: float, displacement: float | None) -> palpate.Observation:
+        self.fed.append((time, displacement))
+        return self.observer.feed(time, force, displacement)
+
+
+@pytest.mark.parametrize(("late", "warns"), [(0.1, False), (0.3, False), (1.9, False), (5.0, True)])
+def test_a_late_wrench_has_the_displacement_of_its_stamp(bridge_module: Any, late: float, warns: bool) -> None:
+    # Of joint states at 1 kHz 256 were kept, and a wrench 0.3 s late had the displacement of 45 ms after it, without a warning.
+    grip = Grip(bridge_module)
+    recorder = Recorder(grip.bridge._observer)
+    grip.bridge._observer = recorder
+    for tick in range(8000):
+        grip.joint(1e-3 * tick, 1e-5 * tick)
+        if tick % 100 == 0 and 1e-3 * tick >= late:
+            grip.wrench(1e-3 * tick - late, 1.0)
+    # The first wrench is of 0 s, the zero of the times.
+    found = [(time, displacement) for time, displacement in recorder.fed if displacement is not None]
+    assert all(displacement == pytest.approx(0.01 * time, abs=1e-9) for time, displacement in found)
+    assert len(recorder.fed) > 25
+    if warns:
+        assert len(found) < len(recorder.fed)
+        expected = "wrenches: expected stamps at most 2.1 s behind those of joint states, found one 5 s behind"
+        assert grip.warnings() == [expected]
+    else:
+        assert len(found) == len(recorder.fed) and grip.warnings() == []
+        assert len(grip.bridge._joints) < 5000
+
+
 def test_a_missing_joint_is_reported_once_and_the_force_alone_is_observed(bridge_module: Any) -> None:
     series, grip = simulated(SQUEEZE), Grip(bridge_module, repeat_warnings_s=1000.0)
     for index, time in enumerate(series.time_s):

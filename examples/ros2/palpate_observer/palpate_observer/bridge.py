@@ -5,12 +5,14 @@ published. It reads attributes alone and makes messages of the classes that it i
 alike.
 
 Readings join by their stamps: the displacement is interpolated between two joint states at the stamp of each wrench. A wrench waits for the
-joint state after it, at most `max_wait_s`; then it is used without a displacement.
+joint state after it, at most `max_wait_s`; then it is used without a displacement. Joint states wait for wrenches that come late, by up to
+`max_wait_s` and `RESERVE_S`; a wrench that comes later is used without a displacement too.
 """
 
 from __future__ import annotations
 
 import math
+from bisect import bisect_right
 from collections import deque
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
@@ -23,6 +25,9 @@ RESULTS = ("equilibrium_force_n", "excess_strain", "time_to_slip_s", "time_to_sl
 
 #: Where `diagnostic_msgs/DiagnosticArray` is published.
 DIAGNOSTICS = "diagnostics"
+
+#: How long joint states are kept for wrenches beyond `max_wait_s`, s.
+RESERVE_S = 2.0
 
 #: The classes of messages that a bridge makes.
 TYPES = (
@@ -112,7 +117,9 @@ class Bridge:
 
     def _restart(self) -> None:
         self._observer = self._settings.observer()
-        self._joints: deque[tuple[int, float]] = deque(maxlen=256)
+        self._joints: list[tuple[int, float]] = []
+        #: Whether joint states have been dropped that were before all of these.
+        self._dropped = False
         self._waiting: deque[tuple[int, float]] = deque()
         self._last: dict[str, int] = {}
         self._zero: int | None = None
@@ -136,6 +143,7 @@ class Bridge:
         if not math.isfinite(position):
             return out + self._warn(stamp, "joint_not_finite", f"expected a finite position, found {position}")
         self._joints.append((stamp, self._settings.metres_per_position * position))
+        self._drop(stamp - _nanoseconds(self._kept_s()))
         while self._waiting and self._waiting[0][0] <= stamp:
             out += self._feed(*self._waiting.popleft())
         return out
@@ -160,6 +168,17 @@ class Bridge:
             out += self._feed(*self._waiting.popleft())
         return out
 
+    def _kept_s(self) -> float:
+        """How long joint states are kept."""
+        return self._settings.max_wait_s + RESERVE_S
+
+    def _drop(self, before: int) -> None:
+        """Drops joint states before a stamp, all but the last of them; many at once, as the others move up."""
+        old = bisect_right(self._joints, before, key=lambda one: one[0]) - 1
+        if 2 * old > len(self._joints):
+            del self._joints[:old]
+            self._dropped = True
+
     def _missing(self) -> str:
         """That no position of the joint came in time, with the joints that did."""
         found = ", ".join(sorted(self._others))
@@ -182,7 +201,7 @@ class Bridge:
 
     def _displacement(self, stamp: int) -> float | None:
         """The displacement at a stamp: between two joint states, or that of the nearest within `max_wait_s`."""
-        after = next((i for i in range(len(self._joints) - 1, -1, -1) if self._joints[i][0] <= stamp), -1) + 1
+        after = bisect_right(self._joints, stamp, key=lambda one: one[0])
         before = self._joints[after - 1] if after else None
         later = self._joints[after] if after < len(self._joints) else None
         if before and later:
@@ -197,15 +216,22 @@ class Bridge:
         """One tick of the observer."""
         if self._zero is None:
             self._zero = stamp
-        displacement = self._displacement(stamp) if self._settings.joint else None
+        warned: list[Publication] = []
+        displacement = None
+        if self._settings.joint and self._dropped and stamp < self._joints[0][0]:
+            late = (self._joints[-1][0] - stamp) / 1e9
+            text = f"wrenches: expected stamps at most {self._kept_s():g} s behind those of joint states, found one {late:g} s behind"
+            warned = self._warn(stamp, "wrench_late", text)
+        elif self._settings.joint:
+            displacement = self._displacement(stamp)
         try:
             observed = self._observer.feed((stamp - self._zero) / 1e9, force, displacement)
         except palpate.PalpateError as error:
-            return self._warn(stamp, "refused", str(error))
+            return warned + self._warn(stamp, "refused", str(error))
         values = ((name, getattr(observed, name)) for name in RESULTS)
         float64 = self._types["std_msgs/msg/Float64"]
         out = [Publication(name, float64(data=float(value))) for name, value in values if value is not None]
-        return out + self._events(stamp, observed)
+        return warned + out + self._events(stamp, observed)
 
     def _events(self, stamp: int, observed: palpate.Observation) -> list[Publication]:
         """What changed with a tick: holds that begin and end, slip that is near or there."""
