@@ -9,8 +9,8 @@ use palpate_c::{
     palpate_state_restore, palpate_state_save, palpate_step, palpate_step_force, palpate_step_force_message,
     palpate_step_message, palpate_stiffness,
     palpate_model_depth_m, palpate_model_free, palpate_model_from_file, palpate_model_from_text,
-    palpate_model_is_bonded, palpate_model_sides, palpate_state_restore, palpate_state_save, palpate_step, palpate_step_force, palpate_step_force_message,
-    palpate_step_message,
+    palpate_model_is_bonded, palpate_model_sides, palpate_state_restore, palpate_state_save, palpate_step,
+    palpate_step_force, palpate_step_force_message, palpate_step_message,
 };
 
 use crate::common::{BALL, PAD, model};
@@ -133,7 +133,9 @@ fn a_state_beyond_the_body_has_no_force_and_makes_no_step() {
 
 #[test]
 fn a_model_states_whether_its_jaw_pulls() {
-    for (sentence, expected, pulls) in [("", 0, false), ("separation = true", 0, false), ("separation = false", 1, true)] {
+    for (sentence, expected, pulls) in
+        [("", 0, false), ("separation = true", 0, false), ("separation = false", 1, true)]
+    {
         let owned = model(&format!("{BALL}[contact]\n{sentence}\n"));
         let (mut is_bonded, mut state, mut force) = (-1, State::default(), f64::NAN);
         // SAFETY: pointers to values of this test, here and below.

@@ -26,6 +26,8 @@ use crate::work::{briefly, in_parallel, shortly};
 /// model : path or mapping, or a list of them
 ///     One model for ``count`` contacts, or one each, as for `ContactState`; all by the latency law with one rate coefficient, or all by
 ///     linear laws.
+///     A jaw that is bonded to its body (``separation = false``, as a calibrated block has it unless its test states otherwise) pulls below 0 m from
+///     any distance: jaws that only press need ``separation = true``.
 /// count : int, optional
 ///     How many, of one model; none beside a list, or where the arrays below say it.
 /// modulus_pa, radius_m, exponent, rate_coefficient_per_s, layer_thickness_m : float or array_like, shape (N,), optional

@@ -382,6 +382,23 @@ def test_what_is_lifted_creeps_with_no_integrator() -> None:
         assert abs(sunk[1] - sunk[0]) < 1e-6 and abs(sunk[0] - 79.8e-6) < 1e-6, (timestep, sunk)
 
 
+def test_jaws_that_are_moved_as_mocap_bodies_lift_what_they_hold() -> None:
+    # They have no velocity in MuJoCo: the ball fell while they rose.
+    pairs = "".join(instance(side, DESCRIPTION, geom1=side, geom2="ball") for side in ("left", "right"))
+    jaws = "".join(f'<body name="{side}" mocap="true"><geom name="{side}" type="box" size="0.01 0.03 0.03"/></body>' for side in ("left", "right"))
+    m = mujoco.MjModel.from_xml_string(f"""<mujoco><option timestep="0.001"/>
+      <default><geom contype="0" conaffinity="0" friction="0.8 0.005 0.0001"/></default>
+      <extension><plugin plugin="palpate.contact">{pairs}</plugin></extension>
+      <worldbody>{jaws}<body name="ball"><freejoint/><geom name="ball" size="0.035" mass="0.1"/></body></worldbody></mujoco>""")
+    d = mujoco.MjData(m)
+    for tick in range(2500):
+        place, lift = 0.045 - 0.005 * min(tick / 500, 1), 0.05 * np.clip(1e-3 * tick - 1, 0, 1)
+        m.opt.gravity[2] = -9.81 if tick > 600 else 0
+        d.mocap_pos[:] = [[-place, 0, lift], [place, 0, lift]]
+        mujoco.mj_step(m, d)
+    assert -1e-4 < d.qpos[2] - 0.05 < -5e-5
+
+
 def test_the_stiffness_of_friction_is_in_transitions_by_differences() -> None:
     m = gripper()
     d = held(m)

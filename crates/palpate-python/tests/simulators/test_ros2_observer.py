@@ -186,7 +186,8 @@ class Recorder:
     """An observer that keeps what it is fed with."""
 
     def __init__(self, observer: palpate.Observer) -> None:
-        self.observer, self.fed = observer, []  # type: ignore[var-annotated]
+        self.observer = observer
+        self.fed: list[tuple[float, float | None]] = []
 
     def feed(self, time: float, force: float, displacement: float | None) -> palpate.Observation:
         self.fed.append((time, displacement))
