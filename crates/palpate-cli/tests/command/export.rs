@@ -68,6 +68,14 @@ fn every_engine_has_a_card() {
 }
 
 #[test]
+fn no_card_speaks_of_another_program() {
+    for engine in ["openradioss", "febio", "felupe"] {
+        let text = card(engine, &[]);
+        assert!(!text.contains("Abaqus") && !text.contains("*STATIC"), "{engine}");
+    }
+}
+
+#[test]
 fn a_card_states_its_range_its_error_and_what_is_missing() {
     for engine in ENGINES {
         let (text, document) = (card(engine, &[]), json(engine, &[]));

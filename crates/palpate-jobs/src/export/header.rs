@@ -111,15 +111,17 @@ impl Card {
     fn limits(&self) -> Vec<String> {
         let title = self.options.engine.title();
         if let Model::Continuum(_) = self.model {
+            let step = if self.options.engine == Engine::Abaqus { " (in a *STATIC step)" } else { "" };
             return vec![
                 format!(
                     "What {title} cannot show with it: a Prony series is linear and of this depth and loading only. The relative rate \
                      of the latency law depends on the excess strain at the start of the hold; another depth, speed or history relaxes \
                      with other time constants"
                 ),
-                "Load within a time much shorter than the smallest time constant (in Abaqus in a *STATIC step), then hold: the series \
-                 begins at the start of the hold"
-                    .to_owned(),
+                format!(
+                    "Load within a time much shorter than the smallest time constant{step}, then hold: the series begins at the \
+                     start of the hold"
+                ),
                 "The modulus is that of the contact law of the material; a mesh of the same body need not have its force"
                     .to_owned(),
             ];
