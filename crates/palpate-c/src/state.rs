@@ -27,7 +27,7 @@ impl State {
     }
 
     /// The same of a contact of this model, whose jaw is not beyond the body.
-    pub(crate) fn contact_of(self, Model { contact: model }: &Model) -> Result<ContactState, StepError> {
+    pub(crate) fn contact_of(self, Model { contact: model, .. }: &Model) -> Result<ContactState, StepError> {
         let contact = self.contact()?;
         model.specimen.check_contact_displacement(self.jaw_m, model.separation == Separation::Bonded)?;
         Ok(contact)

@@ -105,7 +105,7 @@ unsafe fn explain(
         let model = unsafe { shared(model) }?;
         // SAFETY: the same.
         let mut state = *unsafe { shared(state) }?;
-        if let Err(error) = state.contact().and_then(|mut contact| drive.step(&mut contact, model, dt)) {
+        if let Err(error) = state.contact_of(model).and_then(|mut contact| drive.step(&mut contact, model, dt)) {
             message.set(format_args!("{error}"));
         }
         stepped(model, &mut state, dt, drive).map(drop)

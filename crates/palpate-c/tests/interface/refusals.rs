@@ -5,12 +5,9 @@ use std::ptr;
 
 use palpate_c::{
     Model, PALPATE_STATE_BYTES, State, Status, palpate_force, palpate_model_calibrated_m, palpate_model_deepest_m,
-    palpate_model_depth_m, palpate_model_free, palpate_model_from_file, palpate_model_from_text, palpate_model_sides,
-    palpate_state_restore, palpate_state_save, palpate_step, palpate_step_force, palpate_step_force_message,
-    palpate_step_message, palpate_stiffness,
     palpate_model_depth_m, palpate_model_free, palpate_model_from_file, palpate_model_from_text,
     palpate_model_is_bonded, palpate_model_sides, palpate_state_restore, palpate_state_save, palpate_step,
-    palpate_step_force, palpate_step_force_message, palpate_step_message,
+    palpate_step_force, palpate_step_force_message, palpate_step_message, palpate_stiffness,
 };
 
 use crate::common::{BALL, PAD, model};

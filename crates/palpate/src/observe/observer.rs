@@ -259,7 +259,7 @@ impl Observer {
         let readings =
             [("time", place, time), ("displacement", time, displacement.unwrap_or(0.0)), ("force", time, force)];
         for (what, at, found) in readings {
-            if !(found.abs() < LARGEST) {
+            if found.is_nan() || found.abs() >= LARGEST {
                 return Err(ObserveError::NotFinite { what, time: at, found });
             }
         }

@@ -4,6 +4,7 @@ use super::Finding;
 use super::Severity::{self, Caution, Info, Warning};
 use crate::fit::TrendVerdict;
 use crate::forecast::listed;
+use crate::laws::Law;
 use crate::number::{counted, exact, significant, with_interval};
 use crate::record::Column;
 use crate::segment::HoldMode;
