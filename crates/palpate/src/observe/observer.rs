@@ -6,8 +6,8 @@ use super::signal::{Alone, Change, Correlation, NoiseMeter, Smooth, Stand};
 use super::{Held, Kept, Normal, Observation, ObserveError, ObserverOptions, Slip, kept};
 use crate::statistics::coverage_factor;
 
-/// No sensor shows a number as large in SI.
-const LARGEST: f64 = 1e30;
+/// Readings from which on what is made of them may be infinite.
+const LARGEST: f64 = 1e302;
 /// Noise (standard deviations of one reading) within which a signal stands.
 pub(super) const NOISE: f64 = 5.0;
 /// Share of its range within which a jaw stands that has no noise.

@@ -6,7 +6,7 @@ use crate::contact::Specimen;
 use crate::fit::{ExponentChoice, FitOptions, LatencyFit, fit_hold};
 use crate::record::Record;
 use crate::segment::segmentation::Segment;
-use crate::statistics::{effective_count, lag_one_correlation, median, noise};
+use crate::statistics::{effective_count, lag_one_correlation, mean, median, noise, slope};
 
 /// Where a loading curve begins.
 #[derive(Debug, Clone, Copy)]
@@ -36,14 +36,14 @@ pub(super) struct Touch {
 /// ```
 ///
 /// is equation (11) with the excess strain that (10) gives at a constant drive: X is the excess force at which the drive and
-/// the relaxation balance. n, v and F_e come from the hold; d₀, X and F₀ are found here.
+/// the relaxation balance. n, v and F_e come from the hold; d₀, X and F₀ are found here. A jaw that came at another speed, ḋ₁, up to a corner, balances
+/// at X (ḋ₁/ḋ)^(1/n) there, and y goes on from what it has reached.
 pub(super) struct LoadingCurve<'a> {
     displacement: Vec<f64>,
     force: Vec<f64>,
     /// Displacement of the hold, m.
     level: f64,
-    /// Speed of the jaw, m/s.
-    speed: f64,
+    speeds: Speeds,
     /// The body, of any modulus; `None` for a constant section.
     body: Option<&'a Specimen>,
     /// Laws of the hold with one exponent each.
@@ -72,6 +72,80 @@ impl HoldLaw {
     }
 }
 
+/// Speeds of the jaw in a ramp, m/s.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Speeds {
+    last: f64,
+    /// Another one before, and the displacement (m) at which it ends: a jaw that searches for the body and presses it faster or more slowly.
+    earlier: Option<(f64, f64)>,
+}
+
+/// Share by which two speeds of a ramp differ at least.
+const DIFFER: f64 = 0.05;
+/// Share of the squared residual of one line that two lines leave at most.
+const LEFT: f64 = 0.05;
+/// Samples on each side of a corner at least, and corners that are tried at most.
+const BESIDE: usize = 4;
+const CORNERS: usize = 60;
+
+impl Speeds {
+    /// From times and places of a ramp and the sample before it; `None` where the jaw does not advance.
+    fn of(times: &[f64], places: &[f64]) -> Option<Self> {
+        // The last sample belongs to the ramp only if the jaw was still moving there.
+        let (last, middle) = (times.len() - 1, (times.len() - 1) / 4);
+        let mean = (places[last] - places[middle]) / (times[last] - times[middle]);
+        let lines = |at: usize| [0..at, at..last + 1].map(|part| Line::of(&times[part.clone()], &places[part]));
+        let left = |lines: &[Line; 2]| lines.iter().map(|line| line.square).sum::<f64>();
+        let every = last.div_ceil(CORNERS).max(1);
+        let corners = (BESIDE..(last + 1).saturating_sub(BESIDE)).step_by(every).map(lines);
+        let best = corners.min_by(|a, b| left(a).total_cmp(&left(b)));
+        let whole = Line::of(times, places).square;
+        let earlier = best.filter(|lines| {
+            let [first, then] = lines.each_ref().map(|line| line.speed);
+            first > 0.0 && then > 0.0 && (then / first).ln().abs() > DIFFER && left(lines) < LEFT * whole
+        });
+        let speeds = match earlier {
+            Some([first, then]) => Self {
+                last: then.speed,
+                earlier: Some((first.speed, first.meets(&then))),
+            },
+            None => Self {
+                last: mean,
+                earlier: None,
+            },
+        };
+        (speeds.last.is_finite() && speeds.last > 0.0).then_some(speeds)
+    }
+}
+
+/// A line through places over time.
+struct Line {
+    /// m/s
+    speed: f64,
+    /// Place at time 0, m.
+    start: f64,
+    /// Sum of squared residuals, m².
+    square: f64,
+}
+
+impl Line {
+    fn of(times: &[f64], places: &[f64]) -> Self {
+        let speed = slope(times, places);
+        let start = mean(places) - speed * mean(times);
+        let off = |(time, place): (&f64, &f64)| (place - start - speed * time).powi(2);
+        Self {
+            speed,
+            start,
+            square: times.iter().zip(places).map(off).sum(),
+        }
+    }
+
+    /// The place where it meets another one, m.
+    fn meets(&self, other: &Self) -> f64 {
+        self.start + self.speed * (other.start - self.start) / (self.speed - other.speed)
+    }
+}
+
 /// How many times the noise of the force a curve leaves of the ramp that does not describe it.
 const MISSES: f64 = 1.2;
 
@@ -89,13 +163,7 @@ impl<'a> LoadingCurve<'a> {
     ) -> Option<Self> {
         let laws = laws(record, hold)?;
         let foot = ramp.start.saturating_sub(1);
-        // The last sample belongs to the ramp only if the jaw was still moving there.
-        let last = ramp.end - 1;
-        let middle = foot + (last - foot) / 4;
-        let speed = (displacement[last] - displacement[middle]) / (record.time()[last] - record.time()[middle]);
-        if !(speed.is_finite() && speed > 0.0) {
-            return None;
-        }
+        let speeds = Speeds::of(&record.time()[foot..ramp.end], &displacement[foot..ramp.end])?;
         let every = (ramp.end - foot).div_ceil(MOST);
         let rest = foot.saturating_sub(MOST);
         let samples: Vec<usize> = (rest..foot).chain((foot..ramp.end).step_by(every)).collect();
@@ -105,7 +173,7 @@ impl<'a> LoadingCurve<'a> {
             displacement: samples.iter().map(|i| displacement[*i]).collect(),
             force: samples.iter().map(|i| force[*i]).collect(),
             level: median(&mut displacement[hold.start..hold.end].to_vec()),
-            speed,
+            speeds,
             body,
             laws,
             rise: top - force[foot],
@@ -202,10 +270,27 @@ impl<'a> LoadingCurve<'a> {
             return base;
         }
         let stiffness = |s: f64| self.body.map_or(1.0, |body| body.stiffness(body.contact_displacement(s)).0);
-        let balance = balance.exp();
-        let transient = self.speed * balance.powf(1.0 - law.curve.exponent) / law.coefficient;
-        let excess = balance * law.curve.at(s / transient);
+        let excess = self.excess(law, balance.exp(), touch, s);
         base + stiffness(s) / stiffness(whole) * ((law.relaxed - base) * s / whole + excess)
+    }
+
+    /// The excess force (N) at a travel s (m) since first touch, with its balance (N) at the last speed.
+    fn excess(&self, law: &HoldLaw, balance: f64, touch: f64, s: f64) -> f64 {
+        let n = law.curve.exponent;
+        let transient = |speed: f64, balance: f64| speed * balance.powf(1.0 - n) / law.coefficient;
+        let Speeds { last, earlier } = self.speeds;
+        let rest = transient(last, balance);
+        let Some((first, corner)) = earlier.map(|(first, corner)| (first, corner - touch)).filter(|(_, at)| *at > 0.0)
+        else {
+            return balance * law.curve.at(s / rest);
+        };
+        let balanced = balance * (first / last).powf(1.0 / n);
+        let before = balanced * law.curve.at(s.min(corner) / transient(first, balanced));
+        if s <= corner {
+            before
+        } else {
+            balance * law.curve.on_from(before / balance, (s - corner) / rest)
+        }
     }
 
     fn residuals(&self, law: &HoldLaw, parameters: &[f64; 3]) -> Vec<f64> {
@@ -320,6 +405,8 @@ fn laws(record: &Record, hold: &Segment) -> Option<Vec<HoldLaw>> {
 struct ExcessCurve {
     exponent: f64,
     values: Vec<f64>,
+    /// τ at y = 1 + e^u, from the largest y on, at evenly falling u.
+    falling: Vec<f64>,
 }
 
 impl ExcessCurve {
@@ -340,7 +427,42 @@ impl ExcessCurve {
             y = (y + h * (a + 2.0 * b + 2.0 * c + d) / 6.0).min(1.0);
             values.push(y);
         }
-        Self { exponent, values }
+        let rate = |u: f64| u.exp() / ((1.0 + u.exp()).powf(exponent) - 1.0);
+        let mut falling = vec![0.0];
+        let mut tau = 0.0;
+        for knot in 0..Self::FALLS {
+            let u = Self::HIGHEST - Self::FALL * knot as f64;
+            tau += Self::FALL * (rate(u) + 4.0 * rate(u - 0.5 * Self::FALL) + rate(u - Self::FALL)) / 6.0;
+            falling.push(tau);
+        }
+        Self {
+            exponent,
+            values,
+            falling,
+        }
+    }
+
+    /// Highest u of the values above balance, its steps and their number: y from 21 down to 1 + 10⁻⁸.
+    const HIGHEST: f64 = 3.0;
+    const FALL: f64 = 0.05;
+    const FALLS: usize = 430;
+
+    /// The value a time τ after it was `start`.
+    fn on_from(&self, start: f64, tau: f64) -> f64 {
+        if start <= 1.0 {
+            let knot = self.values.partition_point(|value| *value <= start).clamp(1, Self::STEPS);
+            let (low, high) = (self.values[knot - 1], self.values[knot]);
+            let share = if high > low { ((start - low) / (high - low)).clamp(0.0, 1.0) } else { 1.0 };
+            return self.at(Self::STEP * ((knot - 1) as f64 + share) + tau);
+        }
+        let place = ((Self::HIGHEST - (start - 1.0).ln()) / Self::FALL).clamp(0.0, Self::FALLS as f64);
+        let knot = (place as usize).min(Self::FALLS - 1);
+        let since = self.falling[knot] + (place - knot as f64) * (self.falling[knot + 1] - self.falling[knot]);
+        let reached = since + tau;
+        let knot = self.falling.partition_point(|at| *at <= reached).clamp(1, Self::FALLS);
+        let (low, high) = (self.falling[knot - 1], self.falling[knot]);
+        let place = (knot - 1) as f64 + ((reached - low) / (high - low)).clamp(0.0, 1.0);
+        1.0 + (Self::HIGHEST - Self::FALL * place).exp()
     }
 
     fn at(&self, tau: f64) -> f64 {
@@ -378,4 +500,42 @@ pub(super) fn solved(matrix: [[f64; 3]; 3], right: [f64; 3]) -> Option<[f64; 3]>
         sum / determinant / scale[i]
     };
     Some([entry(0), entry(1), entry(2)])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Against steps of 10⁻⁵ of the equation.
+    #[test]
+    fn an_excess_goes_on_from_where_it_is() {
+        for exponent in [1.0, 2.0, 5.0] {
+            let curve = ExcessCurve::new(exponent);
+            for start in [0.0, 0.3, 0.999, 1.001, 1.5, 4.0] {
+                let mut y: f64 = start;
+                for _ in 0..70_000 {
+                    y += 1e-5 * (1.0 - (y + 0.5e-5 * (1.0 - y.powf(exponent))).powf(exponent));
+                }
+                let found = curve.on_from(start, 0.7);
+                assert!((found - y).abs() < 2e-4 * y, "{exponent} {start}: {found} {y}");
+            }
+        }
+    }
+
+    #[test]
+    fn a_ramp_has_one_speed_or_two() {
+        let times: Vec<f64> = (0..60).map(|i| 0.05 * f64::from(i)).collect();
+        let two = |t: f64| if t < 1.23 { 2.0 * t } else { 2.46 + 8.0 * (t - 1.23) };
+        let ripple = |t: f64| 1e-3 * (37.0 * t).sin();
+        let places = |of: &dyn Fn(f64) -> f64| times.iter().map(|t| of(*t) + ripple(*t)).collect::<Vec<f64>>();
+        let found = Speeds::of(&times, &places(&two)).unwrap();
+        let (first, corner) = found.earlier.unwrap();
+        assert!(
+            (found.last - 8.0).abs() < 0.01 && (first - 2.0).abs() < 0.01 && (corner - 2.46).abs() < 0.02,
+            "{found:?}"
+        );
+        let one = Speeds::of(&times, &places(&|t| 3.0 * t)).unwrap();
+        assert!(one.earlier.is_none() && (one.last - 3.0).abs() < 0.01, "{one:?}");
+        assert_eq!(Speeds::of(&times, &times.iter().map(|t| -t).collect::<Vec<f64>>()), None);
+    }
 }
