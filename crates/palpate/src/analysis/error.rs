@@ -67,7 +67,8 @@ impl AnalysisError {
             Self::Correction(error) => error.hint().to_owned(),
             Self::Specimen(_) => "check the geometry in the test description and its units".to_owned(),
             Self::BeyondBody { .. } => {
-                "check the unit of the displacement, the size of the body and squeezed_from; a body pulled in grips needs separation = false"
+                "check the unit of the displacement, the size of the body and squeezed_from; first touch may lie behind a way through air (touch in \
+                 the test description sets it, baseline corrects a force that drifts in air); a body pulled in grips needs separation = false"
                     .to_owned()
             }
             Self::TouchBeyond { .. } => {
