@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 use crate::fit::{Fit, TrendVerdict, UNEXPLAINED};
 use crate::laws::Law;
 use crate::record::Column;
-use crate::segment::{ForceDelay, HoldMode, LabelCheck, Ripple, Rupture, TouchMethod};
+use crate::segment::{BaselineTilt, ForceDelay, HoldMode, LabelCheck, Ripple, Rupture, TouchMethod};
 
 /// Severity of a finding.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
@@ -414,6 +414,15 @@ pub enum Finding {
     LabelsDisagree(LabelCheck),
     /// The jaw oscillates about the positions it holds.
     JawHunts(Ripple),
+    /// The force grows along the way through air.
+    BaselineTilts(BaselineTilt),
+    /// The foot of the first ramp stands for first touch, but the rules find it behind that.
+    TouchOpen {
+        /// How far behind, m.
+        behind: f64,
+        /// The largest squeeze, m.
+        squeeze: f64,
+    },
     /// First touch of the loading curve is far from that of all other rules.
     TouchApart {
         /// Distance behind (positive) or before the median of the others, m.

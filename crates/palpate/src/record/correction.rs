@@ -57,6 +57,15 @@ pub struct Tare {
     pub force: f64,
     /// Displacement at first touch, m.
     pub displacement: f64,
+    /// Growth of the force without contact with the travel from there, N/m.
+    #[serde(default, skip_serializing_if = "is_none")]
+    pub tilt: f64,
+}
+
+/// Whether there is no tilt.
+#[allow(clippy::trivially_copy_pass_by_ref, reason = "serde hands it a reference")]
+fn is_none(tilt: &f64) -> bool {
+    *tilt == 0.0
 }
 
 /// A quantity that a file gives in place of force or displacement.
@@ -303,7 +312,12 @@ impl fmt::Display for Correction {
             }
             Self::Tared(tare) => {
                 let (displacement, force) = (significant(1e3 * tare.displacement, 4), significant(tare.force, 4));
-                write!(f, "measured from first touch at {displacement} mm and {force} N")
+                write!(f, "measured from first touch at {displacement} mm and {force} N")?;
+                if tare.tilt == 0.0 {
+                    Ok(())
+                } else {
+                    write!(f, ", less {} N/m of travel", significant(tare.tilt, 3))
+                }
             }
             Self::Continued { from, gap, shift } => {
                 let (from, gap) = (significant(*from, 6), significant(*gap, 3));

@@ -204,4 +204,49 @@ fn first_touch_beside_a_change_of_speed_is_where_the_body_is() {
         assert!(error < 1e-4, "{seed}: {error}");
     }
     assert!(held >= 10 && late.abs() < 4e-5, "{held} of 12, {late} m late");
+/// A sphere on a gel that relaxes, behind 8 mm of air or none, and back: force in air that grows with the travel or with the time.
+fn tilted(air: f64, per_travel: f64, per_time: f64, seed: u64) -> Analysis {
+    let sphere = Shape::Indenter {
+        tip: Tip::Sphere { radius: 6.35e-3 },
+        layer: None,
+    };
+    let options = options(sphere, Sides::One, Equilibrium::Hertz { poisson_ratio: 0.5 }, ContactChoice::Auto);
+    let specimen = options.geometry.as_ref().unwrap().specimen(20e3).unwrap();
+    let reach = (air + 2e-3) / 2e-3;
+    let knots = [(0.0, 0.0), (reach, air + 2e-3), (reach + 10.0, air + 2e-3), (2.0 * reach + 10.0, 0.0)];
+    let (mut x, mut t) = (0.0_f64, 0.0);
+    let record = record(&knots, 50, 2e-3, seed, |before, d| {
+        let [from, force] = [before, d].map(|d| specimen.equilibrium_force((d - air).max(0.0)));
+        x = (x + 0.6 * (force - from)) * (-1e-3_f64 / 2.0).exp();
+        t += 1e-3;
+        (force + x).max(0.0) + per_travel * d + per_time * t
+    });
+    analyze(&record, &options).unwrap()
+}
+
+/// A baseline that grew by a fiftieth of the stiffness in contact made the foot of the ramp first touch, without an error: moduli were 10 to 25
+/// times too small.
+#[test]
+fn a_baseline_that_tilts_is_no_body() {
+    for (per_travel, seed) in [(1.0, 1), (4.0, 2), (4.0, 3), (10.0, 4), (-4.0, 5)] {
+        let found = tilted(8e-3, per_travel, 0.0, seed);
+        let (contact, off) = (&found.contact, found.contact.tare.displacement - 8e-3);
+        assert!(
+            off.abs() < 3.0 * contact.displacement_error.unwrap() && off.abs() < 5e-5,
+            "{per_travel} N/m: {contact:?}"
+        );
+        assert!((contact.tare.tilt - per_travel).abs() < 0.2, "{per_travel} N/m: {contact:?}");
+        assert!(states(&found, "baseline_tilts"), "{:?}", found.findings);
+        let modulus = found.modulus.unwrap().estimate.value;
+        assert!((modulus / 20e3 - 1.0).abs() < 0.05, "{per_travel} N/m: {modulus}");
+    }
+    let drifting = tilted(8e-3, 0.0, 4e-3, 6);
+    let contact = &drifting.contact;
+    assert!((contact.tare.displacement - 8e-3).abs() < 5e-5 && contact.tilt.unwrap().in_time, "{contact:?}");
+    assert!(contact.tare.tilt == 0.0 && states(&drifting, "baseline_tilts"), "{contact:?}");
+    // A jaw that starts on the body meets no air, whatever line its force contains.
+    for per_travel in [0.0, 4.0] {
+        let contact = tilted(0.0, per_travel, 0.0, 7).contact;
+        assert!(contact.tare.displacement == 0.0 && contact.tilt.is_none(), "{contact:?}");
+    }
 }

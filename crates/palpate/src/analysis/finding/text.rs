@@ -614,6 +614,34 @@ impl Finding {
                 "the body does not load by the law of this rule, or the force drifts in air; strains and modulus share the difference",
                 "set touch in the test description to another rule or a displacement",
             ),
+            Self::BaselineTilts(tilt) => caution(
+                "baseline_tilts",
+                format!(
+                    "in air the force grows by {} N/m of travel, standard error {} N/m, over {} mm; {}",
+                    significant(tilt.slope, 3),
+                    significant(tilt.standard_error, 2),
+                    significant(1e3 * tilt.observed, 3),
+                    if tilt.in_time { "after the jaw has left it has gone on in time" } else { "the line is subtracted" }
+                ),
+                if tilt.in_time {
+                    "the force drifts in time: forces of the hold contain the drift, and first touch was found without it"
+                } else {
+                    "virtual deflection of a cantilever, a spring beside the body or a drift; under the hold the line is drawn on"
+                },
+                "level the baseline of the instrument; where the force drifts in time, baseline = \"sloped\" in [force] of the test \
+                 description subtracts the drift",
+            ),
+            Self::TouchOpen { behind, squeeze } => caution(
+                "touch_open",
+                format!(
+                    "first touch is taken where the first ramp begins, but the rules find it {} mm behind; the largest squeeze is {} mm",
+                    significant(1e3 * behind, 2),
+                    significant(1e3 * squeeze, 4)
+                ),
+                "the force before is not that of air beyond doubt, nor that of a body; the distance is the error of first touch, which \
+                 strains and modulus share",
+                "set touch in the test description to a rule or a displacement, or correct the force without contact (baseline in [force])",
+            ),
             Self::DisplacementNotZero { start } => caution(
                 "displacement_not_zero",
                 format!("the record begins at a displacement of {} mm without a force", significant(1e3 * start, 4)),

@@ -219,6 +219,8 @@ fn touch_findings(record: &Record, contact: &ContactPoint, requested: ContactCho
     }
     // The error contains the distance where the curve misses the ramp: one that describes it is right, and the other rules are not.
     let misses = |apart: &f64| contact.displacement_error.is_some_and(|error| error >= apart.abs());
+    findings.extend(contact.tilt.map(Finding::BaselineTilts));
+    findings.extend(contact.open.map(|behind| Finding::TouchOpen { behind, squeeze }));
     if let Some((without, with)) = contact.between {
         let between = (without - contact.tare.displacement, with - contact.tare.displacement);
         findings.push(Finding::TouchBetweenSamples { between, squeeze });

@@ -9,18 +9,24 @@ const SAME_PLACE: f64 = 0.02;
 const ELSEWHERE: f64 = 0.05;
 
 impl Record {
-    /// The record with force counted from `tare.force` and displacement from `tare.displacement`.
+    /// The record with force counted from `tare.force`, less `tare.tilt` times the travel, and displacement from `tare.displacement`.
     #[must_use]
     pub fn tared(&self, tare: Tare) -> Self {
         let shifted = |values: &[f64], zero: f64| values.iter().map(|value| value - zero).collect();
+        let displacement = self.displacement().map(|values| shifted(values, tare.displacement));
+        let mut force: Vec<f64> = shifted(&self.force, tare.force);
+        if let Some(travel) = displacement.as_ref().filter(|_| tare.tilt != 0.0) {
+            force.iter_mut().zip(travel).for_each(|(force, travel)| *force -= tare.tilt * travel);
+        }
         let record = Self {
             time: self.time.clone(),
-            displacement: self.displacement().map(|values| shifted(values, tare.displacement)),
-            force: shifted(&self.force, tare.force),
+            displacement,
+            force,
             corrections: self.corrections.clone(),
             labels: self.labels.clone(),
         };
-        if tare.force == 0.0 && (tare.displacement == 0.0 || self.displacement.is_none()) {
+        let is_moved = (tare.displacement != 0.0 || tare.tilt != 0.0) && self.displacement.is_some();
+        if tare.force == 0.0 && !is_moved {
             return record;
         }
         record.followed_by(Correction::Tared(tare))
@@ -91,16 +97,14 @@ mod tests {
         let tare = Tare {
             force: 0.1,
             displacement: 1.0,
+            tilt: 0.0,
         };
         let tared = record.tared(tare);
         assert_eq!((record.corrections(), tared.corrections()), ([].as_slice(), [Correction::Tared(tare)].as_slice()));
         let air = Record::new(vec![0.0, 1.0, 2.0], None, vec![0.0, 0.1, 0.0]).unwrap();
         let net = tared.without_air_run(&air).unwrap();
         assert_eq!(net.corrections(), [Correction::Tared(tare), Correction::AirRunSubtracted]);
-        let nothing = Tare {
-            force: 0.0,
-            displacement: 0.0,
-        };
+        let nothing = Tare::default();
         assert!(record.tared(nothing).corrections().is_empty());
     }
 

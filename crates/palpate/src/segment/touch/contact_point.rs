@@ -7,6 +7,7 @@ use serde::{Deserialize, Serialize};
 use super::early_rise::EarlyRise;
 use super::estimators::{Approach, TouchEstimate, TouchMethod};
 use super::loading_curve::{LoadingCurve, Touch};
+use super::tilt::{BaselineTilt, Tilt};
 use crate::contact::Specimen;
 use crate::record::{Record, Tare};
 use crate::segment::segmentation::{Phase, Segment, Segmentation};
@@ -49,6 +50,13 @@ pub struct ContactPoint {
     /// first touch lies between them, and its error follows from how far they are apart.
     #[serde(default)]
     pub between: Option<(f64, f64)>,
+    /// The force that grows with the travel through air, if it does; [`Tare::tilt`] says what was subtracted of it.
+    #[serde(default)]
+    pub tilt: Option<BaselineTilt>,
+    /// How far behind the foot of the ramp, which stands for first touch, the rules find it instead, m: none of them is sure, and their
+    /// distance is the error.
+    #[serde(default)]
+    pub open: Option<f64>,
     /// Estimates of all rules that find first touch; empty where first touch was given.
     pub estimates: Vec<TouchEstimate>,
     /// Robust standard deviation of the estimates, m, if there are three or more: the sensitivity of first touch to the rule.
@@ -61,8 +69,8 @@ impl ContactPoint {
         Self {
             sample: reached,
             tare: Tare {
-                force: 0.0,
                 displacement,
+                ..Tare::default()
             },
             ..Self::default()
         }
@@ -93,6 +101,8 @@ fn spread(estimates: &[TouchEstimate]) -> Option<f64> {
 
 /// Share of the way from first touch to the end of the ramp by which a curve may lie apart from the other rules.
 const ALONE: f64 = 0.05;
+/// Share of the first ramp's travel by which all rules lie behind its foot, so that this is no first touch.
+const ALL: f64 = 0.2;
 /// Share of the first ramp's travel below which a late force is no travel through air.
 const AIR: f64 = 0.02;
 /// Standard errors by which first touch must lie behind the foot of the ramp to speak of air.
@@ -113,7 +123,8 @@ const LEAST: f64 = 5e-4;
 /// The curve takes its form from `body`, of any modulus; without one the section counts as constant.
 /// A curve of the early rise alone, which knows no law of relaxation, corrects it where that is the likelier.
 /// Only if that lies clearly behind the foot of the ramp (3 standard errors and 2 % of the travel), and the force is flat
-/// up to there, has the jaw travelled through air. Otherwise first touch is the foot of the ramp, and the zero of the force
+/// up to there, has the jaw travelled through air. A force that follows a straight line up to there, far less steep than in contact, is
+/// that of air too; the line is subtracted ([`ContactPoint::tilt`]). Otherwise first touch is the foot of the ramp, and the zero of the force
 /// is its median at rest before it, or nothing is subtracted from a force without such a rest.
 /// In a ramp with fewer than four samples that carry a force no curve begins anywhere: first touch lies between two samples.
 /// In a record without a hold, Hertz's rule decides.
@@ -172,7 +183,13 @@ pub fn free_samples(record: &Record, segmentation: &Segmentation) -> Vec<Range<u
     let foot = ramp.start.saturating_sub(1);
     let displacement = record.displacement().unwrap_or_else(|| record.time());
     let approach = Approach::of(displacement, record.force(), 0..foot, foot..ramp.end, None);
-    let touch = approach.and_then(|approach| approach.estimate(TouchMethod::Threshold));
+    // A baseline that tilts passes a threshold in air.
+    let behind_tilt = |approach: &Approach| {
+        let touch = approach.estimate(TouchMethod::Hertz)?;
+        Tilt::before(approach, touch.displacement).filter(Tilt::is_sure).map(|_| touch)
+    };
+    let touch =
+        approach.and_then(|approach| behind_tilt(&approach).or_else(|| approach.estimate(TouchMethod::Threshold)));
     let (Some(touch), Some(displacement)) = (touch, record.displacement()) else {
         return std::iter::once(0..foot + 1).collect();
     };
@@ -202,6 +219,7 @@ fn first_rise<'a>(record: &Record, segmentation: &'a Segmentation) -> Option<(&'
     Some((&segments[index], hold))
 }
 
+/// First touch of a first ramp, by the force as it is, or less its line through air where there is one.
 fn automatic(
     record: &Record,
     displacement: &[f64],
@@ -210,95 +228,226 @@ fn automatic(
     choice: ContactChoice,
 ) -> Option<ContactPoint> {
     let (ramp, hold) = first_rise(record, segmentation)?;
-    let force = record.force();
-    // The sample before the ramp is its foot.
-    let foot = ramp.start.saturating_sub(1);
-    let has_rest = foot + 1 >= BASELINE;
-    // The rest right before the ramp says where the jaw stood better than its last sample alone.
-    let stood = segmentation.segments.iter().find(|s| s.end == ramp.start && s.len() >= BASELINE);
-    let from = stood.map_or(displacement[foot], |s| median(&mut displacement[s.start..s.end].to_vec()));
-    let end = if ramp.len() < CARRYING { ramp.end.min(force.len() - 1) } else { ramp.end - 1 };
-    let travel = displacement[end] - from;
-    if travel <= 0.0 {
-        return None;
-    }
-    let approach = Approach::of(displacement, force, 0..foot, foot..ramp.end, body);
-    let early = approach.as_ref().and_then(|approach| EarlyRise::of(approach, body));
-    let law = hold.and_then(|hold| LoadingCurve::of(record, displacement, ramp, hold, body));
-    let within = |touch: &Touch| (from..displacement[ramp.end - 1]).contains(&touch.displacement);
-    let alone = law.as_ref().and_then(|law| Some((law, law.touch(from, travel).filter(within)?)));
-    let curve = alone
-        .map(|(law, touch)| early.as_ref().map_or(touch, |early| early.with(touch, |d| law.force_of(&touch, d))))
-        .filter(within);
-    let estimates = estimates(approach.as_ref(), alone.map(|(_, touch)| touch).as_ref());
-    let spread = spread(&estimates);
-    // The curve of loading needs the hold behind it.
-    let is_without_hold = choice == ContactChoice::Auto && segmentation.holds().next().is_none();
-    let rule = if is_without_hold { ContactChoice::By(TouchMethod::Hertz) } else { choice };
-    let by_rule = estimates.iter().find(|estimate| rule == ContactChoice::By(estimate.method)).copied();
-    let error_of = |rule: TouchEstimate| match &early {
-        Some(early) if is_without_hold => Some(early.error.hypot(rule.displacement - early.displacement)),
-        _ => spread,
+    let search = Search {
+        displacement,
+        segmentation,
+        hold,
+        body,
+        choice,
     };
-    let carrying = carrying(force, foot, ramp.start);
-    // Between many samples within the noise it is the noise that hides first touch.
-    let is_coarse = |(without, first): &(usize, usize)| first + CARRYING > ramp.end && first - without < CARRYING;
-    let between = carrying.filter(is_coarse).map(|(without, carrying)| {
-        let without = if without <= foot { from } else { displacement[without] };
-        (without, displacement[carrying].max(without))
-    });
-    let by_curve = curve
-        .filter(|touch| {
-            between.is_none() && carrying.is_none_or(|(_, first)| touch.displacement <= displacement[first])
-        })
-        .filter(|touch| touch.displacement - from > (SURE * touch.error).max(AIR * travel))
-        .filter(|touch| is_flat(force, displacement, foot, touch, ramp));
-    // Behind air the zero of the force is its median over half the way, or else the base of the curve.
-    let behind_air = |touch: f64, base: Option<f64>| {
-        let clear = first_beyond(displacement, foot, ramp, 0.5 * (from + touch)).max(foot);
-        let before = zero(&force[..clear.max(1)]);
-        let zero = if clear >= BASELINE { before } else { (base.unwrap_or(before.0), None) };
-        (touch, first_beyond(displacement, foot, ramp, touch), zero)
-    };
-    let foot_zero = || if has_rest { zero(&force[..=foot]) } else { (0.0, None) };
-    // A jaw that starts on the body is the common case, anywhere up to the next sample is as likely else. Behind air a soft body may be met
-    // before the last sample that shows no force: half the interval is the error.
-    let (method, displacement_error, (touch, sample, (zero, force_error))) = match (by_rule, by_curve, between) {
-        (Some(rule), ..) => (Some(rule.method), error_of(rule), behind_air(rule.displacement, None)),
-        (None, _, Some((without, with))) if without <= from => {
-            (None, Some((with - without) / 3f64.sqrt()), (from, foot, foot_zero()))
-        }
-        (None, _, Some((without, with))) => {
-            let middle = 0.5 * (without + with);
-            (Some(TouchMethod::Threshold), Some(0.5 * (with - without)), behind_air(middle, None))
-        }
-        (None, Some(touch), None) => {
-            (Some(TouchMethod::LoadingCurve), Some(touch.error), behind_air(touch.displacement, Some(touch.base)))
-        }
-        (None, None, None) => (None, None, (from, foot, foot_zero())),
-    };
-    let mut point = ContactPoint {
-        sample: Some(sample),
-        tare: Tare {
-            force: zero,
-            displacement: touch,
-        },
-        displacement_error,
-        force_error,
-        air_travel: (touch - from).max(0.0),
-        method,
-        between: between.filter(|_| by_rule.is_none()),
-        spread,
-        estimates,
-    };
-    // A curve that stands alone and misses the ramp is that of another body; its own error knows nothing of that.
-    if by_rule.is_none()
-        && let (Some(curve), Some(apart)) = (by_curve.filter(|curve| curve.misses), point.apart())
-        && apart.abs() > ALONE * (displacement[ramp.end - 1] - touch)
-    {
-        point.displacement_error = Some(curve.error.hypot(apart));
+    let level = search.found(record, ramp, true)?;
+    let straight = search.behind_tilt(record, ramp, &level);
+    let Found {
+        mut point, curve, from, ..
+    } = straight.unwrap_or(level);
+    // The foot of the ramp stands for first touch, but the curve begins far behind it; without a curve, all rules do.
+    if point.method.is_none() && point.between.is_none() {
+        let travel = displacement[ramp.end - 1] - from;
+        let mut behind: Vec<f64> = point.estimates.iter().map(|estimate| estimate.displacement - from).collect();
+        let all = behind.len() >= 3 && behind.iter().all(|behind| *behind > ALL * travel);
+        let open = match curve {
+            Some(curve) => Some(curve.displacement - from).filter(|behind| *behind > SURE * curve.error),
+            None => all.then(|| median(&mut behind)),
+        };
+        point.open = open.filter(|open| *open > ALONE * travel);
+        point.displacement_error = point.open;
     }
     Some(point)
+}
+
+/// What first touch is sought in besides a record and its ramp.
+struct Search<'a> {
+    displacement: &'a [f64],
+    segmentation: &'a Segmentation,
+    hold: Option<&'a Segment>,
+    body: Option<&'a Specimen>,
+    choice: ContactChoice,
+}
+
+/// A first touch, and how it was found.
+struct Found {
+    point: ContactPoint,
+    /// Where the jaw stood before the ramp, m.
+    from: f64,
+    approach: Option<Approach>,
+    /// The loading curve alone, without the early rise.
+    curve: Option<Touch>,
+    /// A rule gave it, and not the foot of the ramp.
+    is_sure: bool,
+}
+
+impl Search<'_> {
+    /// First touch in the force less a line through air; `None` if there is none, or what looks like one is a body.
+    ///
+    /// The loading curve and two rules that allow for a line give places to look for it; first touch in the force less that line places the line
+    /// anew.
+    fn behind_tilt(&self, record: &Record, ramp: &Segment, level: &Found) -> Option<Found> {
+        let approach = level.approach.as_ref()?;
+        let rules = [TouchMethod::Hertz, TouchMethod::TwoLines].into_iter().filter_map(|rule| approach.estimate(rule));
+        let places = level.curve.map(|curve| curve.displacement).into_iter().chain(rules.map(|rule| rule.displacement));
+        let less = |tilt: &Tilt| {
+            let record = record.tared(Tare {
+                tilt: tilt.slope,
+                ..Tare::default()
+            });
+            let start = ramp.start.saturating_sub(1) + tilt.from + 1;
+            let found = self.found(&record, &Segment { start, ..*ramp }, false)?;
+            found.is_sure.then_some(found)
+        };
+        let sought = |place: f64| {
+            let first = less(&Tilt::before(approach, place)?)?;
+            let tilt = Tilt::before(approach, first.point.tare.displacement)?;
+            if level.is_sure && !tilt.is_sure() {
+                return None;
+            }
+            Some((less(&tilt)?, tilt))
+        };
+        let (mut found, tilt) = places.into_iter().find_map(sought)?;
+        // A curve from the foot that describes the ramp as well is that of a body met there.
+        let is_better = |without: &Touch, with: &Touch| without.misses && without.noise > 1.1 * with.noise;
+        if !level.is_sure
+            && let (Some(without), Some(with)) = (level.curve, found.curve)
+            && without.displacement - level.from <= AIR * (self.displacement[ramp.end - 1] - level.from)
+            && !is_better(&without, &with)
+        {
+            return None;
+        }
+        let touch = found.point.tare.displacement;
+        let in_time = tilt.is_in_time(record, self.displacement, ramp);
+        let last = self.displacement[ramp.end - 1];
+        found.point.tare = Tare {
+            force: tilt.at(touch),
+            displacement: touch,
+            tilt: if in_time { 0.0 } else { tilt.slope },
+        };
+        // A line in time goes on in the hold.
+        let goes_on = self.hold.filter(|_| in_time).map_or(0.0, |hold| {
+            let time = record.time();
+            let speed = (last - level.from) / (time[ramp.end - 1] - time[ramp.start.saturating_sub(1)]);
+            tilt.slope * speed * (time[hold.end - 1] - time[ramp.end - 1])
+        });
+        found.point.force_error = Some(tilt.error_at(last).hypot(goes_on));
+        found.point.displacement_error =
+            found.point.displacement_error.map(|error| error.hypot(tilt.touch_error(touch)));
+        found.point.air_travel = (touch - level.from).max(0.0);
+        found.point.tilt = Some(BaselineTilt {
+            slope: tilt.slope,
+            standard_error: tilt.error,
+            observed: approach.displacement[tilt.until - 1] - approach.displacement[tilt.from],
+            in_time,
+        });
+        Some(found)
+    }
+
+    /// First touch in `ramp` of a force that is level in air; with the rest before it, or without.
+    fn found(&self, record: &Record, ramp: &Segment, with_rest: bool) -> Option<Found> {
+        let Self {
+            displacement,
+            segmentation,
+            hold,
+            body,
+            choice,
+        } = *self;
+        let force = record.force();
+        // The sample before the ramp is its foot.
+        let foot = ramp.start.saturating_sub(1);
+        let has_rest = foot + 1 >= BASELINE;
+        // The rest right before the ramp says where the jaw stood better than its last sample alone.
+        let stood = segmentation.segments.iter().find(|s| s.end == ramp.start && s.len() >= BASELINE);
+        let from = stood.map_or(displacement[foot], |s| median(&mut displacement[s.start..s.end].to_vec()));
+        let end = if ramp.len() < CARRYING { ramp.end.min(force.len() - 1) } else { ramp.end - 1 };
+        let travel = displacement[end] - from;
+        if travel <= 0.0 {
+            return None;
+        }
+        let rest = if with_rest { 0..foot } else { foot..foot };
+        let approach = Approach::of(displacement, force, rest.clone(), foot..ramp.end, body);
+        let early = approach.as_ref().and_then(|approach| EarlyRise::of(approach, body));
+        let law = hold.and_then(|hold| LoadingCurve::of(record, displacement, rest, ramp, hold, body));
+        let within = |touch: &Touch| (from..displacement[ramp.end - 1]).contains(&touch.displacement);
+        let alone = law.as_ref().and_then(|law| Some((law, law.touch(from, travel).filter(within)?)));
+        let curve = alone
+            .map(|(law, touch)| early.as_ref().map_or(touch, |early| early.with(touch, |d| law.force_of(&touch, d))))
+            .filter(within);
+        let estimates = estimates(approach.as_ref(), alone.map(|(_, touch)| touch).as_ref());
+        let spread = spread(&estimates);
+        // The curve of loading needs the hold behind it.
+        let is_without_hold = choice == ContactChoice::Auto && segmentation.holds().next().is_none();
+        let rule = if is_without_hold { ContactChoice::By(TouchMethod::Hertz) } else { choice };
+        let by_rule = estimates.iter().find(|estimate| rule == ContactChoice::By(estimate.method)).copied();
+        let error_of = |rule: TouchEstimate| match &early {
+            Some(early) if is_without_hold => Some(early.error.hypot(rule.displacement - early.displacement)),
+            _ => spread,
+        };
+        let carrying = carrying(force, foot, ramp.start);
+        // Between many samples within the noise it is the noise that hides first touch.
+        let is_coarse = |(without, first): &(usize, usize)| first + CARRYING > ramp.end && first - without < CARRYING;
+        let between = carrying.filter(is_coarse).map(|(without, carrying)| {
+            let without = if without <= foot { from } else { displacement[without] };
+            (without, displacement[carrying].max(without))
+        });
+        let by_curve = curve
+            .filter(|touch| {
+                between.is_none() && carrying.is_none_or(|(_, first)| touch.displacement <= displacement[first])
+            })
+            .filter(|touch| touch.displacement - from > (SURE * touch.error).max(AIR * travel))
+            .filter(|touch| is_flat(force, displacement, foot, touch, ramp));
+        // Behind air the zero of the force is its median over half the way, or else the base of the curve.
+        let behind_air = |touch: f64, base: Option<f64>| {
+            let clear = first_beyond(displacement, foot, ramp, 0.5 * (from + touch)).max(foot);
+            let before = zero(&force[..clear.max(1)]);
+            let zero = if clear >= BASELINE { before } else { (base.unwrap_or(before.0), None) };
+            (touch, first_beyond(displacement, foot, ramp, touch), zero)
+        };
+        let foot_zero = || if has_rest { zero(&force[..=foot]) } else { (0.0, None) };
+        // A jaw that starts on the body is the common case, anywhere up to the next sample is as likely else. Behind air a soft body may be met
+        // before the last sample that shows no force: half the interval is the error.
+        let (method, displacement_error, (touch, sample, (zero, force_error))) = match (by_rule, by_curve, between) {
+            (Some(rule), ..) => (Some(rule.method), error_of(rule), behind_air(rule.displacement, None)),
+            (None, _, Some((without, with))) if without <= from => {
+                (None, Some((with - without) / 3f64.sqrt()), (from, foot, foot_zero()))
+            }
+            (None, _, Some((without, with))) => {
+                let middle = 0.5 * (without + with);
+                (Some(TouchMethod::Threshold), Some(0.5 * (with - without)), behind_air(middle, None))
+            }
+            (None, Some(touch), None) => {
+                (Some(TouchMethod::LoadingCurve), Some(touch.error), behind_air(touch.displacement, Some(touch.base)))
+            }
+            (None, None, None) => (None, None, (from, foot, foot_zero())),
+        };
+        let mut point = ContactPoint {
+            sample: Some(sample),
+            tare: Tare {
+                force: zero,
+                displacement: touch,
+                tilt: 0.0,
+            },
+            displacement_error,
+            force_error,
+            air_travel: (touch - from).max(0.0),
+            method,
+            between: between.filter(|_| by_rule.is_none()),
+            tilt: None,
+            open: None,
+            spread,
+            estimates,
+        };
+        // A curve that stands alone and misses the ramp is that of another body; its own error knows nothing of that.
+        if by_rule.is_none()
+            && let (Some(curve), Some(apart)) = (by_curve.filter(|curve| curve.misses), point.apart())
+            && apart.abs() > ALONE * (displacement[ramp.end - 1] - touch)
+        {
+            point.displacement_error = Some(curve.error.hypot(apart));
+        }
+        Some(Found {
+            is_sure: point.method.is_some() && point.between.is_none(),
+            point,
+            from,
+            approach,
+            curve: alone.map(|(_, touch)| touch),
+        })
+    }
 }
 
 /// The last sample without a force behind the foot of a ramp that starts at sample `start`, and the first from which on the force stays beyond

@@ -57,7 +57,7 @@ pub struct TouchEstimate {
 pub(super) struct Approach {
     /// Rising, m.
     pub(super) displacement: Vec<f64>,
-    force: Vec<f64>,
+    pub(super) force: Vec<f64>,
     /// Force before the ramp, N.
     rest: Vec<f64>,
     /// Force without contact, its noise, and the rise above it, N.

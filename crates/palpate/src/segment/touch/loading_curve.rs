@@ -1,5 +1,6 @@
 //! The force of a first ramp under the latency law, and where it begins.
 
+use std::ops::Range;
 use std::rc::Rc;
 
 use crate::contact::Specimen;
@@ -153,10 +154,11 @@ const MISSES: f64 = 1.2;
 const MOST: usize = 600;
 
 impl<'a> LoadingCurve<'a> {
-    /// `None` if the hold has no law, or does not relax downwards.
+    /// With samples at rest before the ramp; `None` if the hold has no law, or does not relax downwards.
     pub(super) fn of(
         record: &Record,
         displacement: &[f64],
+        rest: Range<usize>,
         ramp: &Segment,
         hold: &Segment,
         body: Option<&'a Specimen>,
@@ -165,8 +167,8 @@ impl<'a> LoadingCurve<'a> {
         let foot = ramp.start.saturating_sub(1);
         let speeds = Speeds::of(&record.time()[foot..ramp.end], &displacement[foot..ramp.end])?;
         let every = (ramp.end - foot).div_ceil(MOST);
-        let rest = foot.saturating_sub(MOST);
-        let samples: Vec<usize> = (rest..foot).chain((foot..ramp.end).step_by(every)).collect();
+        let rest = rest.start.max(rest.end.saturating_sub(MOST))..rest.end;
+        let samples: Vec<usize> = rest.chain((foot..ramp.end).step_by(every)).collect();
         let force = record.force();
         let top = force[foot..ramp.end].iter().fold(f64::MIN, |most, f| most.max(*f));
         Some(Self {
