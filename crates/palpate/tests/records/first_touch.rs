@@ -250,3 +250,28 @@ fn a_baseline_that_tilts_is_no_body() {
         assert!(contact.tare.displacement == 0.0 && contact.tilt.is_none(), "{contact:?}");
     }
 }
+
+/// The error of a modulus without a hold was that of a curve that allows for relaxation, 27 % for a scatter of 5 % under a cone.
+#[test]
+fn the_error_of_a_modulus_without_a_hold_is_that_of_its_scatter() {
+    let sphere = Shape::Indenter {
+        tip: Tip::Sphere { radius: 2.5e-6 },
+        layer: None,
+    };
+    let options = options(sphere, Sides::One, Equilibrium::Hertz { poisson_ratio: 0.5 }, ContactChoice::Auto);
+    let specimen = options.geometry.as_ref().unwrap().specimen(1e3).unwrap();
+    let found: Vec<(f64, f64)> = (1..=12)
+        .map(|seed| {
+            let record = record(&[(0.0, 0.0), (0.6, 3e-6), (1.2, 0.0)], 500, 2e-11, seed, |_, d| {
+                specimen.equilibrium_force((d - 2e-6).max(0.0))
+            });
+            let modulus = analyze(&record, &options).unwrap().loading_modulus.unwrap();
+            (modulus.value / 1e3 - 1.0, modulus.standard_error / 1e3)
+        })
+        .collect();
+    let rms = |values: &dyn Fn(&(f64, f64)) -> f64| {
+        (found.iter().map(|pair| values(pair).powi(2)).sum::<f64>() / found.len() as f64).sqrt()
+    };
+    let (scatter, stated) = (rms(&|pair| pair.0), rms(&|pair| pair.1));
+    assert!((0.5 * scatter..4.0 * scatter).contains(&stated), "{stated} for {scatter}: {found:?}");
+}

@@ -313,7 +313,8 @@ impl Search<'_> {
             return None;
         }
         let touch = found.point.tare.displacement;
-        let in_time = tilt.is_in_time(record, self.displacement, ramp);
+        // In a ramp alone both lines are one.
+        let in_time = self.hold.is_some() && tilt.is_in_time(record, self.displacement, ramp);
         let last = self.displacement[ramp.end - 1];
         found.point.tare = Tare {
             force: tilt.at(touch),
@@ -375,8 +376,8 @@ impl Search<'_> {
         let is_without_hold = choice == ContactChoice::Auto && segmentation.holds().next().is_none();
         let rule = if is_without_hold { ContactChoice::By(TouchMethod::Hertz) } else { choice };
         let by_rule = estimates.iter().find(|estimate| rule == ContactChoice::By(estimate.method)).copied();
-        let error_of = |rule: TouchEstimate| match &early {
-            Some(early) if is_without_hold => Some(early.error.hypot(rule.displacement - early.displacement)),
+        let error_of = |rule: TouchEstimate| match (&early, &approach) {
+            (Some(early), Some(approach)) if is_without_hold => Some(early.error_of_hertz(approach, rule.displacement)),
             _ => spread,
         };
         let carrying = carrying(force, foot, ramp.start);

@@ -26,6 +26,8 @@ pub(super) struct EarlyRise {
 
 /// The part of a ramp up to some travel with the rest before it, and its least-squares curve.
 struct Part {
+    /// Samples of the ramp.
+    end: usize,
     travel: Vec<f64>,
     force: Vec<f64>,
     /// d₀ and its standard error by the scatter, m.
@@ -64,23 +66,28 @@ impl EarlyRise {
         })
     }
 
+    /// The standard error of the touch that Hertz's rule gives, `place` (m), in a record without a hold: the error of that curve, or that of the
+    /// early rise with the distance from there, each as likely as it makes the early rise.
+    pub(super) fn error_of_hertz(&self, approach: &Approach, place: f64) -> f64 {
+        let apart = self.error.hypot(place - self.displacement);
+        let Some(hertz) = Part::of_hertz(approach, self.part.end) else {
+            return apart;
+        };
+        let share = self.part.share_over(hertz.square);
+        ((1.0 - share) * hertz.error.hypot(place - hertz.touch).powi(2) + share * apart.powi(2)).sqrt()
+    }
+
     /// The touch that a curve of the whole ramp and the early rise give together, each weighted by how likely it makes the early rise.
     pub(super) fn with(&self, mut touch: Touch, curve: impl Fn(f64) -> f64) -> Touch {
         let Part {
-            travel,
-            force,
-            square,
-            variance,
-            ..
+            travel, force, square, ..
         } = &self.part;
         let pairs = travel.iter().zip(force);
         let of_curve: f64 = pairs.map(|(d, force)| (force - curve(*d)).powi(2)).sum();
         if of_curve <= *square {
             return touch;
         }
-        // By the Bayesian information criterion: the early rise has one number more.
-        let odds = 0.5 * ((of_curve - square) / variance - (travel.len() as f64).ln());
-        let share = 1.0 / (1.0 + (-odds).exp());
+        let share = self.part.share_over(of_curve);
         let mean = touch.displacement + share * (self.displacement - touch.displacement);
         let second = |place: f64, error: f64| error * error + (place - mean).powi(2);
         let own = second(touch.displacement, touch.error);
@@ -91,14 +98,29 @@ impl EarlyRise {
 }
 
 impl Part {
-    /// The ramp up to sample `end`, with as much rest before it.
+    /// How likely this part is beside a curve with one number less that leaves that sum of squares, by the Bayesian information criterion.
+    fn share_over(&self, square: f64) -> f64 {
+        let odds = 0.5 * ((square - self.square) / self.variance - (self.travel.len() as f64).ln());
+        1.0 / (1.0 + (-odds).exp())
+    }
+
+    /// The ramp up to sample `end`, with as much rest before it, under the curve of a body that relaxes.
     fn of(approach: &Approach, body: Option<&Specimen>, end: usize) -> Option<Self> {
-        let (travel, force) = approach.up_to(end, MOST);
         let unit = |s: f64| body.map_or(1.0, |body| body.stiffness(body.contact_displacement(s)).0) * s;
-        let columns = |touch: f64, x: f64| {
+        Self::under(approach, end, |touch, x| {
             let rise = if x > touch { unit(x - touch) } else { 0.0 };
             [1.0, rise, rise * (x - touch)]
-        };
+        })
+    }
+
+    /// The same under Hertz's curve, of a body that does not relax.
+    fn of_hertz(approach: &Approach, end: usize) -> Option<Self> {
+        Self::under(approach, end, |touch, x| [1.0, approach.hertz_rise(x, touch), 0.0])
+    }
+
+    /// The same under a combination of columns of touch and travel.
+    fn under(approach: &Approach, end: usize, columns: impl Fn(f64, f64) -> [f64; 3]) -> Option<Self> {
+        let (travel, force) = approach.up_to(end, MOST);
         let residuals = |touch: f64| residuals(&travel, &force, |x| columns(touch, x));
         let square = |touch: f64| residuals(touch).map(|residuals| dot(&residuals, &residuals));
         let touch = approach.best(&travel, &square)?;
@@ -127,6 +149,7 @@ impl Part {
         };
         let error = 0.5 * (side(-1.0) + side(1.0));
         Some(Self {
+            end,
             touch,
             error,
             square: least,

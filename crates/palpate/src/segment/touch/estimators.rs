@@ -154,13 +154,17 @@ impl Approach {
         self.best(&travel, &|touch| fitted(&travel, &force, |x| [1.0, (x - touch).min(0.0), (x - touch).max(0.0)]))
     }
 
+    /// Hertz's force of a touch at travel x, but for its factor.
+    pub(super) fn hertz_rise(&self, x: f64, touch: f64) -> f64 {
+        if x > touch { (x - touch).powf(self.power) } else { 0.0 }
+    }
+
     /// With a level baseline, or a sloping one if that lowers the Bayesian information criterion.
     fn hertz(&self) -> Option<f64> {
         let (travel, force) = self.start()?;
         let from = travel[0];
-        let power = |x: f64, touch: f64| if x > touch { (x - touch).powf(self.power) } else { 0.0 };
-        let level = |touch: f64| fitted(&travel, &force, |x| [1.0, power(x, touch), 0.0]);
-        let sloping = |touch: f64| fitted(&travel, &force, |x| [1.0, power(x, touch), x - from]);
+        let level = |touch: f64| fitted(&travel, &force, |x| [1.0, self.hertz_rise(x, touch), 0.0]);
+        let sloping = |touch: f64| fitted(&travel, &force, |x| [1.0, self.hertz_rise(x, touch), x - from]);
         let flat = self.best(&travel, &level)?;
         let Some(tilted) = self.best(&travel, &sloping) else {
             return Some(flat);
