@@ -273,5 +273,6 @@ fn the_error_of_a_modulus_without_a_hold_is_that_of_its_scatter() {
         (found.iter().map(|pair| values(pair).powi(2)).sum::<f64>() / found.len() as f64).sqrt()
     };
     let (scatter, stated) = (rms(&|pair| pair.0), rms(&|pair| pair.1));
-    assert!((0.5 * scatter..4.0 * scatter).contains(&stated), "{stated} for {scatter}: {found:?}");
+    println!("{stated} for {scatter}");
+    assert!((0.5 * scatter..2.5 * scatter).contains(&stated), "{stated} for {scatter}: {found:?}");
 }
