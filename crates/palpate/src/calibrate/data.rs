@@ -382,7 +382,7 @@ mod tests {
         CalibrationData::new(body, model.separation, paper_test_a(), times.clone(), times, held)
     }
 
-    /// No sample made `calibrate` subtract with overflow; an infinite held displacement asked for 34 GB, and mm for m made 1635 levels.
+    /// No sample made `calibrate` subtract with overflow; an infinite held displacement took 34 GB, and mm for m made 1635 levels.
     #[test]
     fn data_without_a_sample_and_holds_where_no_jaw_was_are_refused() {
         assert!(with(vec![0.0, 1.0], &[0.005, -0.001]).is_ok());
