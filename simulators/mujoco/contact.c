@@ -129,7 +129,7 @@ static void compute(const mjModel* m, mjData* d, int instance, int capability) {
     d->qfrc_passive[m->jnt_dofadr[c->joint]] -= c->closing * force;
   } else if (at.displacement > -c->depth) {
     friction = bristle(c, &at, d->geom_xmat + 9 * c->geom1, force, memory);
-    if (force > 0 && !c->is_step_known) check_step(m, d, c, instance, at.point);
+    if (friction.limit > 0 && !c->is_step_known) check_step(m, d, c, instance, at.point);
     if (force != 0) apply(m, c, &at, force, &friction, d->qfrc_passive);
   } else {
     let_go(memory);

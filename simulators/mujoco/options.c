@@ -88,8 +88,8 @@ static void read_model(const mjModel* m, int instance, contact* c) {
   c->sides = sides;
 }
 
-/* A body that counts as bonded pulls from any distance: at a joint only from first touch on, between geoms nowhere. Their friction, which
- * is none in tension, is no bond either. */
+/* A body that counts as bonded pulls from any distance, so it is allowed only at a joint that starts at first touch or beyond, and never
+ * between geoms, whose friction, none in tension, is no bond either. */
 static void refuse_bond(const mjModel* m, int instance, const contact* c) {
   static const char* const hint = "hint: set separation = true under [contact] of the test description where the jaw only presses, and calibrate again";
   int32_t is_bonded = 0;

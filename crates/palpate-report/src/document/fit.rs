@@ -13,10 +13,8 @@ documents! {
         let relative_rmse = hold.relative_rmse(fit).filter(|share| share.is_finite());
         let equilibrium = fit.parameters.iter().find(|parameter| parameter.name.kind == ParameterKind::Equilibrium);
         let scatter = equilibrium.and_then(|found| found.parts.as_ref().map_or(found.estimate.standard_error, |parts| parts.scatter));
-        let pascals = |value: f64| {
-            let modulus = newtons(value).zip(hold.force_per_modulus).map(|(force, per_modulus)| force / per_modulus);
-            modulus.filter(|modulus| *modulus > 0.0)
-        };
+        let pascals = |value: f64| newtons(value).zip(hold.force_per_modulus).map(|(force, per_modulus)| force / per_modulus);
+        let modulus = pascals(fit.equilibrium().value).filter(|modulus| *modulus > 0.0);
     } {
         /// `latency:N` with the exponent given, `latency` with the exponent estimated.
         law: String = fit.law.to_string(),
@@ -31,9 +29,9 @@ documents! {
         /// Excess force at the start of the fit, N; `null` where it is not determined.
         excess_force_n: Option<f64> = newtons(fit.amplitude().value),
         /// Young's modulus that the equilibrium force implies, Pa; `null` where that force is none of a body that is pressed.
-        equilibrium_modulus_pa?: Option<f64> = pascals(fit.equilibrium().value),
+        equilibrium_modulus_pa?: Option<f64> = modulus,
         /// Its standard error, Pa: of the equilibrium force, of first touch where that was found, and of the instrument.
-        equilibrium_modulus_standard_error_pa?: Option<f64> = scatter.and_then(pascals).zip(pascals(fit.equilibrium().value)).map(
+        equilibrium_modulus_standard_error_pa?: Option<f64> = scatter.and_then(pascals).zip(modulus).map(
             |(scatter, modulus)| scatter.hypot(modulus * hold.modulus_error.unwrap_or(0.0))
         ),
         /// Root mean square residual in the unit of the fitted quantity: strain, N, or 1/s in the rate domain.

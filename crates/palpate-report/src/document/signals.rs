@@ -110,6 +110,8 @@ fn with_unit<'a>(code: &str, name: &'a str) -> &'a str {
         "standard_error" => "standard_error_s",
         "rate" => "rate_hz",
         "interval" => "interval_before_s",
+        "time_constant" => "time_constant_s",
+        "tilt" => "tilt_n_per_m",
         "level" => "level_n",
         "slope" => "slope_n_per_s",
         without_unit => without_unit,

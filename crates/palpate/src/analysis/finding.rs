@@ -342,6 +342,8 @@ pub enum Finding {
         modulus: f64,
         /// Its standard error, Pa.
         standard_error: Option<f64>,
+        /// Whether its error is not known since the likeliest law of the holds has no equilibrium.
+        without_equilibrium: bool,
     },
     /// The given modulus and the equilibrium forces disagree.
     ModulusMismatch {

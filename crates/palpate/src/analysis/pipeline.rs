@@ -156,6 +156,7 @@ fn examined(
     findings.extend(modulus.iter().map(|modulus| Finding::ModulusEstimated {
         modulus: modulus.estimate.value,
         standard_error: modulus.estimate.standard_error,
+        without_equilibrium: implied.as_ref().is_some_and(|implied| implied.without_equilibrium),
     }));
     let loading_modulus = loading_modulus(&record, &segmentation, &contact, options.geometry.as_ref());
     let segments = &segmentation.segments;

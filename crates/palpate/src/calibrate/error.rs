@@ -69,7 +69,7 @@ pub enum CalibrateError {
         sample: usize,
     },
     /// A held displacement that the jaw does not reach.
-    #[error("held displacements must be finite numbers up to where the jaw goes, {farthest} m; found {found}")]
+    #[error("held displacements must be finite numbers, near to where the jaw goes, up to {farthest} m; found {found}")]
     Held {
         /// What was given, m.
         found: f64,

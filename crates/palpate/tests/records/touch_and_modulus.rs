@@ -256,6 +256,7 @@ fn modulus(analysis: &Analysis) -> (f64, f64) {
         Finding::ModulusEstimated {
             modulus,
             standard_error,
+            ..
         } => Some((*modulus, standard_error.unwrap())),
         _ => None,
     });

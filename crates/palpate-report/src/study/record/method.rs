@@ -56,6 +56,9 @@ fn touch(analysis: &Analysis) -> Pairs {
         ("Force zero", format!("{} N", number(tare.force))),
         ("Displacement zero", format!("{} mm", number(1e3 * tare.displacement))),
     ];
+    if tare.tilt != 0.0 {
+        pairs.push(("Force subtracted along the travel", format!("{} N/mm", number(1e-3 * tare.tilt))));
+    }
     if let Some(spread) = analysis.contact.spread {
         let rules = analysis.contact.estimates.len();
         pairs.push(("Rules for first touch", format!("{rules}, which differ by {} mm", significant(1e3 * spread, 2))));

@@ -453,27 +453,32 @@ impl Finding {
             ),
             Self::ModulusEstimated {
                 modulus,
-                standard_error: Some(error),
+                standard_error: None,
+                without_equilibrium: true,
+            } => caution(
+                "modulus_estimated",
+                format!(
+                    "no modulus was given, and its error is not known: the law that describes these holds best has no equilibrium; strains count on {} kPa",
+                    significant(modulus / 1e3, 2)
+                ),
+                "strains, v and all that rests on the modulus are known up to a factor, which their intervals leave out; n and the relative rate do not depend on it",
+                "give the modulus in the test description, or hold until the force is level",
+            ),
+            Self::ModulusEstimated {
+                modulus,
+                standard_error,
+                ..
             } => info(
                 "modulus_estimated",
                 format!(
                     "no modulus was given; the equilibrium forces imply {} kPa",
-                    with_standard_error(modulus / 1e3, error / 1e3)
+                    standard_error.map_or_else(
+                        || significant(modulus / 1e3, 4),
+                        |error| with_standard_error(modulus / 1e3, error / 1e3)
+                    )
                 ),
                 "strains and v depend on this estimate; n and the relative rate do not",
                 "give the modulus in the test description if it is known",
-            ),
-            Self::ModulusEstimated {
-                modulus,
-                standard_error: None,
-            } => caution(
-                "modulus_estimated",
-                format!(
-                    "no modulus was given, and its error is not known: the laws that describe these holds best have no equilibrium; strains count on {} kPa",
-                    significant(modulus / 1e3, 2)
-                ),
-                "strains, v and all that rests on the modulus are known up to a factor that is not known; n and the relative rate do not depend on it",
-                "give the modulus in the test description, or hold until the force is level",
             ),
             Self::ModulusMismatch { given, implied } => caution(
                 "modulus_mismatch",

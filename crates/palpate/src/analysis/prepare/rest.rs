@@ -12,8 +12,8 @@ use crate::statistics::{self, mean, noise};
 const FEWEST: usize = 30;
 /// Samples that a longer rest is averaged to.
 const MOST: usize = 1000;
-/// Samples of a ramp without a force that show air.
-const AIR: usize = 5;
+/// Share of the way of the jaw, behind its rest, without a force that is one through air.
+const AIR: f64 = 0.02;
 /// Confidence with which the force drifts.
 const SURE: f64 = 0.999;
 /// Share of a hold that a rest lasts at least which says how the force goes on in it.
@@ -38,8 +38,12 @@ pub(super) fn baseline_drifts(record: &Record, segmentation: &Segmentation) -> O
     let together = rest.len().div_ceil(MOST);
     let averaged = |values: &[f64]| values[rest.clone()].chunks(together).map(mean).collect::<Vec<f64>>();
     let (rate, half) = slope(&averaged(time), &averaged(force))?;
-    // The jaw has come through air where the force stays as it was for some samples of the ramp.
-    let came_through_air = free.end >= loads + AIR;
+    // The jaw has come through air where the force stays as it was for a part of the way to its farthest place.
+    let came_through_air = record.displacement().is_some_and(|places| {
+        let (from, clear) = (places[rest.end - 1], places[free.end.clamp(rest.end, places.len()) - 1]);
+        let farthest = places.iter().fold(from, |most, place| most.max(*place));
+        clear - from > AIR * (farthest - from)
+    });
     if rate.abs() <= half || !came_through_air && !is_near_zero(force, &rest, rate * lasts) {
         return None;
     }
@@ -170,14 +174,17 @@ mod tests {
     /// finding advised to subtract made 22.8 kPa of 60.
     #[test]
     fn a_body_under_load_before_the_first_ramp_is_no_load_cell_that_drifts() {
-        let mut random = Rng::new(3);
-        let ramp = |t: f64| (t - 40.0).clamp(0.0, 0.6) / 0.6;
         let relaxes = |t: f64, tau: f64| if t < 0.0 { 0.0 } else { (-t / tau).exp() };
-        let time: Vec<f64> = (0..2800).map(|i| 0.05 * f64::from(i)).collect();
-        let jaw = time.iter().map(|t| 0.0125 + 5e-3 * ramp(*t)).collect();
-        let of_body = |t: f64| 30.0 + relaxes(t, 100.0) + (20.0 + 4.0 * relaxes(t - 40.6, 30.0)) * ramp(t);
-        let force = time.iter().map(|t| of_body(*t) + 5e-3 * random.normal()).collect();
-        assert_eq!(drift(&Record::new(time, Some(jaw), force).unwrap(), &AnalysisOptions::default()), None);
+        for (rate, lasts) in [(20.0, 0.6), (200.0, 6.0)] {
+            let mut random = Rng::new(3);
+            let ramp = |t: f64| (t - 40.0).clamp(0.0, lasts) / lasts;
+            let time: Vec<f64> = (0..(140.0 * rate) as usize).map(|i| i as f64 / rate).collect();
+            let jaw = time.iter().map(|t| 0.0125 + 5e-3 * ramp(*t)).collect();
+            let of_body = |t: f64| 30.0 + relaxes(t, 100.0) + (20.0 + 4.0 * relaxes(t - 40.0 - lasts, 30.0)) * ramp(t);
+            let force = time.iter().map(|t| of_body(*t) + 5e-3 * random.normal()).collect();
+            let record = Record::new(time, Some(jaw), force).unwrap();
+            assert_eq!(drift(&record, &AnalysisOptions::default()), None, "{rate}");
+        }
     }
 
     #[test]

@@ -5,7 +5,8 @@ use serde::{Deserialize, Serialize};
 use crate::analysis::options::{AnalysisOptions, Geometry};
 use crate::contact::Specimen;
 use crate::fit::{
-    ErrorParts, Estimate, ExponentChoice, Fit, IntervalMethod, LawOptions, Samples, fit_law_watched, fitted,
+    ErrorParts, Estimate, ExponentChoice, Fit, IntervalMethod, LawOptions, ParameterKind, Samples, fit_law_watched,
+    fitted,
 };
 use crate::forecast::criteria;
 use crate::instrument::Deviation;
@@ -39,8 +40,10 @@ pub struct EstimatedModulus {
 pub(in crate::analysis) struct ImpliedModulus {
     /// E, Pa.
     pub(in crate::analysis) value: f64,
-    /// Its standard error, Pa; `None` where no fit gave the equilibrium forces.
+    /// Its standard error, Pa; `None` where no fit gave the equilibrium forces, or the likeliest law has none.
     pub(in crate::analysis) standard_error: Option<f64>,
+    /// Whether the likeliest law of the holds has no equilibrium.
+    pub(in crate::analysis) without_equilibrium: bool,
     /// The forces that it follows from, by each law that may be that of the body.
     laws: Vec<ByLaw>,
 }
@@ -127,9 +130,18 @@ fn implied_by(holds: &[RelaxedHold], laws: usize, body: &Specimen) -> Option<Imp
         let found = weighted(&forces, body).filter(|_| 2 * forces.len() >= holds.len())?;
         Some((found, ByLaw { weight, forces }))
     };
-    let probabilities = probabilities(holds, laws);
-    let whole: f64 = probabilities.iter().sum();
-    let found: Vec<((f64, f64), ByLaw)> = probabilities.into_iter().enumerate().filter_map(by_law).collect();
+    let evidence = evidence(holds, laws);
+    let likeliest = (0..laws).max_by(|a, b| evidence[*a].total_cmp(&evidence[*b]))?;
+    let ends = |fit: &Fit| fit.parameter(ParameterKind::Equilibrium).is_some();
+    let without_equilibrium = holds.iter().filter_map(|hold| hold.fits[likeliest].as_ref()).any(|fit| !ends(fit));
+    // Beside a law that is far likelier than all that have an equilibrium these keep their shares.
+    let known = (0..laws)
+        .filter(|law| by_law((*law, 1.0)).is_some())
+        .map(|law| evidence[law])
+        .fold(f64::NEG_INFINITY, f64::max);
+    let weights: Vec<f64> = evidence.iter().map(|evidence| (evidence - known).exp()).collect();
+    let whole: f64 = weights.iter().sum();
+    let found: Vec<((f64, f64), ByLaw)> = weights.into_iter().enumerate().filter_map(by_law).collect();
     let likeliest = found.iter().fold(0.0, |most: f64, (_, law)| most.max(law.weight));
     let found: Vec<((f64, f64), ByLaw)> = found.into_iter().filter(|(_, law)| law.weight > LEAST * likeliest).collect();
     if found.is_empty() {
@@ -143,6 +155,7 @@ fn implied_by(holds: &[RelaxedHold], laws: usize, body: &Specimen) -> Option<Imp
         return Some(ImpliedModulus {
             value,
             standard_error: None,
+            without_equilibrium,
             laws: vec![ByLaw { weight: 1.0, forces }],
         });
     }
@@ -156,6 +169,7 @@ fn implied_by(holds: &[RelaxedHold], laws: usize, body: &Specimen) -> Option<Imp
         value,
         // Where the likely laws give no equilibrium, the error of an unlikely one is none.
         standard_error: (all > KNOWN * whole).then(|| variance.sqrt()),
+        without_equilibrium,
         laws: found.into_iter().map(|(_, law)| law).collect(),
     })
 }
@@ -188,8 +202,8 @@ impl RelaxedHold {
     }
 }
 
-/// Probabilities of so many laws by the sums of their BIC over the holds that have samples enough for each, up to a factor.
-fn probabilities(holds: &[RelaxedHold], laws: usize) -> Vec<f64> {
+/// Logarithms of the probabilities of so many laws by the sums of their BIC over the holds that have samples enough for each, up to a constant.
+fn evidence(holds: &[RelaxedHold], laws: usize) -> Vec<f64> {
     let has_all = |hold: &&RelaxedHold| hold.fits.iter().all(Option::is_some);
     let any_has_all = holds.iter().any(|hold| has_all(&hold));
     let mut sums = vec![0.0; laws];
@@ -198,7 +212,9 @@ fn probabilities(holds: &[RelaxedHold], laws: usize) -> Vec<f64> {
         sums.iter_mut().zip(criteria).for_each(|(sum, of_hold)| *sum += of_hold);
     }
     let least = sums.iter().copied().fold(f64::INFINITY, f64::min);
-    sums.iter().map(|sum| if sum.is_finite() { (-0.5 * (sum - least)).exp() } else { 0.0 }).collect()
+    sums.iter()
+        .map(|sum| if sum.is_finite() { -0.5 * (sum - least) } else { f64::NEG_INFINITY })
+        .collect()
 }
 
 impl ImpliedModulus {

@@ -49,9 +49,11 @@ impl Record {
         let from = time.partition_point(|t| *t < time[index] - stretch).min(index.saturating_sub(1));
         let until = time.partition_point(|t| *t <= time[index] + stretch).max((index + 2).min(last + 1));
         let beside = (index - from).min(until - 1 - index);
+        let every = beside.div_ceil(MOST).max(1);
+        let beside = beside / every * every;
         let (from, until) =
             if beside > 0 { (index - beside, index + beside) } else { (index.min(last - 1), index.max(1)) };
-        let chosen = (from..=until).step_by((beside / MOST).max(1));
+        let chosen = (from..=until).step_by(every);
         let (times, forces): (Vec<f64>, Vec<f64>) = chosen.map(|i| (time[i], self.force[i])).unzip();
         slope(&times, &forces)
     }

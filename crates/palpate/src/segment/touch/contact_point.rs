@@ -193,7 +193,7 @@ pub fn free_samples(record: &Record, segmentation: &Segmentation) -> Vec<Range<u
     let (Some(touch), Some(displacement)) = (touch, record.displacement()) else {
         return std::iter::once(0..foot + 1).collect();
     };
-    // Half the way there is surely free; a threshold is passed only after touch.
+    // Half the way there is surely free.
     let (from, travel) = (displacement[foot], touch.displacement - displacement[foot]);
     let level = from + 0.5 * travel;
     let before = first_beyond(displacement, foot, ramp, level).max(foot + 1);

@@ -81,8 +81,9 @@ struct Speeds {
     earlier: Option<(f64, f64)>,
 }
 
-/// Share by which two speeds of a ramp differ at least.
+/// Logarithms of the ratios of two speeds of a ramp: the least, and one of a jaw that as good as stood, whose excess would be beyond the curves.
 const DIFFER: f64 = 0.05;
+const FARTHEST: f64 = 3.0;
 /// Share of the squared residual of one line that two lines leave at most.
 const LEFT: f64 = 0.05;
 /// Samples on each side of a corner at least, and corners that are tried at most.
@@ -103,7 +104,8 @@ impl Speeds {
         let whole = Line::of(times, places).square;
         let earlier = best.filter(|lines| {
             let [first, then] = lines.each_ref().map(|line| line.speed);
-            first > 0.0 && then > 0.0 && (then / first).ln().abs() > DIFFER && left(lines) < LEFT * whole
+            let apart = (then / first).ln().abs();
+            first > 0.0 && then > 0.0 && (DIFFER..FARTHEST).contains(&apart) && left(lines) < LEFT * whole
         });
         let speeds = match earlier {
             Some([first, then]) => Self {
