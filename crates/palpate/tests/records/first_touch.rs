@@ -253,6 +253,32 @@ fn a_baseline_that_tilts_is_no_body() {
     }
 }
 
+/// Tissue between plates with a straight toe of a tenth of its later stiffness: the toe is its own force, and no baseline that tilts.
+#[test]
+fn a_toe_is_no_baseline_that_tilts() {
+    for share in [0.02, 0.05, 0.1, 0.2] {
+        let block = Shape::Prism {
+            area: 1e-4,
+            length: 0.03,
+        };
+        let options = options(block, Sides::One, Equilibrium::UniformStrain, ContactChoice::Auto);
+        let knots = [(0.0, 0.0), (1.0, 0.0), (6.0, 0.01), (36.0, 0.01)];
+        let mut left = 0.2;
+        let record = record(&knots, 50, 0.01, 1, |before, d| {
+            if d >= 0.01 && before >= 0.01 {
+                left *= (-1e-3_f64 / 3.0).exp();
+            }
+            1e4 * (share * d.min(4e-3) + (d - 4e-3).max(0.0)) * (0.8 + left)
+        });
+        let contact = analyze(&record, &options).unwrap().contact;
+        assert!(contact.tilt.is_none(), "{share}: {contact:?}");
+        assert!(
+            contact.tare.displacement < 1e-4 && contact.displacement_error.is_some_and(|error| error > 1e-3),
+            "{share}: {contact:?}"
+        );
+    }
+}
+
 /// The error of a modulus without a hold was that of a curve that allows for relaxation, 27 % for a scatter of 5 % under a cone.
 #[test]
 fn the_error_of_a_modulus_without_a_hold_is_that_of_its_scatter() {

@@ -8,7 +8,7 @@ use super::early_rise::EarlyRise;
 use super::estimators::{Approach, TouchEstimate, TouchMethod};
 use super::loading_curve::{LoadingCurve, Touch};
 use super::tilt::{BaselineTilt, Tilt};
-use crate::contact::Specimen;
+use crate::contact::{Shape, Specimen};
 use crate::record::{Record, Tare};
 use crate::segment::segmentation::{Phase, Segment, Segmentation};
 use crate::statistics::{bounds, dot, effective_count, lag_one_correlation, mean, median, noise, range};
@@ -124,7 +124,7 @@ const LEAST: f64 = 5e-4;
 /// A curve of the early rise alone, which knows no law of relaxation, corrects it where that is the likelier.
 /// Only if that lies clearly behind the foot of the ramp (3 standard errors and 2 % of the travel), and the force is flat
 /// up to there, has the jaw travelled through air. A force that follows a straight line up to there, far less steep than in contact, is
-/// that of air too; the line is subtracted ([`ContactPoint::tilt`]). Otherwise first touch is the foot of the ramp, and the zero of the force
+/// that of air too, under a tip or where first touch is sure; the line is subtracted ([`ContactPoint::tilt`]). Otherwise first touch is the foot of the ramp, and the zero of the force
 /// is its median at rest before it, or nothing is subtracted from a force without such a rest.
 /// In a ramp with fewer than four samples that carry a force no curve begins anywhere: first touch lies between two samples.
 /// In a record without a hold, Hertz's rule decides.
@@ -283,6 +283,11 @@ impl Search<'_> {
     /// anew.
     fn behind_tilt(&self, record: &Record, ramp: &Segment, level: &Found) -> Option<Found> {
         let approach = level.approach.as_ref()?;
+        // A force that rises from the foot of the ramp on is the toe of tissue or cloth, unless a cantilever measures it.
+        let is_tip = self.body.is_some_and(|body| matches!(body.shape(), Shape::Indenter { .. }));
+        if !(level.is_sure || is_tip) {
+            return None;
+        }
         let rules = [TouchMethod::Hertz, TouchMethod::TwoLines].into_iter().filter_map(|rule| approach.estimate(rule));
         let places = level.curve.map(|curve| curve.displacement).into_iter().chain(rules.map(|rule| rule.displacement));
         let less = |tilt: &Tilt| {
