@@ -22,13 +22,11 @@ static void carried_along(const mjtNum jaw_frame[9], const mjtNum normal[3], con
   if (across > 0) mju_scl3(slip, slip, length / across);
 }
 
-/* The engine's inverse weight is the mean over three axes: a body that moves along one of them alone has three times as much there. */
+/* The engine's inverse weight is the mean over three axes: that of a free body, and a third of it for one that moves along one axis alone. */
 static double mobility_of_body(const mjModel* m, const contact* c, int geom, double arm) {
-  const int body = m->geom_bodyid[geom];
-  const mjtNum* inverse = m->body_invweight0 + 2 * body;
+  const mjtNum* inverse = m->body_invweight0 + 2 * m->geom_bodyid[geom];
   const double radius = c->friction > 0 ? c->torsion / c->friction : 0;
-  const double axes = m->body_dofnum[body] < 6 ? 3 : 1;
-  return axes * (inverse[0] + (arm * arm + radius * radius) * inverse[1]);
+  return inverse[0] + (arm * arm + radius * radius) * inverse[1];
 }
 
 double mobility_of(const mjModel* m, const contact* c, double arm1, double arm2) {

@@ -117,7 +117,7 @@ traction bristle(const contact* c, const placement* at, const mjtNum jaw_frame[9
 /* What a tangential force of 1 N accelerates the contact by, m/s^2, at two distances (m) from the centres of mass: an inverse mass. */
 double mobility_of(const mjModel* m, const contact* c, double arm1, double arm2);
 
-/* Time step up to which friction is sure to settle at a contact, s; infinite where nothing moves. */
+/* Time step up to which friction is sure to settle at a contact of free bodies, s; infinite where nothing moves. */
 double longest_step(const mjModel* m, const mjData* d, const contact* c, const mjtNum point[3]);
 
 /* Takes the deflection from the bristle of `memory`: nothing deflects what is apart. */
