@@ -125,25 +125,30 @@ pub(in crate::analysis) fn implied_modulus(
 /// E from these holds, to each of which so many laws were fitted.
 fn implied_by(holds: &[RelaxedHold], laws: usize, body: &Specimen) -> Option<ImpliedModulus> {
     // A law that ends well on few holds is none that they have in common.
-    let by_law = |(law, weight): (usize, f64)| {
+    let by_law = |law: usize| {
         let forces: Vec<RelaxedForce> = holds.iter().filter_map(|hold| hold.tends_to(law)).collect();
         let found = weighted(&forces, body).filter(|_| 2 * forces.len() >= holds.len())?;
-        Some((found, ByLaw { weight, forces }))
+        Some((law, found, forces))
     };
     let evidence = evidence(holds, laws);
     let likeliest = (0..laws).max_by(|a, b| evidence[*a].total_cmp(&evidence[*b]))?;
     let ends = |fit: &Fit| fit.parameter(ParameterKind::Equilibrium).is_some();
     let without_equilibrium = holds.iter().filter_map(|hold| hold.fits[likeliest].as_ref()).any(|fit| !ends(fit));
-    // Beside a law that is far likelier than all that have an equilibrium these keep their shares.
-    let known = (0..laws)
-        .filter(|law| by_law((*law, 1.0)).is_some())
-        .map(|law| evidence[law])
-        .fold(f64::NEG_INFINITY, f64::max);
-    let weights: Vec<f64> = evidence.iter().map(|evidence| (evidence - known).exp()).collect();
-    let whole: f64 = weights.iter().sum();
-    let found: Vec<((f64, f64), ByLaw)> = weights.into_iter().enumerate().filter_map(by_law).collect();
-    let likeliest = found.iter().fold(0.0, |most: f64, (_, law)| most.max(law.weight));
-    let found: Vec<((f64, f64), ByLaw)> = found.into_iter().filter(|(_, law)| law.weight > LEAST * likeliest).collect();
+    let known: Vec<(usize, (f64, f64), Vec<RelaxedForce>)> = (0..laws).filter_map(by_law).collect();
+    // Weights count from the likeliest of these, which keep their shares beside a law without an equilibrium that is likelier by far.
+    let best = known.iter().map(|(law, ..)| evidence[*law]).fold(f64::NEG_INFINITY, f64::max);
+    let weight = |law: usize| (evidence[law] - best).exp();
+    let whole: f64 = (0..laws).map(weight).sum();
+    let found = known.into_iter().map(|(law, found, forces)| {
+        (
+            found,
+            ByLaw {
+                weight: weight(law),
+                forces,
+            },
+        )
+    });
+    let found: Vec<((f64, f64), ByLaw)> = found.filter(|(_, law)| law.weight > LEAST).collect();
     if found.is_empty() {
         let last = |hold: &RelaxedHold| RelaxedForce {
             displacement: hold.displacement,
