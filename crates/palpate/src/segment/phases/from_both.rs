@@ -1,5 +1,6 @@
 //! Phases of a record with displacement and force: what stands still, and which of the two is held.
 
+use super::behind_spring::machine;
 use super::nothing_held::Contact;
 use super::ramps::fill_gaps;
 use super::ripple::{of_jaw, without_ripple};
@@ -27,7 +28,11 @@ pub(super) fn phases(
     hear(watch)?;
     let servo = ripple.map_or(0.0, |ripple| RIPPLES * ripple.height).max(SERVO * range(displacement));
     let held = Held::new(("displacement", "m"), displacement, options.tolerance.unwrap_or(servo), false);
-    let found = levels(record.time(), &held, options, watch)?;
+    let found = levels(record.time(), &held, options, watch);
+    let found = match machine(record, displacement) {
+        Some(machine) => of_machine(record, &machine, found, (options, held.wander), watch)?,
+        None => found?,
+    };
     let contact = Contact::of(record, displacement);
     let pressed = force_held((record, &contact), &found, options, watch)?;
     let mut together = together(record, &found.levels, &pressed);
@@ -72,6 +77,22 @@ pub(super) fn phases(
             labels: None,
             settings: found.settings,
         }),
+    }
+}
+
+/// The levels of a machine that stands behind a spring, if it stands no less often than the `jaw` does.
+fn of_machine(
+    record: &Record,
+    machine: &[f64],
+    jaw: Result<Levels, SegmentError>,
+    (options, wander): (&SegmentOptions, f64),
+    watch: &mut dyn Watch,
+) -> Result<Levels, SegmentError> {
+    let held = Held::new(("displacement", "m"), machine, wander, false);
+    match (SegmentError::unless_cancelled(levels(record.time(), &held, options, watch))?, jaw) {
+        (Ok(found), Ok(jaw)) if found.levels.len() < jaw.levels.len() => Ok(jaw),
+        (Ok(found), _) => Ok(found),
+        (Err(_), jaw) => jaw,
     }
 }
 

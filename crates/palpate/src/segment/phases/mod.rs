@@ -4,6 +4,7 @@
 //!
 //! | file | what |
 //! |---|---|
+//! | `behind_spring.rs` | a machine that stands still behind a spring |
 //! | `delayed.rs` | a force that an amplifier or a filter delays |
 //! | `find.rs` | the phases of a record: given, labelled or sought |
 //! | `given.rs` | phases that are sought, and holds whose limits someone gives |
@@ -18,6 +19,7 @@
 //! | `whole.rs` | a record that is one hold throughout |
 //! | `fit_start.rs` | from where in a hold the laws are fitted |
 
+mod behind_spring;
 mod delayed;
 mod find;
 mod fit_start;

@@ -1,6 +1,7 @@
 //! Holds found in records whose truth is known: fast ramps, slow ramps, coarse encoders, servos, cyclic tests.
 #![expect(clippy::unwrap_used, reason = "a test that cannot run has failed")]
 
+mod behind_spring;
 mod delayed;
 mod driven;
 
