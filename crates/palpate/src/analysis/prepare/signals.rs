@@ -181,7 +181,7 @@ fn holds_above_start(values: &[f64], found: &Segmentation) -> bool {
 
 /// [`Finding::RowsStray`] for rows of the force that stray and were not repaired.
 fn rows_astray(record: &Record) -> Option<Finding> {
-    let rows = Astray::of(record.force()).rows();
+    let rows = Astray::of_force(record.force(), record.displacement()).rows();
     let first = *rows.first()?;
     Some(Finding::RowsStray {
         count: rows.len(),

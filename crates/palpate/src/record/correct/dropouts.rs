@@ -27,7 +27,7 @@ impl Record {
     /// The record in which phases are searched, and the runs that are not in it: a few rows of the force that stray by themselves say nothing of what is
     /// held. Nothing else has them replaced.
     pub(crate) fn without_strays(&self) -> (Cow<'_, Self>, Vec<Range<usize>>) {
-        let runs = if self.displacement.is_some() { Astray::of(&self.force).runs } else { Vec::new() };
+        let runs = self.displacement().map_or_else(Vec::new, |jaw| Astray::of_force(&self.force, Some(jaw)).runs);
         if runs.is_empty() {
             return (Cow::Borrowed(self), runs);
         }

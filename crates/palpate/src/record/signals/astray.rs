@@ -48,6 +48,19 @@ impl Astray {
         Self { lost, runs }
     }
 
+    /// Those of a force, without the runs in which the jaw goes away and comes back, too: the body was let go.
+    pub(crate) fn of_force(force: &[f64], jaw: Option<&[f64]>) -> Self {
+        let mut found = Self::of(force);
+        if let Some(jaw) = jaw.filter(|jaw| jaw.len() == force.len()) {
+            let far = (FAR.0 * range(jaw)).max(FAR.1 * noise(jaw));
+            let mut stays = jaw.to_vec();
+            bridge(&mut stays, &found.runs);
+            let goes = |row: usize| (jaw[row] - stays[row]).abs() > far;
+            found.runs.retain(|run| run.len() == 1 || !run.clone().all(goes));
+        }
+        found
+    }
+
     /// All of them, rising.
     pub(crate) fn rows(&self) -> Vec<usize> {
         self.those(|_| true)

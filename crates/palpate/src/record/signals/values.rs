@@ -84,7 +84,10 @@ impl Values {
         };
         let (low, high) = bounds(values);
         // A jaw may move and come back within a few rows.
-        let rows = Astray::of(values).those(|run| column == Column::Force || run.len() == 1);
+        let rows = match column {
+            Column::Force => Astray::of_force(values, other).rows(),
+            _ => Astray::of(values).those(|run| run.len() == 1),
+        };
         hear()?;
         let repeats = values.windows(2).filter(|pair| pair[0] == pair[1]).count();
         let exact = saturation(column, values, other);

@@ -4,11 +4,16 @@ use super::points::Point;
 use crate::optimise::{BoundedProblem, BoundedSolver, LinearFit, fit_linear};
 
 /// Number of decays.
-const K: usize = 9;
+const K: usize = 16;
 /// Times of decay, as shares of a stretch. A decay slower than the last is a straight line, hence a ramp.
-const DECAYS: [f64; K] = [0.0015, 0.004, 0.011, 0.03, 0.065, 0.12, 0.2, 0.35, 0.6];
+const DECAYS: [f64; K] = [
+    5e-7, 1.6e-6, 5e-6, 1.6e-5, 5e-5, 1.6e-4, 5e-4, 0.0015, 0.004, 0.011, 0.03, 0.065, 0.12, 0.2, 0.35, 0.6,
+];
+/// How many of the first are for holds that are sampled ever more rarely, and how many points such a decay needs within three times its time.
+const FAST: usize = 7;
+const POINTS_OF_FAST: usize = 4;
 /// Those of what relaxes when a ramp begins.
-const AT_RAMPS: [usize; 5] = [2, 3, 5, 7, 8];
+const AT_RAMPS: [usize; 5] = [9, 10, 12, 14, 15];
 /// Parameters that a relaxation is counted as: its level, its size and its time.
 const RELAXATION: f64 = 3.0;
 /// What a decay must still amount to at the first point, as a share of itself.
@@ -133,12 +138,14 @@ struct Weighed {
 fn hold(points: &[Weighed], blank: Shape, price: f64, solver: &mut BoundedSolver) -> Shape {
     let (mut gram, mut right, mut mean) = ([0.0; K * K], [0.0; K], [0.0; K]);
     let (mut weight, mut sum, mut squares) = (0.0, 0.0, 0.0);
+    let first = fastest(points);
     for p in points {
-        let decays = DECAYS.map(|time| (-p.u / time).exp());
-        for i in 0..K {
+        let mut decays = [0.0; K];
+        for i in first..K {
+            decays[i] = (-p.u / DECAYS[i]).exp();
             mean[i] += p.weight * decays[i];
             right[i] += p.weight * decays[i] * p.value;
-            for j in 0..=i {
+            for j in first..=i {
                 gram[i * K + j] += p.weight * decays[i] * decays[j];
             }
         }
@@ -165,7 +172,7 @@ fn hold(points: &[Weighed], blank: Shape, price: f64, solver: &mut BoundedSolver
         gram[i * (K + 1)] += 1e-9 * weight;
     }
     // What is over before the first mean shows in none of them.
-    let shows = DECAYS.map(|time| (-points[0].u / time).exp() > SHOWS);
+    let shows: [bool; K] = std::array::from_fn(|i| i >= first && (-points[0].u / DECAYS[i]).exp() > SHOWS);
     for (lower, upper) in [(0.0, f64::INFINITY), (f64::NEG_INFINITY, 0.0)] {
         let bound = |bound: f64| shows.map(|shows| if shows { bound } else { 0.0 });
         let problem = BoundedProblem {
@@ -197,6 +204,14 @@ fn hold(points: &[Weighed], blank: Shape, price: f64, solver: &mut BoundedSolver
         }
     }
     best
+}
+
+/// The fastest of the decays that the points of a stretch can show.
+fn fastest(points: &[Weighed]) -> usize {
+    let Some(fourth) = points.get(POINTS_OF_FAST - 1) else {
+        return FAST;
+    };
+    DECAYS[..FAST].partition_point(|time| 3.0 * time < fourth.u)
 }
 
 /// A line, a parabola, or a parabola and a decay, whichever costs least.

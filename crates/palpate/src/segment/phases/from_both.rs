@@ -33,6 +33,7 @@ pub(super) fn phases(
         Some(machine) => of_machine(record, &machine, found, (options, held.wander), watch)?,
         None => found?,
     };
+    let found = cut_at_releases(record.force(), displacement, found);
     let contact = Contact::of(record, displacement);
     let pressed = force_held((record, &contact), &found, options, watch)?;
     let mut together = together(record, &found.levels, &pressed);
@@ -78,6 +79,39 @@ pub(super) fn phases(
             settings: found.settings,
         }),
     }
+}
+
+/// Shares of their ranges by which jaw and force go away where a body is let go, and fewest rows of that: a jaw strays in one.
+const LET_GO: f64 = 0.05;
+const LET_GO_ROWS: usize = 2;
+
+/// Levels that end where the body was let go for a few rows: those would be noise of a column by itself.
+fn cut_at_releases(force: &[f64], displacement: &[f64], mut found: Levels) -> Levels {
+    let fewest = found.settings.minimum_samples;
+    let (far, much) = ((LET_GO * range(displacement)).max(2.0 * found.settings.tolerance), LET_GO * range(force));
+    let cut = |level: &Level| {
+        let mut parts = vec![(level.start, level.end)];
+        let mut row = level.start + 1;
+        while row < level.end {
+            let is_away =
+                |i: &usize| (displacement[*i] - level.value).abs() > far && (force[*i] - force[row - 1]).abs() > much;
+            let run = (row..level.end).take_while(is_away).count();
+            if run >= LET_GO_ROWS
+                && let Some(last) = parts.last_mut()
+            {
+                last.1 = row;
+                parts.push((row + run, level.end));
+            }
+            row += run.max(1);
+        }
+        if parts.len() == 1 {
+            return vec![*level];
+        }
+        let long = parts.into_iter().filter(|(start, end)| end - start >= fewest);
+        long.map(|(start, end)| Level::of(&found.values, start, end)).collect()
+    };
+    found.levels = found.levels.iter().flat_map(cut).collect();
+    found
 }
 
 /// The levels of a machine that stands behind a spring, if it stands no less often than the `jaw` does.

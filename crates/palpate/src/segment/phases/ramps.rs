@@ -11,7 +11,7 @@ pub(super) fn fill_gaps(values: &[f64], levels: &[Level], hysteresis: f64) -> Ve
     let (mut from, mut before): (usize, Option<f64>) = (0, None);
     for level in levels {
         ramps(values, from, level.start, hysteresis, &mut segments);
-        let after = approach(values, &segments).or_else(|| {
+        let after = approach(values, &segments, level.start).or_else(|| {
             let rise = level.value - before?;
             Some(if rise >= 0.0 { After::Loading } else { After::Unloading })
         });
@@ -75,13 +75,20 @@ fn ramps(values: &[f64], from: usize, until: usize, hysteresis: f64, segments: &
     push(start, until, rising.unwrap_or(values[until - 1] >= first));
 }
 
-/// The direction from which a hold was reached: that of the last ramp of any size since the hold before it.
-fn approach(values: &[f64], segments: &[Segment]) -> Option<After> {
+/// Share of the farthest ramp since the hold before that the last one goes at least.
+const LEAST: f64 = 0.25;
+
+/// The direction from which a hold was reached: that of the last ramp of any size since the hold before it, of which no sample may lie in the ramp.
+fn approach(values: &[f64], segments: &[Segment], hold: usize) -> Option<After> {
     let ramps = ramps_before(segments, segments.len());
     let travel = |segment: &Segment| (values[segment.end - 1] - values[segment.start.saturating_sub(1)]).abs();
     let most = ramps.clone().map(travel).fold(0.0, f64::max);
     let mut ramps = ramps;
-    let last = ramps.find(|segment| travel(segment) >= 0.25 * most)?;
+    let last = ramps.find(|segment| travel(segment) >= LEAST * most)?;
+    let step = values[hold] - values[hold - 1];
+    if step.abs() > LEAST * most {
+        return Some(if step > 0.0 { After::Loading } else { After::Unloading });
+    }
     Some(if last.phase == Phase::Loading { After::Loading } else { After::Unloading })
 }
 

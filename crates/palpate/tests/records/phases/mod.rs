@@ -4,6 +4,7 @@
 mod behind_spring;
 mod delayed;
 mod driven;
+mod rare;
 
 use palpate::analysis::{AnalysisOptions, Finding, analyze};
 use palpate::record::{Correction, LabelledSegment, Record};
