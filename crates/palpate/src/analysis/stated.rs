@@ -52,13 +52,15 @@ impl Level {
     }
 }
 
+/// Windows about a time, as multiples of it, the first that has enough samples counts.
+const WINDOWS: [(f64, f64); 3] = [(0.95, 1.05), (0.8, 1.2), (0.5, 2.0)];
 /// Fewest samples of a straight line that leave an estimate of their scatter.
 const FEWEST: usize = 5;
 
 impl Analysis {
     /// What a report states of a hold: of one that holds the displacement after loading also F₀ and R(t).
     ///
-    /// F(t) is a straight line over ln t through the samples from 0.95 t to 1.05 t, or from 0.8 t to 1.2 t where those are few, at t; its standard error
+    /// F(t) is a straight line over ln t through the samples from 0.95 t to 1.05 t, or from 0.8 t to 1.2 t where those are few, or from t/2 to 2t, at t; its standard error
     /// is that of the line, for residuals that correlate as they do. F₀ at the start of the fit is the force there, with the noise of one
     /// sample. That of R follows by propagation, (σ_F/F₀)² + (F σ_F₀/F₀²)² (JCGM 100, 5.1.2); errors that all forces share, such as one of
     /// the load cell's zero, are not in it.
@@ -72,10 +74,12 @@ impl Analysis {
         let segments = &self.segmentation.segments;
         let ramp = segments.iter().rfind(|other| other.end <= segment.start);
         let ramp = ramp.filter(|ramp| ramp.phase == Phase::Loading && Some(After::Loading) == hold.after);
-        let (initial_force, relaxation) = self.stated_relaxation(hold).unzip();
+        let stated = self.stated_relaxation(hold);
+        let of_loading = stated.is_some();
+        let (initial_force, relaxation) = stated.flatten().unzip();
         let measured = |time: &f64| relaxation.iter().flatten().any(|stated: &StatedRelaxation| stated.time == *time);
         // Of the usual times those count that were measured; of chosen ones all.
-        let chosen = self.options.conditions.relaxation_at.as_deref().filter(|_| initial_force.is_some());
+        let chosen = self.options.conditions.relaxation_at.as_deref().filter(|_| of_loading);
         HoldReport {
             applied_in: ramp.map(|ramp| time[segment.start] - time[self.last_at_rest(ramp, segment.start)]),
             constraint_variation,
@@ -98,14 +102,19 @@ impl Analysis {
         (before..end).take_while(is_there).last().unwrap_or(before)
     }
 
-    /// F₀ and R(t) of a hold of the displacement after loading, where the force exceeds its noise.
-    fn stated_relaxation(&self, hold: &HoldAnalysis) -> Option<(Estimate, Vec<StatedRelaxation>)> {
-        let (record, segment) = (&self.record, &hold.segment);
+    /// F₀ and R(t) of a hold of the displacement after loading, `None` of another; inside `None` where F₀ was not measured or does not exceed its
+    /// noise.
+    fn stated_relaxation(&self, hold: &HoldAnalysis) -> Option<Option<(Estimate, Vec<StatedRelaxation>)>> {
+        let segment = &hold.segment;
         let of_displacement = segment.mode.is_none_or(|mode| mode == HoldMode::DisplacementHeld);
         if !of_displacement || hold.after == Some(After::Unloading) {
             return None;
         }
-        let conditions = &self.options.conditions;
+        Some(self.relaxation_stated(segment))
+    }
+
+    fn relaxation_stated(&self, segment: &Segment) -> Option<(Estimate, Vec<StatedRelaxation>)> {
+        let (record, conditions) = (&self.record, &self.options.conditions);
         let samples = segment.fit_start..segment.end;
         let (time, force) = (&record.time()[samples.clone()], &record.force()[samples]);
         let start = *time.first()?;
@@ -146,11 +155,11 @@ fn level(times: &[f64], force: &[f64], at: f64) -> Option<Level> {
     if at > *times.last()? {
         return None;
     }
-    let within = |share: f64| {
-        let (from, to) = (at * (1.0 - share), at * (1.0 + share));
+    let within = |(from, to): (f64, f64)| {
+        let (from, to) = (at * from, at * to);
         times.partition_point(|time| *time < from)..times.partition_point(|time| *time <= to)
     };
-    let window = [0.05, 0.2].map(within).into_iter().find(|window| window.len() >= FEWEST)?;
+    let window = WINDOWS.map(within).into_iter().find(|window| window.len() >= FEWEST)?;
     let (x, y): (Vec<f64>, &[f64]) =
         (times[window.clone()].iter().map(|time| (time / at).ln()).collect(), &force[window]);
     let count = x.len() as f64;
@@ -173,6 +182,31 @@ fn level(times: &[f64], force: &[f64], at: f64) -> Option<Level> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::analysis::{AnalysisOptions, analyze};
+    use crate::record::Record;
+
+    /// R(24 h) of a hold that is read every 10 min, with F₀ at 30 min, was missing without a word.
+    #[test]
+    fn a_hold_read_every_ten_minutes_states_its_relaxation_or_that_it_was_not_measured() {
+        let time: Vec<f64> = (0..=1008).map(|i| 600.0 * f64::from(i)).collect();
+        let mut rng = Rng::new(3);
+        let truth = |t: f64| 300.0 - 6.0 * (1.0 + t).ln();
+        let force = time.iter().map(|t| truth(*t) + 0.1 * rng.normal()).collect();
+        let record = Record::new(time.clone(), Some(vec![1.6e-3; time.len()]), force).expect("a record");
+        let mut options = AnalysisOptions::default();
+        options.conditions.relaxation_at = Some(vec![24.0 * 3600.0, 71.0 * 3600.0]);
+        for (after, measured) in [(1800.0, 2), (400.0, 0)] {
+            options.conditions.initial_force_after = after;
+            let analysis = analyze(&record, &options).expect("an analysis");
+            let report = analysis.hold_report(&analysis.holds[0]);
+            assert_eq!((report.relaxation.len(), report.not_measured.len()), (measured, 2 - measured), "{after}");
+            for stated in report.relaxation {
+                let expected = 1.0 - truth(after + stated.time) / truth(after);
+                let error = stated.relaxation.standard_error.expect("an error");
+                assert!((stated.relaxation.value - expected).abs() < 4.0 * error && error < 0.002, "{stated:?}");
+            }
+        }
+    }
     use crate::random::Rng;
 
     /// A straight line over ln t is met exactly, at the last sample too, and nothing beyond or where samples are few.
@@ -185,8 +219,8 @@ mod tests {
             assert!((found.value - (5.0 - 0.2 * at.ln())).abs() < 1e-12, "{at}: {found:?}");
         }
         assert!(level(&times, &force, 100.1).is_none());
-        // Within 20 % of 0.3 s lies one sample.
-        assert!(level(&times, &force, 0.3).is_none());
+        // From half of it to twice 0.1 s lie two samples; about 0.4 s, seven.
+        assert!(level(&times, &force, 0.1).is_none() && level(&times, &force, 0.4).is_some());
     }
 
     /// Over many records with white noise the error of a level has the size that is stated.

@@ -72,7 +72,7 @@ pub(super) fn tables(analysis: &Analysis) -> Vec<Table> {
     let number = |value: Option<f64>, why: &str| Cell::number_or(value, 3, why);
     const NO_RAMP: &str = "no loading ramp stands right before the hold";
     const NO_DISPLACEMENT: &str = "no displacement was recorded";
-    const NO_FORCE: &str = "the hold is not one of the displacement after loading, or its force lies within the noise";
+    const NO_FORCE: &str = "the hold is not one of the displacement after loading, or its force lies within the noise, or fewer than five readings are near the time of F₀";
     let constraint = Table::of("constraint", "How the displacement of each hold was applied and held.", &reports)
         .column("Hold", "hold", "", |(hold, _)| Cell::Integer(*hold as i64))
         .column("Applied in", "applied_in_s", "s", |(_, report)| number(report.applied_in, NO_RAMP))
@@ -87,7 +87,7 @@ pub(super) fn tables(analysis: &Analysis) -> Vec<Table> {
         })
         .table()
         .note("The variation is the largest less the smallest displacement over the hold, with the noise of its measurement.");
-    let relaxation = Table::of("relaxation_at", "Force and relaxation R(t) = (F₀ − F(t))/F₀ at stated times.", &stated)
+    let relaxation = Table::of("relaxation_at", "Force and relaxation R(t) = (F₀ − F(t))/F₀ at stated times after that of F₀.", &stated)
         .column("Hold", "hold", "", |(hold, ..)| Cell::Integer(*hold as i64))
         .column("Time", "time_s", "s", |(_, time, _)| Cell::Number(*time, 3))
         .estimates("Force", "force_n", "N", measured(|stated| stated.force))

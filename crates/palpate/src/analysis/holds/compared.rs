@@ -71,11 +71,25 @@ fn equilibrium_by_law(comparison: &Comparison, alike: &[Law]) -> Option<Finding>
             _ => {}
         }
     }
+    // A series and its interval know nothing slower than its last term; a spectrum that is as good and reaches the end of its grid does.
+    let spectrum = comparison.rows.iter().find_map(|row| row.spectrum.as_ref()).filter(|fit| fit.is_open_ended());
+    let is_alike = |law| comparison.verdict.as_ref().is_some_and(|verdict| verdict.indistinguishable.contains(&law));
+    if is_series(*law)
+        && is_alike(Law::Spectrum)
+        && spectrum.is_some_and(|fit| !(low..=high).contains(&fit.equilibrium))
+    {
+        outside.push(Law::Spectrum);
+    }
     (!outside.is_empty() || !without.is_empty()).then_some(Finding::EquilibriumByLaw {
         law: *law,
         outside,
         without,
     })
+}
+
+/// Whether a law is a sum of exponentials.
+pub(super) fn is_series(law: Law) -> bool {
+    matches!(law, Law::StandardLinearSolid | Law::Prony { .. })
 }
 
 /// Sample intervals up to which a time constant is that of the first samples.
@@ -98,8 +112,7 @@ fn times_out_of_sight(comparison: &Comparison, interval: f64) -> Vec<Finding> {
         time_constant: longest,
         duration,
     });
-    let is_series = matches!(law, Law::StandardLinearSolid | Law::Prony { .. });
-    let is_over = (is_series && shortest < FIRST_SAMPLES * interval).then_some(Finding::FirstSamplesAlone {
+    let is_over = (is_series(law) && shortest < FIRST_SAMPLES * interval).then_some(Finding::FirstSamplesAlone {
         law,
         time_constant: shortest,
         interval,

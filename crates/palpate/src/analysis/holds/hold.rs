@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::compared::{add_forecasts, comparison_findings, not_a_hold};
+use super::compared::{add_forecasts, comparison_findings, is_series, not_a_hold};
 use super::drive::drive_changes;
 use super::jump::force_step;
 use super::rate_bias::{RateBias, rate_bias};
@@ -379,13 +379,20 @@ fn recommended(hold: &HoldAnalysis) -> Option<&Fit> {
     comparison.rows.iter().find(|row| row.law == law)?.fit.as_ref().ok()
 }
 
+/// Share of a relaxation beyond the end of a hold from which on its equilibrium is extrapolated, and that of a series of exponentials.
+const MUCH: f64 = 0.2;
+const BY_LAST_TERM: f64 = 0.02;
+
 /// Adds what the fit of the law to use gives cause to say.
 fn judge_fit(hold: &mut HoldAnalysis, fit: &Fit) {
     let (last, first_step) = (hold.times[hold.fitted - 1], hold.times[1]);
     let [start, next, end] = [0.0, first_step, last].map(|time| fit.predict(time));
     if let Some(Parameter { estimate, .. }) = fit.parameter(ParameterKind::Equilibrium) {
         let beyond = (end - estimate.value) / (start - estimate.value);
-        if beyond > 0.2 {
+        // A series knows nothing slower than its last term: what its interval leaves out of the way to its equilibrium, it knows by that alone.
+        let unseen = |(low, high): (f64, f64)| (end - estimate.value).abs() > 0.5 * (high - low);
+        let by_last_term = is_series(fit.law) && beyond > BY_LAST_TERM && estimate.interval.is_some_and(unseen);
+        if beyond > MUCH || by_last_term {
             hold.findings.push(Finding::EquilibriumExtrapolated { law: fit.law, beyond });
         }
         // A force below zero that goes on to one above it belongs to a body that is held on to.
