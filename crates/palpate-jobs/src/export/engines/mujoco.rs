@@ -1,4 +1,4 @@
-//! MuJoCo: an MJCF model of the body between two jaws, or of the held body and one jaw, its contacts as pairs with `solref`, `solreffriction`
+//! MuJoCo: an MJCF model of the body between two jaws, or of a body that stands still and one jaw, its contacts as pairs with `solref`, `solreffriction`
 //! and `solimp`.
 //!
 //! Documentation: "XML Reference", contact/pair attributes `solref`, `solreffriction`, `solimp`, `condim`, `friction`, and option attributes
@@ -27,9 +27,6 @@ const JAW: f64 = 1000.0;
 /// Standard gravity, m/s².
 const GRAVITY: f64 = 9.80665;
 
-/// The weld that holds a body squeezed from one side: as stiff as the largest stable time step allows, so that it takes micrometres of the travel.
-const WELD: &str = "solref=\"0.01 1\" solimp=\"0.9999 0.9999 0.001 0.5 2\"";
-
 pub(super) fn text(card: &Card, fit: &SoftConstraint) -> String {
     let head = card.head(&notes(card, fit));
     let friction = card.options.friction.map_or(String::new(), |mu| {
@@ -37,19 +34,15 @@ pub(super) fn text(card: &Card, fit: &SoftConstraint) -> String {
         format!(" friction=\"{mu} {mu} 0.005 0.0001 0.0001\"")
     });
     let points = contact_points(card.shape());
-    let solref = numbers(&[-fit.stiffness / points, -fit.damping / points]);
+    // A weld gives way under what it holds, the more the lighter the body, so a body squeezed from one side stands still in the model.
+    let (names, share, joint): (&[(&str, f64)], f64, &str) = match card.body.sides() {
+        Sides::Two => (&[("palpate_left_jaw", -1.0), ("palpate_right_jaw", 1.0)], 1.0, "      <freejoint/>\n"),
+        Sides::One => (&[("palpate_jaw", -1.0)], fit.mass * jaw_weight(fit.mass), ""),
+    };
+    let solref = numbers(&[-share * fit.stiffness / points, -share * fit.damping / points]);
     let solimp = numbers(&[fit.first, fit.last, fit.width, fit.midpoint, fit.power]);
     let sliding = numbers(&[-1.0, -FRICTION_RATE * fit.last]);
     let (geometry, half, height) = geometry(card.shape());
-    let (names, weld): (&[(&str, f64)], String) = match card.body.sides() {
-        Sides::Two => (&[("palpate_left_jaw", -1.0), ("palpate_right_jaw", 1.0)], String::new()),
-        Sides::One => {
-            let weld = format!(
-                "  <equality>\n    <weld name=\"palpate_back\" body1=\"palpate_body\" {WELD}/>\n  </equality>\n"
-            );
-            (&[("palpate_jaw", -1.0)], weld)
-        }
-    };
     let jaws: String = names.iter().map(|(name, side)| jaw(name, *side, (half, height), JAW * fit.mass)).collect();
     let pairs: String = names
         .iter()
@@ -65,13 +58,12 @@ pub(super) fn text(card: &Card, fit: &SoftConstraint) -> String {
   </default>
   <worldbody>
     <body name="palpate_body" pos="0 0 {height}">
-      <freejoint/>
-      <geom name="palpate_body" {geometry} mass="{mass}"/>
+{joint}      <geom name="palpate_body" {geometry} mass="{mass}"/>
     </body>
 {jaws}  </worldbody>
   <contact>
 {pairs}  </contact>
-{weld}</mujoco>
+</mujoco>
 "#,
         comment = xml_comment(&head),
         height = plain(height),
@@ -81,6 +73,11 @@ pub(super) fn text(card: &Card, fit: &SoftConstraint) -> String {
 
 fn numbers(values: &[f64]) -> String {
     values.iter().map(|value| plain(*value)).collect::<Vec<_>>().join(" ")
+}
+
+/// Inverse weight of the jaw of a model for a body of this mass, 1/kg: MuJoCo's mean over three axes, of which it goes along one.
+fn jaw_weight(mass: f64) -> f64 {
+    1.0 / (3.0 * JAW * mass)
 }
 
 /// A jaw on a slide along x, on one side of a body of half the width and the height of its centre (m).
@@ -116,13 +113,20 @@ fn notes(card: &Card, fit: &SoftConstraint) -> Vec<String> {
     let u = card.loading.indentation;
     let points = contact_points(card.shape());
     let mass = short(fit.mass);
+    let (weights, factor) = match card.body.sides() {
+        Sides::Two => (format!("{mass} kg (w1 = 1/{mass}) and jaws so heavy that w2 is 0"), mass.clone()),
+        Sides::One => {
+            let still = short(jaw_weight(fit.mass));
+            (format!("a body that stands still (w1 = 0) and this jaw (w2 = {still})"), format!("1/{still} times"))
+        }
+    };
     let largest = 100.0 * SoftConstraint::LARGEST;
     let mut notes = vec![
         "Use: the pairs are the contact; give them the names of your geoms, and your model the option cone and impratio".to_owned(),
         format!(
             "The force is in proportion to 1/(w1 + w2), w the first number of body_invweight0 of the two bodies in the compiled model, and \
-             the card is for {mass} kg (w1 = 1/{mass}) and jaws so heavy that w2 is 0. For other bodies multiply both numbers of solref by \
-             {mass} (w1 + w2), with w from model.body_invweight0[id][0] of your compiled model. It does not follow from the mass: of a jaw \
+             the card is for {weights}. For other bodies multiply both numbers of solref by \
+             {factor} (w1 + w2), with w from model.body_invweight0[id][0] of your compiled model. It does not follow from the mass: of a jaw \
              of mass M on one slide joint it is 1/M where model.body_simple[id] is 2, such as with its centre of mass at the origin of its \
              body and the joint along an axis of that, and 1/(3 M) where not, as here"
         ),
@@ -130,9 +134,7 @@ fn notes(card: &Card, fit: &SoftConstraint) -> Vec<String> {
     match card.body.sides() {
         Sides::Two => notes.extend(between_jaws(card, fit, u, largest)),
         Sides::One => notes.extend([
-            "The weld holds the back of the body; give it body2, the plate or the finger that the body is on, or let the geom of the body \
-             be one of that plate or finger, whose w then counts"
-                .to_owned(),
+            "The body stands still; let its geom be one of the plate or the finger that the body is on, whose w then counts".to_owned(),
             format!("Time steps above {} s are unstable: friction is stiff", short(2.0 / FRICTION_RATE)),
             format!(
                 "The impedance is small, at most {}, so that the contact is a spring and a damper where what it presses is held; a body or \
