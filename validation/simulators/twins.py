@@ -225,6 +225,17 @@ def finite_at_rest():
             tree = jax.grad(force, argnums=(0, 1))(exact, jnp.float64(to))
             finite = all(bool(jnp.isfinite(leaf)) for leaf in jax.tree.leaves(tree))
             within(float(not finite), 0, f"gradient at rest, n = {exponent}, displacement {to} m")
+    # Below n = 1 a body comes to rest; one that is at rest and pressed has the slope that differences have, in the limit of small ones.
+    for exponent in (0.5, 0.8, 1.0, 2.0):
+        exact = twin.contact_parameters(MODEL, jnp.float64)._replace(exponent=jnp.float64(exponent))
+
+        def after_rest(d, exact=exact):
+            jaw_m = 0.01 * exact.share
+            rested = twin.contact_state(exact)._replace(jaw_m=jaw_m, behind_m=jaw_m * (1 - 1 / exact.layers), excess=0.0 * jaw_m)
+            return twin.contact_step(exact, rested, 0.01, 0.01 + d)[1]
+
+        by_difference = float(after_rest(1e-9) - after_rest(-1e-9)) / 2e-9
+        within(abs(float(jax.grad(after_rest)(0.0)) / by_difference - 1), 1e-3, f"slope after rest, n = {exponent}")
 
 
 GRIPPER = """

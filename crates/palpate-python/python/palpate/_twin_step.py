@@ -225,7 +225,8 @@ def relaxed(xp: Any, p: ContactParameters, excess: Any, elapsed: Any) -> Any:
     scaled = xp.minimum(scaled, xp.finfo(scaled.dtype).max)
     z = over * scaled
     # Near n = 1 and for short times ln(1 + z)/(n − 1) by its series: smooth in n.
-    small, ended = xp.abs(z) < 1e-4, z <= -1.0
+    # Below n = 1 what is little is gone at once, so a body at rest stays there and has no derivative.
+    small, ended = xp.abs(z) < 1e-4, (z <= -1.0) | (is_zero & (over < 0.0) & (elapsed > 0.0))
     little = xp.where(small, z, 0.0)
     series = xp.where(small, scaled, 0.0) * (1.0 - little * (1.0 / 2.0 - little * (1.0 / 3.0 - little * (1.0 / 4.0))))
     inside = small | ended
