@@ -110,7 +110,7 @@ pub enum Correction {
         /// Those among them that repeated a row in all their values.
         identical: usize,
     },
-    /// Rows of a clock that is coarser than the sampling were spread evenly from each stamp to the next.
+    /// Rows of a clock that is coarser than the sampling were spread over its stamps at a constant rate, which changes where their numbers do.
     StampsSpread {
         /// Whose stamps.
         clock: Clock,
@@ -118,7 +118,7 @@ pub enum Correction {
         rows: usize,
         /// Stamps among them.
         stamps: usize,
-        /// From one to the next, s.
+        /// From one to the next, s, without pauses.
         step: f64,
     },
     /// Rows of the file in which a cell holds no number were left out.
@@ -263,7 +263,7 @@ impl fmt::Display for Correction {
                 step,
             } => {
                 let step = significant(*step, 4);
-                write!(f, "{clock}: {rows} rows with {stamps} stamps {step} s apart spread evenly between them")
+                write!(f, "{clock}: {rows} rows with {stamps} stamps {step} s apart spread evenly over them")
             }
             Self::RowsLeftOut { rows, left_out, lines } => {
                 let named: Vec<String> = lines.iter().map(ToString::to_string).collect();

@@ -7,6 +7,7 @@
 //! | `raw.rs` | columns as a file holds them, before anything is checked |
 //! | `signals/` | what such columns are like: stamps, gaps, strays, saturation, rounding |
 //! | `repair.rs` | time stamps that repeat or step back |
+//! | `coarse.rs` | rows of a clock that is coarser than the sampling |
 //! | `checks.rs` | what every record must be: finite, of equal lengths, time rising |
 //! | `measured.rs` | the record itself |
 //! | `label.rs` | phases that the file itself names |
@@ -15,6 +16,7 @@
 //! | `correction.rs` | what was done, as a list that goes with the record |
 
 mod checks;
+mod coarse;
 mod correct;
 mod correction;
 mod label;

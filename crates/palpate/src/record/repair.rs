@@ -1,5 +1,8 @@
 //! Time stamps that repeat or step back, repaired where that is safe.
 
+use std::ops::Range;
+
+use super::coarse::{coarse_step, spread};
 use super::{Clock, Correction, RecordError};
 
 /// One row in this many may be out of order.
@@ -99,13 +102,14 @@ impl Repaired {
             return;
         }
         let ends = starts.iter().skip(1).copied().chain([rows]);
-        let groups: Vec<(usize, usize)> = starts.iter().copied().zip(ends).collect();
+        let groups: Vec<Range<usize>> = starts.iter().copied().zip(ends).map(|(start, end)| start..end).collect();
         let same = |row: &usize| self.columns.iter().all(|values| values[*row] == values[row - 1]);
-        let repeated: Vec<usize> = groups.iter().map(|(start, end)| (start + 1..*end).filter(same).count()).collect();
-        let repeats = |((start, end), repeated): (&(usize, usize), &usize)| start + 1 + repeated == *end;
+        let repeated: Vec<usize> =
+            groups.iter().map(|group| (group.start + 1..group.end).filter(same).count()).collect();
+        let repeats = |(group, repeated): (&Range<usize>, &usize)| 1 + repeated == group.len();
         let repeating = groups.iter().zip(&repeated).filter(|pair| repeats(*pair)).count();
         if let Some(step) = coarse_step(&self.time, &groups, repeating) {
-            self.spread(&groups, step);
+            self.time = spread(&self.time, &groups, step);
             self.done.push(Correction::StampsSpread {
                 clock,
                 rows,
@@ -117,9 +121,9 @@ impl Repaired {
         let mean = |values: &[f64]| values.iter().sum::<f64>() / values.len() as f64;
         let merged = |values: &Vec<f64>| -> Vec<f64> {
             // The mean of one value must be that value to the last bit.
-            let value = |(start, end): &(usize, usize)| match end - start {
-                1 => values[*start],
-                _ => mean(&values[*start..*end]),
+            let value = |group: &Range<usize>| match group.len() {
+                1 => values[group.start],
+                _ => mean(&values[group.clone()]),
             };
             groups.iter().map(value).collect()
         };
@@ -132,41 +136,4 @@ impl Repaired {
             identical: repeated.iter().sum(),
         });
     }
-
-    /// Rows from one stamp to the next at equal distances; the first stamp may have begun before the record.
-    fn spread(&mut self, groups: &[(usize, usize)], step: f64) {
-        let whole = groups.iter().map(|(start, end)| end - start).max().unwrap_or(1);
-        let last = groups.len() - 1;
-        for (index, (start, end)) in groups.iter().enumerate() {
-            let count = if index == 0 || index == last { whole } else { end - start };
-            let before = if index == 0 { whole - (end - start) } else { 0 };
-            for row in *start..*end {
-                self.time[row] += step * (before + row - start) as f64 / count as f64;
-            }
-        }
-    }
-}
-
-/// The time between stamps of a clock that is coarser than the sampling, s: equal, with as many rows each to a tenth or one. `None` where rows
-/// rather repeat, or stamps are uneven.
-fn coarse_step(time: &[f64], groups: &[(usize, usize)], repeating: usize) -> Option<f64> {
-    /// Fewest stamps that say so, and rows of each.
-    const STAMPS: usize = 5;
-    const ROWS: usize = 2;
-    const ALIKE: f64 = 1e-6;
-    /// Of so many stamps one at least has rows of several values.
-    const VARY: usize = 20;
-    let inner = groups.get(1..groups.len() - 1).filter(|inner| inner.len() + 2 >= STAMPS)?;
-    let counts = || inner.iter().map(|(start, end)| end - start);
-    let (least, most) = (counts().min()?, counts().max()?);
-    let stamps: Vec<f64> = groups.iter().map(|(start, _)| time[*start]).collect();
-    let steps = || stamps.windows(2).map(|pair| pair[1] - pair[0]);
-    let step = (stamps[stamps.len() - 1] - stamps[0]) / (stamps.len() - 1) as f64;
-    let is_even = steps().all(|one| (one - step).abs() <= ALIKE * step);
-    let edges = [groups[0], groups[groups.len() - 1]];
-    let is_full =
-        least >= ROWS && most - least <= (most / 10).max(1) && edges.iter().all(|(start, end)| end - start <= most);
-    // In a hold values repeat that were rounded; rows that were written twice repeat all along.
-    let is_sampled = (groups.len() - repeating) * VARY >= groups.len();
-    (is_even && is_full && is_sampled).then_some(step)
 }

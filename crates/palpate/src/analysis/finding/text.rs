@@ -391,7 +391,7 @@ impl Finding {
             Self::StampsSpread { rows, stamps, step } => caution(
                 "stamps_spread",
                 format!("{rows} rows have {stamps} time stamps, {} s apart", significant(*step, 4)),
-                "the clock is coarser than the sampling; the rows of each stamp were spread evenly up to the next, as if sampled at a constant rate",
+                "the clock is coarser than the sampling; the rows were spread over the stamps as if sampled at a constant rate, which changes only where stamps have more or fewer rows",
                 "write the time with more digits",
             ),
             Self::StampsMerged { rows, merged } => (
