@@ -6,7 +6,7 @@ use super::points::points;
 use super::shapes::{Shape, Shapes};
 use crate::optimise::BoundedSolver;
 use crate::segment::hear;
-use crate::statistics::{least_change, noise_in_time, quantum, range};
+use crate::statistics::{at, least_change, noise_in_time, quantum, range, updates};
 use crate::watch::{Cancelled, Watch};
 
 /// Levels of noise that are tried, in standard deviations of what differs from sample to sample: what a controller leaves, or an
@@ -38,12 +38,25 @@ pub(in crate::segment) struct Stretch {
     pub(in crate::segment) doubtful: bool,
 }
 
-/// The stretches of a force, in order and without gaps, and the standard deviation of what is left of it, N.
+/// The stretches of a force, in order and without gaps, and the standard deviation of what is left of it, N. Of a force that is read more often than it
+/// is updated the new values count.
 pub(in crate::segment) fn stretches(
     time: &[f64],
     force: &[f64],
     watch: &mut dyn Watch,
 ) -> Result<(Vec<Stretch>, f64), Cancelled> {
+    let Some(rows) = updates(force) else {
+        return stretches_of_new(time, force, watch);
+    };
+    let (mut found, noise) = stretches_of_new(&at(time, &rows), &at(force, &rows), watch)?;
+    let row = |place: usize| rows.get(place).copied().unwrap_or(force.len());
+    for stretch in &mut found {
+        (stretch.start, stretch.end) = (row(stretch.start), row(stretch.end));
+    }
+    Ok((found, noise))
+}
+
+fn stretches_of_new(time: &[f64], force: &[f64], watch: &mut dyn Watch) -> Result<(Vec<Stretch>, f64), Cancelled> {
     let values = without_spikes(time, force);
     let together = values.len().div_ceil(MOST);
     if together == 1 {
@@ -263,6 +276,19 @@ mod tests {
         let found = holds(&time, &force);
         assert_eq!(found.len(), 4, "{found:?}");
         assert!((time[found[1].start] - 12.0).abs() < 0.05, "{}", time[found[1].start]);
+    }
+
+    #[test]
+    fn a_force_that_repeats_its_values_has_the_holds_of_one_that_does_not() {
+        let mut random = Rng::new(8);
+        let (time, force) = stairs(|| 0.01 * random.normal());
+        let repeated: Vec<f64> = (0..force.len()).map(|i| force[i - i % 8]).collect();
+        let found = holds(&time, &repeated);
+        assert_eq!(found.len(), 4, "{found:?}");
+        for (step, hold) in found.iter().enumerate() {
+            assert!(hold.start.abs_diff(1000 * step + 200) < 24, "{hold:?}");
+            assert!(hold.end.abs_diff(1000 * (step + 1)) < 24, "{hold:?}");
+        }
     }
 
     #[test]

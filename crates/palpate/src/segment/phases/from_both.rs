@@ -182,8 +182,12 @@ fn creeps(
     // The top of a wave is slow, too.
     let smooth = |level: &Level| turns(record.time(), record.force(), *level, ASTRAY * found.settings.noise, 0.5);
     let step = least_change(record.force());
+    // A jaw that repeats its values shows no creep in fewer rows than a hold of it has.
     for level in settled.iter().filter(|level| {
-        arrives(record, level, &jaw.settings) && (!open(level) || recovers(level)) && !is_stair(record, level, step)
+        level.end - level.start >= jaw.settings.minimum_samples
+            && arrives(record, level, &jaw.settings)
+            && (!open(level) || recovers(level))
+            && !is_stair(record, level, step)
     }) {
         hear(watch)?;
         let inside: Vec<&Level> = still.iter().filter(|still| overlap(still, level)).collect();
