@@ -182,12 +182,8 @@ fn creeps(
     // The top of a wave is slow, too.
     let smooth = |level: &Level| turns(record.time(), record.force(), *level, ASTRAY * found.settings.noise, 0.5);
     let step = least_change(record.force());
-    // A jaw that repeats its values shows no creep in fewer rows than a hold of it has.
     for level in settled.iter().filter(|level| {
-        level.end - level.start >= jaw.settings.minimum_samples
-            && arrives(record, level, &jaw.settings)
-            && (!open(level) || recovers(level))
-            && !is_stair(record, level, step)
+        arrives(record, level, &jaw.settings) && (!open(level) || recovers(level)) && !is_stair(record, level, step)
     }) {
         hear(watch)?;
         let inside: Vec<&Level> = still.iter().filter(|still| overlap(still, level)).collect();
@@ -220,7 +216,9 @@ fn creeps(
         };
         let rest = Level { start, ..*level };
         // How long the force takes to leave its level is no hold.
-        let is_long = rest.end - rest.start >= found.settings.minimum_samples.max(level.slack());
+        // A jaw that repeats its values shows no creep in fewer rows than a hold of it has.
+        let fewest = found.settings.minimum_samples.max(jaw.settings.minimum_samples);
+        let is_long = rest.end - rest.start >= fewest.max(level.slack());
         if is_long
             && !still.iter().any(|still| overlap(still, &rest))
             && takes_over(record, &rest, still)
