@@ -1,16 +1,17 @@
 //! What a model is fitted to: the motion of the jaw and the force it met.
 
+use std::borrow::Cow;
 use std::ops::Range;
 
-use super::CalibrateError;
 use super::range::Span;
+use super::{CalibrateError, EquilibriumLaw};
 use crate::analysis::{AnalysisOptions, Finding, Geometry, Prepared, corrected, measured_motion, signal_findings};
 use crate::contact::{Specimen, SpecimenError};
 use crate::instrument::Instrument;
 use crate::record::Record;
 use crate::segment::{HoldMode, Phase, Segment, force_delay, ramps_before};
 use crate::simulate::{MeasuredMotion, Motion, Separation};
-use crate::statistics::median;
+use crate::statistics::{bounds, median};
 
 /// Samples of force along a motion of the jaw that starts at first touch, ready to be fitted; SI units, loading positive.
 #[derive(Debug, Clone, PartialEq)]
@@ -48,10 +49,11 @@ const BEYOND: f64 = 2.0;
 /// Share of the deepest squeeze by which two levels differ at least.
 const APART: f64 = 0.02;
 
+/// Share of the way on one side of first touch up to which a way on the other is noise.
+const NOISE: f64 = 0.02;
+
 /// Refuses a displacement that goes against the direction of loading alone: above first touch there is noise.
 fn never_pressed(displacement: &[f64]) -> Result<(), CalibrateError> {
-    /// Share of the way back up to which a way forward is noise.
-    const NOISE: f64 = 0.02;
     let (lowest, highest) =
         displacement.iter().fold((0.0, 0.0), |(low, high): (f64, f64), d| (low.min(*d), high.max(*d)));
     if highest < -NOISE * lowest { Err(CalibrateError::NeverPressed { lowest }) } else { Ok(()) }
@@ -187,6 +189,21 @@ impl CalibrationData {
     #[must_use]
     pub fn with_instrument(self, instrument: Instrument) -> Self {
         Self { instrument, ..self }
+    }
+
+    /// The same for a law of the equilibrium force: a table begins at first touch, and what noise moves a jaw that is bonded below it, or away
+    /// from it and back before the first ramp, counts as standing there.
+    pub(super) fn with_law(&self, equilibrium: EquilibriumLaw) -> Cow<'_, Self> {
+        let (lowest, highest) = bounds(self.motion.displacements());
+        let is_noise = lowest <= 0.0 && lowest >= -NOISE * highest;
+        if equilibrium != EquilibriumLaw::Table || self.separation != Separation::Bonded || !is_noise {
+            return Cow::Borrowed(self);
+        }
+        Cow::Owned(Self {
+            motion: self.motion.standing_at_touch(NOISE * highest),
+            measured: self.measured.clone().map(|measured| measured.standing_at_touch(NOISE * highest)),
+            ..self.clone()
+        })
     }
 
     /// The same, fitted up to a time (s) and predicted from there on.

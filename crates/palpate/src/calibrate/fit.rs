@@ -77,6 +77,7 @@ pub fn calibrate(
     confidence: f64,
     watch: &mut dyn Watch,
 ) -> Result<Calibration, CalibrateError> {
+    let data = &*data.with_law(candidate.equilibrium);
     let prepared = Prepared::new(candidate, data)?;
     let free = prepared.searched.len();
     if data.fitted() <= free {

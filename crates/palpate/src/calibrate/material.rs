@@ -178,15 +178,8 @@ impl Body {
                 with(stiffness[0])?.with_equilibrium(Equilibrium::Hertz { poisson_ratio }).ok()
             }
             EquilibriumLaw::Table => {
-                let mut least = 0.0;
-                let row = |(u, force): (&f64, &f64)| {
-                    // Rows whose force per displacement is the same keep it to the last digit only here.
-                    let ratio = force / u;
-                    least = if ratio < least && ratio > least * (1.0 - 1e-9) { least } else { ratio };
-                    (*u, u * least * (1.0 + f64::EPSILON))
-                };
-                let rows: Vec<(f64, f64)> =
-                    std::iter::once((0.0, 0.0)).chain(self.levels.iter().zip(stiffness).map(row)).collect();
+                let rows = self.levels.iter().copied().zip(stiffness.iter().copied());
+                let rows: Vec<(f64, f64)> = std::iter::once((0.0, 0.0)).chain(rows).collect();
                 with(1.0)?.with_equilibrium(Equilibrium::measured(&rows).ok()?).ok()
             }
         }

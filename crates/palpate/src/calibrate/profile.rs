@@ -67,6 +67,7 @@ pub fn profile(
     watch: &mut dyn Watch,
 ) -> Result<Vec<ParameterProfile>, CalibrateError> {
     let material = &calibration.material;
+    let data = &*data.with_law(material.candidate().equilibrium);
     let prepared = Prepared::new(material.candidate(), data)?;
     let best = &calibration.theta;
     let problem = Problem::of(&prepared, data);

@@ -4,6 +4,9 @@ use alloc::vec::Vec;
 
 use super::{Curve, Equilibrium, EquilibriumError};
 
+/// Share by which F_e/u may fall from row to row: the product and the quotient of a constant ratio are rounded.
+const ROUNDED: f64 = 1e-12;
+
 impl Equilibrium {
     /// A measured law from rows of contact displacement (m) and equilibrium force (N), the first of them first touch: (0, 0).
     ///
@@ -27,14 +30,16 @@ impl Equilibrium {
             return Err(EquilibriumError::Touch { found: rows[0].1 });
         }
         let mut ratios: Vec<(f64, f64)> = rows[1..].iter().map(|(u, force)| (*u, force / u)).collect();
-        for (index, pair) in ratios.windows(2).enumerate() {
-            if pair[1].1 < pair[0].1 {
+        for index in 1..ratios.len() {
+            let (before, found) = (ratios[index - 1].1, ratios[index].1);
+            if found < before * (1.0 - ROUNDED) {
                 return Err(EquilibriumError::Softening {
-                    row: index + 3,
-                    found: pair[1].1,
-                    before: pair[0].1,
+                    row: index + 2,
+                    found,
+                    before,
                 });
             }
+            ratios[index].1 = found.max(before);
         }
         let touch = match *ratios.as_slice() {
             [(near, low), (far, high), ..] => (low - near * (high - low) / (far - near)).max(0.0),
@@ -45,5 +50,21 @@ impl Equilibrium {
         Ok(Self::Measured {
             force_per_displacement: Curve::named(&ratios, "forces over displacements")?,
         })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A calibrated table of a block in proportion was refused: the quotient of a rounded product fell by its last digit.
+    #[test]
+    fn forces_in_proportion_are_no_softening() {
+        for ratio in (1..200).map(|k| (0.17 * f64::from(k)).exp()) {
+            let rows: Vec<(f64, f64)> = (0..=12).map(|i| 3.1e-4 * f64::from(i)).map(|u| (u, u * ratio)).collect();
+            assert!(Equilibrium::measured(&rows).is_ok(), "{ratio}");
+        }
+        let falls = Equilibrium::measured(&[(0.0, 0.0), (1.0, 2.0), (2.0, 4.0 * (1.0 - 1e-9))]);
+        assert!(matches!(falls, Err(EquilibriumError::Softening { row: 3, .. })), "{falls:?}");
     }
 }

@@ -73,7 +73,9 @@ pub enum SpecimenError {
         found: f64,
     },
     /// A body whose contact grows, pulled away beyond the first touch while bonded to the jaw.
-    #[error("contact displacement must be 0 m or more where the contact area grows with it, found {found} m")]
+    #[error(
+        "contact displacement must be 0 m or more where the contact area grows with it or a table has the force, found {found} m"
+    )]
     PulledOff {
         /// The contact displacement requested, in m.
         found: f64,

@@ -384,6 +384,26 @@ fn a_force_let_down_on_a_body_soft_at_first_touch_comes_to_an_end() {
     }
 }
 
+/// It was refused as if it had no section.
+#[test]
+fn a_bonded_strip_with_a_table_goes_back_to_first_touch() {
+    let table = Equilibrium::measured(&[(0.0, 0.0), (1e-3, 0.1), (3e-3, 0.4)]).unwrap();
+    let shape = Shape::Prism {
+        area: 1e-4,
+        length: 0.02,
+    };
+    let strip = LinearContact {
+        specimen: Specimen::new(shape, 1e5, Sides::One).unwrap().with_equilibrium(table).unwrap(),
+        law: LinearLaw::standard(3.0, 2.0).unwrap(),
+        memory: Memory::Force,
+        separation: Separation::Bonded,
+    };
+    let motion = Motion::new(vec![0.0, 1.0, 2.0, 40.0], vec![0.0, 2e-3, 0.0, 0.0]).unwrap();
+    let found = simulate(&motion, &strip, &Sampling::Times(vec![0.0, 1.0, 2.0, 40.0])).unwrap();
+    // It pulls, and relaxes to nothing.
+    assert!(found.force[1] > 0.3 && found.force[2] < -0.1 && found.force[3].abs() < 1e-6, "{:?}", found.force);
+}
+
 /// It came out as a number beyond the range of doubles.
 #[test]
 fn a_bonded_ball_that_remembers_force_cannot_go_back_to_first_touch() {

@@ -86,6 +86,13 @@ impl MeasuredMotion {
         self
     }
 
+    /// That of a jaw that stands at first touch until it leaves it, as [`Motion::standing_at_touch`].
+    #[must_use]
+    pub(crate) fn standing_at_touch(mut self, noise: f64) -> Self {
+        self.motion = self.motion.standing_at_touch(noise);
+        self
+    }
+
     /// Covariance of the displacements at these knots, m², row by row, for white noise and corners at known times.
     #[must_use]
     pub fn covariance(&self, knots: &[usize]) -> Vec<Vec<f64>> {

@@ -182,6 +182,18 @@ impl Motion {
         self.times[self.times.len() - 1]
     }
 
+    /// The motion of a jaw that is never below first touch, and that stands there until it leaves it for places farther than `noise` (m).
+    #[must_use]
+    pub(crate) fn standing_at_touch(&self, noise: f64) -> Self {
+        let left = self.displacements.iter().position(|d| *d > noise).unwrap_or(self.displacements.len());
+        let stands = self.displacements[..left].iter().rposition(|d| *d <= 0.0).map_or(0, |last| last + 1);
+        let at = |(index, d): (usize, &f64)| if index < stands { 0.0 } else { d.max(0.0) };
+        Self {
+            times: self.times.clone(),
+            displacements: self.displacements.iter().enumerate().map(at).collect(),
+        }
+    }
+
     /// Displacement of the jaw at `time`, m; constant before the first knot and after the last.
     #[must_use]
     pub fn displacement_at(&self, time: f64) -> f64 {

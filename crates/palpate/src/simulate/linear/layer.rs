@@ -22,10 +22,10 @@ impl Layer for LinearContact {
         self.separation
     }
 
-    /// What a memory of force keeps needs an area.
+    /// What a memory of force keeps needs a stiffness.
     fn can_go_back_to(&self, u: f64) -> bool {
-        let grows = !self.specimen.has_constant_section();
-        !(self.is_bonded() && self.memory == Memory::Force && grows && u <= 0.0)
+        let has_none = self.specimen.stiffness(0.0).0 == 0.0;
+        !(self.is_bonded() && self.memory == Memory::Force && has_none && u <= 0.0)
     }
 
     fn relaxed(&self) -> Vec<f64> {
