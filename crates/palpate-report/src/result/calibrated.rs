@@ -2,10 +2,10 @@
 
 use palpate::calibrate::{
     CalibrateError, Calibration, CalibrationData, CalibrationRange, Candidate, Material, Misfit, ParameterProfile,
-    RateLaw,
+    RateLaw, ResidualCourse,
 };
 use palpate::contact::Shape;
-use palpate::fit::{NoiseModel, Termination};
+use palpate::fit::Termination;
 use palpate::instrument::{Instrument, InstrumentInput, InstrumentQuantity};
 use palpate::number::significant;
 use palpate::simulate::Separation;
@@ -60,10 +60,9 @@ impl CalibratedRecord {
         let chosen = self.chosen()?;
         let others = self.rows[1..].iter().filter_map(|(_, made)| made.as_ref().ok());
         let refuting = chosen.refuted_by(others).map(|other| other.material.candidate());
-        let follows_course = are_systematic(chosen.noise, chosen.relative) || are_slow(chosen);
         refuting
             .map(|Candidate { law, rate, .. }| Misfit::Law { law, rate })
-            .or_else(|| follows_course.then_some(Misfit::Residuals))
+            .or_else(|| chosen.course.map(|_| Misfit::Residuals))
     }
 
     /// What the table says in a sentence: the same figures rank.
@@ -137,17 +136,6 @@ impl CalibratedRecord {
     }
 }
 
-/// Whether residuals of this noise and of this share of the peak force show a law that does not describe all of the record.
-pub(super) fn are_systematic(noise: NoiseModel, relative: f64) -> bool {
-    relative > 5e-3 && noise.correlations(1).first().is_some_and(|correlation| *correlation > 0.9)
-}
-
-/// Whether residuals go so slowly that few of them are independent, and are so large that they matter.
-fn are_slow(made: &Calibration) -> bool {
-    let samples = made.simulated.len();
-    made.relative > 5e-4 && made.noise.effective_samples(samples) < 0.02 * samples as f64
-}
-
 /// The remark where no instrument is described: what the intervals contain that was found in the record, and what counts as exact.
 fn exact(instrument: &Instrument) -> Option<String> {
     // Others were stated.
@@ -205,17 +193,21 @@ fn remarks_of(made: &Calibration) -> Vec<String> {
         let how = how.replace("{}", &name);
         remarks.push(format!("The record {how}. Holds of different excess strain would determine it."));
     }
-    if are_systematic(made.noise, made.relative) {
-        remarks.push(format!(
+    let percent = |share: f64| significant(100.0 * share, 2);
+    remarks.extend(made.course.map(|course| match course {
+        ResidualCourse::Systematic => format!(
             "The residuals ({} % of the peak) are systematic: the law does not describe all of the record. Standard errors and intervals account for their correlation, not for a law of another form; --fit-until reports a held-out error.",
-            significant(100.0 * made.relative, 2)
-        ));
-    } else if are_slow(made) {
-        remarks.push(format!(
+            percent(made.relative)
+        ),
+        ResidualCourse::Slow => format!(
             "The residuals ({} % of the peak) go slowly: the law misses part of the record, or the force drifts, as of a body that swells. Standard errors and intervals account for their correlation, neither for a law of another form nor for a drift.",
-            significant(100.0 * made.relative, 2)
-        ));
-    }
+            percent(made.relative)
+        ),
+        ResidualCourse::Ramps { relative } => format!(
+            "The residuals follow a course in ramps or right after them (up to {} % of the peak, root mean square): the law misses what the body does there, as of one that stiffens. Parameters that the ramps determine, such as overshoots, may be off by more than their intervals.",
+            percent(relative)
+        ),
+    }));
     remarks.push(range_remark(made.material.range()));
     remarks.extend(bonded_remark(&made.material));
     remarks

@@ -1,10 +1,12 @@
 //! What a calibration of several records is shown with.
 
 use palpate::analysis::{Finding, Severity};
-use palpate::calibrate::{BatchParameter, Between, CalibratedSpecimen, CalibrationData, Misfit, SeveralCalibration};
+use palpate::calibrate::{
+    BatchParameter, Between, CalibratedSpecimen, CalibrationData, Misfit, ResidualCourse, SeveralCalibration,
+};
 use palpate::number::{counted, significant};
 
-use super::calibrated::{are_systematic, bonded_remark, formula_of_material, range_remark};
+use super::calibrated::{bonded_remark, formula_of_material, range_remark};
 use super::input::Input;
 use super::parameters::parameter_title;
 use super::words::percent;
@@ -81,7 +83,7 @@ impl CalibratedBatch {
     /// What one of the records shows against it.
     #[must_use]
     pub fn misfit_of(specimen: &CalibratedSpecimen) -> Option<Misfit> {
-        are_systematic(specimen.noise, specimen.relative).then_some(Misfit::Residuals)
+        ResidualCourse::is_systematic(specimen.noise, specimen.relative).then_some(Misfit::Residuals)
     }
 
     /// The findings of records because of which numbers must not be used, in sentences that name the record.

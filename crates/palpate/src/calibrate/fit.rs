@@ -3,7 +3,7 @@
 use super::prepared::Prepared;
 use super::search::search;
 use super::uncertainty::AssessedMaterial;
-use super::{CalibrateError, CalibrationData, CalibrationRange, Candidate, Material, MaterialParts};
+use super::{CalibrateError, CalibrationData, CalibrationRange, Candidate, Material, MaterialParts, ResidualCourse};
 use crate::analysis::HoldoutError;
 use crate::fit::{NoiseModel, Termination};
 use crate::forecast::{Criteria, criteria};
@@ -27,6 +27,8 @@ pub struct Calibration {
     pub relative: f64,
     /// Correlation of the residuals, which intervals and criteria take into account.
     pub noise: NoiseModel,
+    /// How the residuals show that the law misses part of the record; `None` where they do not.
+    pub course: Option<ResidualCourse>,
     /// Information criteria, every sample counted as one; only differences between candidates on the same data mean anything.
     pub criteria: Criteria,
     /// What comes after the fitted part, if it was fitted in part.
@@ -112,6 +114,7 @@ pub fn calibrate(
         rmse,
         relative: rmse / largest(data.forces()),
         noise: assessed.noise(),
+        course: assessed.course,
         criteria: criteria(found.square, data.fitted() as f64, free as f64),
         holdout: holdout(data, &simulated),
         termination: assessed.termination,

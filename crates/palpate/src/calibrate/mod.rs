@@ -10,6 +10,7 @@
 //! | `search.rs`, `problem.rs` | a grid, then damped steps | |
 //! | `uncertainty/` | their errors and intervals | |
 //! | `fit.rs` | from there to parameters with intervals | |
+//! | `course.rs` | residuals that follow a course: in the whole record, or in its ramps |
 //! | `misfit.rs` | what the record shows against a law | |
 //! | `profile.rs` | intervals by the profile of the residual sum of squares | |
 //! | `material.rs` | the body with its parameters | |
@@ -19,6 +20,7 @@
 //! | `error.rs` | why one could not be made | |
 
 mod candidate;
+mod course;
 mod data;
 mod error;
 mod extrapolation;
@@ -35,6 +37,7 @@ mod several;
 mod uncertainty;
 
 pub use candidate::{Candidate, EquilibriumLaw, RateLaw};
+pub use course::ResidualCourse;
 pub use data::CalibrationData;
 pub use error::{CalibrateError, MaterialError};
 pub use extrapolation::Extrapolation;

@@ -52,7 +52,7 @@ pub use joint::{
 pub use latency::{Candidate, LatencyFit, OrderSelection, fit_hold, fit_hold_watched, select_order};
 use law::Fitted;
 pub use law::{fit_law, fit_law_watched, profile_interval};
-pub(crate) use noise::{Assessed, Scale, Trust, UNEXPLAINED};
+pub(crate) use noise::{Assessed, Scale, Trust, UNEXPLAINED, whitened};
 pub use noise::{ModelCovariance, NoiseCourse, NoiseFollows, NoiseModel, Uncertainty};
 pub use options::{
     BootstrapOptions, ConstantChoice, FitOptions, IntervalMethod, LawOptions, Loss, NoiseChoice, SampleChoice,

@@ -5,6 +5,7 @@ mod any_state;
 mod calibrate;
 mod causes;
 mod corrections;
+mod course;
 mod curve_modulus;
 mod damage;
 mod exponents;

@@ -1,12 +1,13 @@
 //! Parameters of a material with their errors and intervals.
 
+use super::beyond::beyond_instrument;
 use super::displacement::from_displacement;
 use super::systematic::systematic_effects;
 use crate::calibrate::material::correlates;
 use crate::calibrate::prepared::Prepared;
 use crate::calibrate::problem::{Found, Problem};
 use crate::calibrate::{
-    CalibrateError, CalibrationData, Material, MaterialParameter, MaterialUncertainty, SystematicEffect,
+    CalibrateError, CalibrationData, Material, MaterialParameter, MaterialUncertainty, ResidualCourse, SystematicEffect,
 };
 use crate::fit::{Assessed, Estimate, NoiseModel, Scale, Termination};
 use crate::watch::Stages;
@@ -25,6 +26,8 @@ pub(crate) struct AssessedMaterial<'a> {
     assessed: Option<Assessed>,
     /// From the instrument and the body.
     systematic: Vec<SystematicEffect>,
+    /// What no error of the instrument explains of the residuals.
+    pub(crate) course: Option<ResidualCourse>,
     confidence: f64,
     pub(crate) termination: Termination,
 }
@@ -57,13 +60,17 @@ impl<'a> AssessedMaterial<'a> {
             gradients: gradients(prepared, &found.theta, &open),
             assessed: None,
             systematic: Vec::new(),
+            course: None,
             confidence,
             termination: found.termination,
         };
         if let Some(jacobian) = &jacobian {
             let columns: Vec<Vec<f64>> = open.iter().map(|i| jacobian[*i].clone()).collect();
             let of_displacement = from_displacement(&problem, data, found, &columns, stages)?;
-            new.systematic = systematic_effects(&problem, data, found, (&columns, &new.gradients), stages)?;
+            let (systematic, changes) = systematic_effects(&problem, data, found, (&columns, &new.gradients), stages)?;
+            new.systematic = systematic;
+            let left = beyond_instrument(&problem, data, found, (&columns, changes), stages)?;
+            new.course = ResidualCourse::of(data, &columns, &left)?;
             let forces = &data.forces()[..data.fitted()];
             let mut assessed = Assessed::of_columns(columns, (forces, found.residuals.clone()), confidence)?;
             of_displacement.iter().for_each(|covariance| assessed.add(covariance));

@@ -9,7 +9,7 @@ use crate::simulate::Motion;
 use crate::watch::{Cancelled, Stages};
 
 /// The effects of all input quantities, for the searched parameters `open` with their columns of the Jacobian and `gradients` of the logarithms
-/// of all parameters by them.
+/// of all parameters by them; beside each its change of the residuals at parameters that stay.
 ///
 /// With r the residuals, the least-squares parameters move by (JᵀJ)⁻¹ Jᵀ δr, where δr is what a quantity one standard uncertainty off changes
 /// of measured and simulated forces: half the difference of both sides.
@@ -19,9 +19,9 @@ pub(super) fn systematic_effects(
     found: &Found,
     (open, gradients): (&[Vec<f64>], &[Vec<f64>]),
     stages: &mut Stages<'_>,
-) -> Result<Vec<SystematicEffect>, Cancelled> {
+) -> Result<(Vec<SystematicEffect>, Vec<Vec<f64>>), Cancelled> {
     let Some(response) = Response::new(open) else {
-        return Ok(Vec::new());
+        return Ok((Vec::new(), Vec::new()));
     };
     stages.hear()?;
     let inputs = &data.instrument().inputs;
@@ -40,12 +40,13 @@ pub(super) fn systematic_effects(
         let logs: Vec<f64> = direct.enumerate().map(|(index, direct)| direct + through(index)).collect();
         // A modulus that was given is none of what is estimated here.
         let has_effect = *quantity != InstrumentQuantity::Modulus && logs.iter().all(|log| log.is_finite());
-        has_effect.then(|| SystematicEffect {
+        let effect = SystematicEffect {
             input: uncertainty.clone(),
             logs,
-        })
+        };
+        has_effect.then_some((effect, change))
     };
-    Ok(for_each(inputs.len(), effect).into_iter().flatten().collect())
+    Ok(for_each(inputs.len(), effect).into_iter().flatten().unzip())
 }
 
 /// What the same searched parameters make of a record with a quantity off its estimate.

@@ -58,3 +58,4 @@ pub(crate) use covariance::{Assessed, Scale, Trust, variance_of};
 pub use covariance::{ModelCovariance, Uncertainty};
 pub use model::NoiseModel;
 pub(crate) use portmanteau::UNEXPLAINED;
+pub(crate) use residuals::whitened;

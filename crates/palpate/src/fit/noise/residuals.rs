@@ -1,6 +1,6 @@
 //! Residuals of a fit, with what they show at once of how they correlate.
 
-use super::autoregression::MOST_ORDER;
+use super::autoregression::{MOST_ORDER, innovations};
 use crate::optimise::Few;
 use crate::statistics::dot;
 
@@ -38,6 +38,11 @@ impl<'a> Residuals<'a> {
             lasts,
         }
     }
+}
+
+/// Residuals made white by the autoregression that some of them show, `resting`, in the unit of the residuals.
+pub(crate) fn whitened(residuals: &[f64], resting: &[f64], parameters: usize) -> Vec<f64> {
+    innovations(residuals, &Residuals::of(resting, parameters).partial)
 }
 
 /// The partial autocorrelations of residuals, as many as speak for themselves; and whether those behind are above 0 together, by two standard

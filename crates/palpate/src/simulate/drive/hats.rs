@@ -11,6 +11,11 @@ pub(super) fn hats(samples: &Motion, knots: &[f64]) -> Option<(Vec<f64>, Tridiag
         diagonal: vec![0.0; knots.len()],
         beside: vec![0.0; knots.len() - 1],
     };
+    for (at, [before, between, after]) in sums_of_hats(samples, knots).into_iter().enumerate() {
+        normal.diagonal[at] += before;
+        normal.diagonal[at + 1] += after;
+        normal.beside[at] += between;
+    }
     let mut values = vec![0.0; knots.len()];
     let mut at = 0;
     for (time, displacement) in samples.times().iter().zip(samples.displacements()) {
@@ -18,15 +23,28 @@ pub(super) fn hats(samples: &Motion, knots: &[f64]) -> Option<(Vec<f64>, Tridiag
             at += 1;
         }
         let share = (time - knots[at]) / (knots[at + 1] - knots[at]);
-        normal.diagonal[at] += (1.0 - share) * (1.0 - share);
-        normal.diagonal[at + 1] += share * share;
-        normal.beside[at] += share * (1.0 - share);
         values[at] += (1.0 - share) * displacement;
         values[at + 1] += share * displacement;
     }
     let factored = normal.factored()?;
     factored.solve(&mut values);
     values.iter().all(|value| value.is_finite()).then_some((values, factored))
+}
+
+/// Sums of (1 − s)², s (1 − s) and s² over the samples of every stretch between two knots, with s the share of it that lies before a sample.
+pub(super) fn sums_of_hats(samples: &Motion, knots: &[f64]) -> Vec<[f64; 3]> {
+    let mut sums = vec![[0.0; 3]; knots.len() - 1];
+    let mut at = 0;
+    for time in samples.times() {
+        while at + 2 < knots.len() && *time >= knots[at + 1] {
+            at += 1;
+        }
+        let share = (time - knots[at]) / (knots[at + 1] - knots[at]);
+        sums[at][0] += (1.0 - share) * (1.0 - share);
+        sums[at][1] += share * (1.0 - share);
+        sums[at][2] += share * share;
+    }
+    sums
 }
 
 /// Measured displacements less those of the motion.

@@ -1,7 +1,7 @@
 //! The motion that a measured displacement shows: standstills by their mean, ramps by their line.
 
 use super::bends::add_bends;
-use super::hats::{Tridiagonal, hats, residuals};
+use super::hats::{Tridiagonal, hats, residuals, sums_of_hats};
 use super::motion::{Motion, MotionError};
 
 /// A motion estimated from noisy displacements, with the covariance of its knots.
@@ -30,6 +30,17 @@ pub struct MeasuredMotion {
     pub noise: f64,
     /// HᵀH of the hat functions H of its knots; `None` where the knots are samples.
     normal: Option<Tridiagonal>,
+    /// What the samples of every stretch say of its ends; none where the knots are samples.
+    stretches: Vec<Stretch>,
+}
+
+/// Samples of a stretch between two knots.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Stretch {
+    /// Sums of (1 − s)², s (1 − s) and s² over its samples, with s the share of the stretch that lies before one.
+    sums: [f64; 3],
+    /// Variance of a sample, m², of such as are independent of each other.
+    variance: f64,
 }
 
 /// Samples of a stretch from which its line is known well enough to meet another.
@@ -48,6 +59,16 @@ impl MeasuredMotion {
     /// # Errors
     /// [`MotionError`] as of [`Motion::new`].
     pub fn of(times: Vec<f64>, displacements: Vec<f64>, tolerance: f64) -> Result<Self, MotionError> {
+        Self::of_rounded(times, displacements, tolerance, 0.0)
+    }
+
+    /// The same of displacements that were rounded to a step (m).
+    pub(crate) fn of_rounded(
+        times: Vec<f64>,
+        displacements: Vec<f64>,
+        tolerance: f64,
+        step: f64,
+    ) -> Result<Self, MotionError> {
         let samples = Motion::new(times, displacements)?;
         let rough = samples.simplified(tolerance);
         let sums = Sums::new(&samples);
@@ -64,13 +85,17 @@ impl MeasuredMotion {
                 motion: rough,
                 noise: 0.0,
                 normal: None,
+                stretches: Vec::new(),
             });
         };
         let motion = Motion::new(knots, values)?;
-        let square: f64 = residuals(&samples, &motion).map(|off| off * off).sum();
+        let off: Vec<f64> = residuals(&samples, &motion).collect();
         let freedom = samples.times().len().saturating_sub(motion.times().len());
+        let square: f64 = off.iter().map(|off| off * off).sum();
+        let noise = if freedom > 0 { (square / freedom as f64).sqrt() } else { 0.0 };
         Ok(Self {
-            noise: if freedom > 0 { (square / freedom as f64).sqrt() } else { 0.0 },
+            stretches: stretches(&samples, &motion, &off, (noise, step)),
+            noise,
             motion,
             normal: Some(normal),
         })
@@ -108,6 +133,49 @@ impl MeasuredMotion {
         };
         knots.iter().map(row).collect()
     }
+
+    /// What the samples say of the displacements, then of the times of all knots: the inverse of their covariance (1/m², 1/(m s), 1/s²), row by
+    /// row; singular where a knot is no corner. `None` where nothing is known of the noise.
+    pub(crate) fn information(&self) -> Option<Vec<f64>> {
+        let (times, places) = (self.motion.times(), self.motion.displacements());
+        let count = times.len();
+        let mut all = vec![0.0; 4 * count * count];
+        for (at, Stretch { sums, variance }) in self.stretches.iter().enumerate() {
+            let slope = (places[at + 1] - places[at]) / (times[at + 1] - times[at]);
+            // By how much a knot moves the line at its own end.
+            let by = [(at, 1.0, 0), (count + at, -slope, 0), (at + 1, 1.0, 1), (count + at + 1, -slope, 1)];
+            for (row, a, side) in by {
+                for (column, b, other) in by {
+                    all[row * 2 * count + column] += a * b * sums[side + other] / variance;
+                }
+            }
+        }
+        (self.noise > 0.0 && !self.stretches.is_empty()).then_some(all)
+    }
+}
+
+/// What the samples of every stretch of a motion say of its ends, with `off` their distances from it, their noise and the step that they were
+/// rounded to.
+///
+/// Readings that noise does not spread over steps of rounding repeat one error: as many count as there are steps in the stretch.
+fn stretches(samples: &Motion, motion: &Motion, off: &[f64], (noise, step): (f64, f64)) -> Vec<Stretch> {
+    /// Noise over the step from which on rounding errors are independent.
+    const SPREADS: f64 = 0.45;
+    let of = |(pair, sums): (&[f64], [f64; 3])| {
+        let [from, until] = [pair[0], pair[1]].map(|knot| samples.times().partition_point(|time| *time < knot));
+        let count = (until - from).max(1) as f64;
+        let scatter = (off[from..until].iter().map(|off| off * off).sum::<f64>() / count).sqrt();
+        let (low, high) = samples.displacements()[from..until]
+            .iter()
+            .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), place| (place.min(low), place.max(high)));
+        let steps = 1.0 + ((high - low) / step).round().max(0.0);
+        let together = if scatter < SPREADS * step { (count / steps).max(1.0) } else { 1.0 };
+        Stretch {
+            sums,
+            variance: together * (noise * noise).max(step * step / 12.0),
+        }
+    };
+    motion.times().windows(2).zip(sums_of_hats(samples, motion.times())).map(of).collect()
 }
 
 /// A straight line d = a + s (t − t₀) through some samples.
