@@ -46,7 +46,7 @@ const UNLIKELY: f64 = 1e-4;
 /// Samples of a part from which on it shows its own noise.
 const OWN_NOISE: usize = 8;
 
-/// Fewest samples of a part, and of the rest of holds that the noise is seen in.
+/// Fewest samples of a part, and of the rest of holds in which the noise shows.
 const FEWEST: usize = 3;
 const FEWEST_OF_REST: usize = 40;
 

@@ -649,7 +649,7 @@ impl Finding {
             ),
             Self::DisplacementNotZero { start } => caution(
                 "displacement_not_zero",
-                format!("the record begins at a displacement of {} mm without a force", significant(1e3 * start, 4)),
+                format!("the record begins at a displacement of {} mm without a force that goes with it", significant(1e3 * start, 4)),
                 "displacements count from first touch here, and this one does not: strains and modulus are those of a body that is pressed that far already",
                 "set touch = \"auto\" in [contact] of the test description, or the displacement at which the jaw meets the body",
             ),
@@ -732,7 +732,7 @@ impl Finding {
                     significant(100.0 * share, 2),
                 ),
                 "the amplitudes and the start of the hold are those after this ramp, and no instantaneous ones",
-                "⟨compare/ramps=measured⟩ gives the amplitudes of a step",
+                "⟨compare/ramps=measured⟩ gives the amplitudes of a step, if the force grows in proportion to the displacement",
             ),
             Self::UntilBeyondHolds { until, longest } => caution(
                 "until_beyond_holds",

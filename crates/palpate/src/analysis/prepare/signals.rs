@@ -247,6 +247,8 @@ fn wrong_zero(record: &Record, segmentation: &Segmentation) -> Option<Finding> {
     const MOVED: (f64, f64) = (0.2, 0.01);
     /// Shares of the largest force that the first row has to have, and a rest.
     const PRESSED: (f64, f64) = (0.03, 0.01);
+    /// How many times stiffer a body is that grows stiffer as it is pressed, at most, from first touch to the first row and from there on.
+    const STIFFENS: f64 = 20.0;
     /// Fewest rows of a rest.
     const REST: usize = 10;
     let (force, displacement) = (record.force(), record.displacement()?);
@@ -262,7 +264,10 @@ fn wrong_zero(record: &Record, segmentation: &Segmentation) -> Option<Finding> {
     let farthest =
         |values: &[f64], from: f64| values.iter().fold(0.0, |most: f64, value| most.max((value - from).abs()));
     let (travel, largest) = (farthest(displacement, first), farthest(force, 0.0));
-    if first > MOVED.0 * travel && first_force.abs() <= (PRESSED.1 * largest).max(3.0 * error) {
+    // A preload on a specimen between grips that are far apart already.
+    let is_light = || first_force.abs() / first * STIFFENS < (largest - first_force.abs()) / travel;
+    let is_free = || first_force.abs() <= (PRESSED.1 * largest).max(3.0 * error);
+    if first > MOVED.0 * travel && (is_free() || is_light()) {
         return Some(Finding::DisplacementNotZero { start: first });
     }
     let is_pressed = first.abs() <= MOVED.1 * travel && first_force.abs() > (share * largest).max(8.0 * error);
@@ -303,6 +308,26 @@ mod tests {
         let time: Vec<f64> = (0..170).map(|i| 0.1 * f64::from(i)).collect();
         let travel: Vec<f64> = time.iter().map(|t| sign * at(*t)).collect();
         Record::new(time, Some(travel.clone()), travel).unwrap()
+    }
+
+    /// A specimen between grips at 12.3 mm under a preload of 0.5 N had a modulus of 5.5 MPa in place of 72.
+    #[test]
+    fn a_preload_far_from_first_touch_is_no_strain() {
+        let time: Vec<f64> = (0..500).map(|i| 0.1 * f64::from(i)).collect();
+        let ramp = |t: f64| 1.2e-3 * ((t - 3.0) / 4.0).clamp(0.0, 1.0);
+        let found = |start: f64, preload: f64| {
+            let displacement = time.iter().map(|t| start + ramp(*t)).collect();
+            let relaxes = |t: f64| if t > 7.0 { 0.3 * ((7.0 - t) / 5.0).exp_m1() } else { 0.0 };
+            let force = time.iter().map(|t| preload + 1.4e4 * ramp(*t) * (1.0 + relaxes(*t))).collect();
+            let record = Record::new(time.clone(), Some(displacement), force).unwrap();
+            let found = crate::segment::find_phases(&record, &crate::segment::SegmentOptions::default()).unwrap();
+            wrong_zero(&record, &found).map(|finding| finding.code())
+        };
+        for preload in [0.0, 0.1, 0.5, 1.0] {
+            assert_eq!(found(12.3e-3, preload), Some("displacement_not_zero"), "{preload} N");
+        }
+        // That far pressed the force is in proportion, or a fifth of that in a body that grows stiffer.
+        assert_eq!((found(1.2e-3, 16.8), found(1.2e-3, 3.4)), (None, None));
     }
 
     /// A load cell clipped at 30 N of 42 N with the noise of its amplifier gave no finding; without noise it did.

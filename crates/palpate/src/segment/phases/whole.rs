@@ -162,7 +162,7 @@ fn slows(time: &[f64], values: &[f64], first_half: f64) -> bool {
     // A relaxation is fastest at first: more than a few samples would hide much of it.
     let (first, last) = (mean(&values[..3]), mean(&values[values.len() - part..]));
     let (whole, half) = (last - first, mean(middle) - first);
-    // From the first value on: of a reading every 10 min the mean of three hides a third of all that is seen.
+    // From the first value on: of a reading every 10 min the mean of three hides a third of all that is recorded.
     let turns = range(values) > 1.2 * (last - values[0]).abs().max(whole.abs()) + 10.0 * noise(values);
     let shows = whole.abs() > SHOWS * noise(values);
     found.kind != RelaxationType::None && shows && !turns && half / whole > first_half
