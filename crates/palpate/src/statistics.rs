@@ -185,7 +185,12 @@ pub(crate) fn updates(values: &[f64]) -> Option<Vec<usize>> {
     const TURNS: f64 = 0.1;
     /// A value that lasts for so many usual times stayed.
     const STAYED: f64 = 4.0;
-    let changes: Vec<usize> = (1..values.len()).filter(|row| values[*row] != values[*row - 1]).collect();
+    // What differs by less has been averaged or printed in another order.
+    let step = least_change(values);
+    if step == 0.0 {
+        return None;
+    }
+    let changes: Vec<usize> = (1..values.len()).filter(|row| (values[*row] - values[*row - 1]).abs() >= step).collect();
     let lengths: Vec<f64> = changes.windows(2).map(|pair| (pair[1] - pair[0]) as f64).collect();
     let share = |count: usize| count as f64 / changes.len() as f64;
     if changes.len() < FEWEST || share(lengths.iter().filter(|length| **length > 1.0).count()) < REPEAT {
@@ -193,7 +198,6 @@ pub(crate) fn updates(values: &[f64]) -> Option<Vec<usize>> {
     }
     let change = |row: usize| values[row] - values[row - 1];
     let turns = changes.windows(2).filter(|pair| change(pair[0]) * change(pair[1]) < 0.0).count();
-    let step = changes.iter().map(|row| change(*row).abs()).fold(f64::MAX, f64::min);
     let steps = changes.iter().filter(|row| change(**row).abs() < 1.5 * step).count();
     let is_fine = 3 * steps <= changes.len() && 2 * steps <= values.len() - changes.len();
     let least = quantile(&mut lengths.clone(), SHORT);

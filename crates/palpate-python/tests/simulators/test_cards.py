@@ -84,12 +84,13 @@ def test_a_body_squeezed_from_one_side_gave_way_the_more_the_lighter_it_was(mass
         data.ctrl[0] = min(document["depth_m"], 0.5 * document["fastest_m_per_s"] * data.time)
         mujoco.mj_step(model, data)
     travel = float(data.joint("palpate_jaw").qpos[0])
-    assert travel == pytest.approx(document["depth_m"], abs=2e-5) and data.body("palpate_body").xpos[0] == 0.0
+    pushed_back = float(data.body("palpate_body").xpos[0])
+    assert travel == pytest.approx(document["depth_m"], abs=2e-5) and 0 < pushed_back < 2e-4 * travel
     held = mujoco_forces(card, [travel], 0.0)[0]
     assert contact_force(model, data) == pytest.approx(held, rel=5e-3)
     # The force does not depend on the mass that the card is for, but for what the contact itself would move.
     heavy = mujoco_forces(palpate.export(material, "mujoco", mass_kg=10.0), [travel], 0.0)[0]
-    assert held == pytest.approx(heavy, rel=1e-6)
+    assert held == pytest.approx(heavy, rel=1e-3)
 
 
 @pytest.mark.parametrize("jaw_kg", [0.25, 1.0])

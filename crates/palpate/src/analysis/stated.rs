@@ -52,8 +52,9 @@ impl Level {
     }
 }
 
-/// Windows about a time, as multiples of it, the first that has enough samples counts.
-const WINDOWS: [(f64, f64); 3] = [(0.95, 1.05), (0.8, 1.2), (0.5, 2.0)];
+/// Windows about a time, as multiples of it, and how far their samples must reach; the first that has enough counts. In a wide one a line that is read
+/// at its end is off.
+const WINDOWS: [(f64, f64, f64); 3] = [(0.95, 1.05, 1.0), (0.8, 1.2, 1.0), (0.5, 2.0, 1.5)];
 /// Fewest samples of a straight line that leave an estimate of their scatter.
 const FEWEST: usize = 5;
 
@@ -155,11 +156,12 @@ fn level(times: &[f64], force: &[f64], at: f64) -> Option<Level> {
     if at > *times.last()? {
         return None;
     }
-    let within = |(from, to): (f64, f64)| {
+    let within = |(from, to, reach): (f64, f64, f64)| {
         let (from, to) = (at * from, at * to);
-        times.partition_point(|time| *time < from)..times.partition_point(|time| *time <= to)
+        let window = times.partition_point(|time| *time < from)..times.partition_point(|time| *time <= to);
+        (window.len() >= FEWEST && times[window.end - 1] >= reach * at).then_some(window)
     };
-    let window = WINDOWS.map(within).into_iter().find(|window| window.len() >= FEWEST)?;
+    let window = WINDOWS.into_iter().find_map(within)?;
     let (x, y): (Vec<f64>, &[f64]) =
         (times[window.clone()].iter().map(|time| (time / at).ln()).collect(), &force[window]);
     let count = x.len() as f64;
@@ -183,6 +185,7 @@ fn level(times: &[f64], force: &[f64], at: f64) -> Option<Level> {
 mod tests {
     use super::*;
     use crate::analysis::{AnalysisOptions, analyze};
+    use crate::random::Rng;
     use crate::record::Record;
 
     /// R(24 h) of a hold that is read every 10 min, with F₀ at 30 min, was missing without a word.
@@ -207,7 +210,6 @@ mod tests {
             }
         }
     }
-    use crate::random::Rng;
 
     /// A straight line over ln t is met exactly, at the last sample too, and nothing beyond or where samples are few.
     #[test]

@@ -1,4 +1,4 @@
-//! MuJoCo: an MJCF model of the body between two jaws, or of a body that stands still and one jaw, its contacts as pairs with `solref`, `solreffriction`
+//! MuJoCo: an MJCF model of the body between two jaws, or of the held body and one jaw, its contacts as pairs with `solref`, `solreffriction`
 //! and `solimp`.
 //!
 //! Documentation: "XML Reference", contact/pair attributes `solref`, `solreffriction`, `solimp`, `condim`, `friction`, and option attributes
@@ -27,6 +27,14 @@ const JAW: f64 = 1000.0;
 /// Standard gravity, m/s².
 const GRAVITY: f64 = 9.80665;
 
+/// The weld that holds a body squeezed from one side, as stiff as the largest stable time step allows, and its stiffness over the mass of the body, 1/s²:
+/// d/(1 − d) over the square of its time.
+const WELD: &str = "solref=\"0.01 1\" solimp=\"0.9999 0.9999 0.001 0.5 2\"";
+const WELD_STIFFNESS: f64 = 9999.0 / (0.01 * 0.01);
+
+/// Share of its travel by which the weld gives way at most.
+const GIVES: f64 = 1e-4;
+
 pub(super) fn text(card: &Card, fit: &SoftConstraint) -> String {
     let head = card.head(&notes(card, fit));
     let friction = card.options.friction.map_or(String::new(), |mu| {
@@ -34,16 +42,22 @@ pub(super) fn text(card: &Card, fit: &SoftConstraint) -> String {
         format!(" friction=\"{mu} {mu} 0.005 0.0001 0.0001\"")
     });
     let points = contact_points(card.shape());
-    // A weld gives way under what it holds, the more the lighter the body, so a body squeezed from one side stands still in the model.
-    let (names, share, joint): (&[(&str, f64)], f64, &str) = match card.body.sides() {
-        Sides::Two => (&[("palpate_left_jaw", -1.0), ("palpate_right_jaw", 1.0)], 1.0, "      <freejoint/>\n"),
-        Sides::One => (&[("palpate_jaw", -1.0)], fit.mass * jaw_weight(fit.mass), ""),
+    let (names, weld): (&[(&str, f64)], String) = match card.body.sides() {
+        Sides::Two => (&[("palpate_left_jaw", -1.0), ("palpate_right_jaw", 1.0)], String::new()),
+        Sides::One => {
+            let weld = format!(
+                "  <equality>\n    <weld name=\"palpate_back\" body1=\"palpate_body\" {WELD}/>\n  </equality>\n"
+            );
+            (&[("palpate_jaw", -1.0)], weld)
+        }
     };
+    let mass = mass(card, fit);
+    let share = fit.mass / mass;
     let solref = numbers(&[-share * fit.stiffness / points, -share * fit.damping / points]);
     let solimp = numbers(&[fit.first, fit.last, fit.width, fit.midpoint, fit.power]);
     let sliding = numbers(&[-1.0, -FRICTION_RATE * fit.last]);
     let (geometry, half, height) = geometry(card.shape());
-    let jaws: String = names.iter().map(|(name, side)| jaw(name, *side, (half, height), JAW * fit.mass)).collect();
+    let jaws: String = names.iter().map(|(name, side)| jaw(name, *side, (half, height), JAW * mass)).collect();
     let pairs: String = names
         .iter()
         .map(|(name, _)| format!("    <pair class=\"palpate\" geom1=\"palpate_body\" geom2=\"{name}\"/>\n"))
@@ -58,16 +72,17 @@ pub(super) fn text(card: &Card, fit: &SoftConstraint) -> String {
   </default>
   <worldbody>
     <body name="palpate_body" pos="0 0 {height}">
-{joint}      <geom name="palpate_body" {geometry} mass="{mass}"/>
+      <freejoint/>
+      <geom name="palpate_body" {geometry} mass="{mass}"/>
     </body>
 {jaws}  </worldbody>
   <contact>
 {pairs}  </contact>
-</mujoco>
+{weld}</mujoco>
 "#,
         comment = xml_comment(&head),
         height = plain(height),
-        mass = plain(fit.mass),
+        mass = plain(mass),
     )
 }
 
@@ -75,9 +90,17 @@ fn numbers(values: &[f64]) -> String {
     values.iter().map(|value| plain(*value)).collect::<Vec<_>>().join(" ")
 }
 
-/// Inverse weight of the jaw of a model for a body of this mass, 1/kg: MuJoCo's mean over three axes, of which it goes along one.
-fn jaw_weight(mass: f64) -> f64 {
-    1.0 / (3.0 * JAW * mass)
+/// Mass of the body in the model, kg: of one that a weld holds, the weld's stiffness is in proportion to it.
+fn mass(card: &Card, fit: &SoftConstraint) -> f64 {
+    match card.body.sides() {
+        Sides::Two => fit.mass,
+        Sides::One => {
+            let least = card.loading.peak / (GIVES * card.loading.indentation * WELD_STIFFNESS);
+            // Two digits, not below it.
+            let digit = 10f64.powf(least.log10().floor() - 1.0);
+            fit.mass.max((least / digit).ceil() * digit)
+        }
+    }
 }
 
 /// A jaw on a slide along x, on one side of a body of half the width and the height of its centre (m).
@@ -112,21 +135,14 @@ fn geometry(shape: &Shape) -> (String, f64, f64) {
 fn notes(card: &Card, fit: &SoftConstraint) -> Vec<String> {
     let u = card.loading.indentation;
     let points = contact_points(card.shape());
-    let mass = short(fit.mass);
-    let (weights, factor) = match card.body.sides() {
-        Sides::Two => (format!("{mass} kg (w1 = 1/{mass}) and jaws so heavy that w2 is 0"), mass.clone()),
-        Sides::One => {
-            let still = short(jaw_weight(fit.mass));
-            (format!("a body that stands still (w1 = 0) and this jaw (w2 = {still})"), format!("1/{still} times"))
-        }
-    };
+    let mass = plain(mass(card, fit));
     let largest = 100.0 * SoftConstraint::LARGEST;
     let mut notes = vec![
         "Use: the pairs are the contact; give them the names of your geoms, and your model the option cone and impratio".to_owned(),
         format!(
             "The force is in proportion to 1/(w1 + w2), w the first number of body_invweight0 of the two bodies in the compiled model, and \
-             the card is for {weights}. For other bodies multiply both numbers of solref by \
-             {factor} (w1 + w2), with w from model.body_invweight0[id][0] of your compiled model. It does not follow from the mass: of a jaw \
+             the card is for {mass} kg (w1 = 1/{mass}) and jaws so heavy that w2 is 0. For other bodies multiply both numbers of solref by \
+             {mass} (w1 + w2), with w from model.body_invweight0[id][0] of your compiled model. It does not follow from the mass: of a jaw \
              of mass M on one slide joint it is 1/M where model.body_simple[id] is 2, such as with its centre of mass at the origin of its \
              body and the joint along an axis of that, and 1/(3 M) where not, as here"
         ),
@@ -134,7 +150,11 @@ fn notes(card: &Card, fit: &SoftConstraint) -> Vec<String> {
     match card.body.sides() {
         Sides::Two => notes.extend(between_jaws(card, fit, u, largest)),
         Sides::One => notes.extend([
-            "The body stands still; let its geom be one of the plate or the finger that the body is on, whose w then counts".to_owned(),
+            format!(
+                "The weld holds the back of the body, which weighs {mass} kg so that it moves by less than {} of the depth; give the weld body2, \
+                 the plate or the finger that the body is on, or let the geom of the body be one of that plate or finger, whose w then counts",
+                plain(GIVES)
+            ),
             format!("Time steps above {} s are unstable: friction is stiff", short(2.0 / FRICTION_RATE)),
             format!(
                 "The impedance is small, at most {}, so that the contact is a spring and a damper where what it presses is held; a body or \

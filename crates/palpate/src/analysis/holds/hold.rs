@@ -379,8 +379,9 @@ fn recommended(hold: &HoldAnalysis) -> Option<&Fit> {
     comparison.rows.iter().find(|row| row.law == law)?.fit.as_ref().ok()
 }
 
-/// Share of a relaxation beyond the end of a hold from which on its equilibrium is extrapolated, and that of a series of exponentials.
+/// Share of a relaxation beyond the end of a hold from which on its equilibrium is extrapolated.
 const MUCH: f64 = 0.2;
+/// The same of a series of exponentials: less is e^−4 of a last term that has all of the relaxation, which the hold shows as good as whole.
 const BY_LAST_TERM: f64 = 0.02;
 
 /// Adds what the fit of the law to use gives cause to say.

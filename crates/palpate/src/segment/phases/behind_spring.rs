@@ -66,10 +66,11 @@ fn stretches(displacement: &[f64], force: &[f64]) -> Vec<(usize, usize)> {
 
 /// Whether the machine stands while the jaw goes on: by parts, and from the first to the last.
 fn stands(way: &[f64], machine: &[f64]) -> bool {
-    let part = way.len() / PARTS;
-    let means = |column: &[f64]| -> Vec<f64> { column.chunks_exact(part).map(mean).collect() };
+    let cut = |part: usize| part * way.len() / PARTS;
+    let means =
+        |column: &[f64]| -> Vec<f64> { (0..PARTS).map(|part| mean(&column[cut(part)..cut(part + 1)])).collect() };
     let (ways, places) = (means(way), means(machine));
-    let error = noise(machine) / (part as f64).sqrt();
+    let error = noise(machine) / (way.len() as f64 / PARTS as f64).sqrt();
     let far = range(&ways);
     let centre = mean(machine);
     let relaxes = (mean(&ways[PARTS / 2 - 1..=PARTS / 2]) - ways[0]) / (ways[PARTS - 1] - ways[0]) > RELAXES;

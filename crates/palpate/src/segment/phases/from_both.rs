@@ -125,7 +125,12 @@ fn of_machine(
     let held = Held::new(("displacement", "m"), machine, wander, false);
     match (SegmentError::unless_cancelled(levels(record.time(), &held, options, watch))?, jaw) {
         (Ok(found), Ok(jaw)) if found.levels.len() < jaw.levels.len() => Ok(jaw),
-        (Ok(found), _) => Ok(found),
+        (Ok(mut found), _) => {
+            // Where the jaw is there, as of all other levels.
+            let displacement = record.displacement().unwrap_or(machine);
+            found.levels = found.levels.iter().map(|level| Level::of(displacement, level.start, level.end)).collect();
+            Ok(found)
+        }
         (Err(_), jaw) => jaw,
     }
 }

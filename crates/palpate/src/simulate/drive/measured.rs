@@ -135,10 +135,16 @@ impl MeasuredMotion {
     }
 
     /// What the samples say of the displacements, then of the times of all knots: the inverse of their covariance (1/m², 1/(m s), 1/s²), row by
-    /// row; singular where a knot is no corner. `None` where nothing is known of the noise.
+    /// row; singular where a knot is no corner. `None` where nothing is known of the noise, and of a motion of thousands of knots, of which the
+    /// matrix would take gigabytes.
     pub(crate) fn information(&self) -> Option<Vec<f64>> {
+        /// Most knots, of which the matrix takes 128 MB.
+        const MOST: usize = 2000;
         let (times, places) = (self.motion.times(), self.motion.displacements());
         let count = times.len();
+        if self.noise == 0.0 || self.stretches.is_empty() || count > MOST {
+            return None;
+        }
         let mut all = vec![0.0; 4 * count * count];
         for (at, Stretch { sums, variance }) in self.stretches.iter().enumerate() {
             let slope = (places[at + 1] - places[at]) / (times[at + 1] - times[at]);
@@ -150,7 +156,7 @@ impl MeasuredMotion {
                 }
             }
         }
-        (self.noise > 0.0 && !self.stretches.is_empty()).then_some(all)
+        Some(all)
     }
 }
 
