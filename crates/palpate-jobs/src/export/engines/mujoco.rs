@@ -135,7 +135,7 @@ fn geometry(shape: &Shape) -> (String, f64, f64) {
 fn notes(card: &Card, fit: &SoftConstraint) -> Vec<String> {
     let u = card.loading.indentation;
     let points = contact_points(card.shape());
-    let mass = plain(mass(card, fit));
+    let mass = short(mass(card, fit));
     let largest = 100.0 * SoftConstraint::LARGEST;
     let mut notes = vec![
         "Use: the pairs are the contact; give them the names of your geoms, and your model the option cone and impratio".to_owned(),
