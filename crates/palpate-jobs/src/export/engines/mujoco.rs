@@ -32,8 +32,9 @@ const GRAVITY: f64 = 9.80665;
 const WELD: &str = "solref=\"0.01 1\" solimp=\"0.9999 0.9999 0.001 0.5 2\"";
 const WELD_STIFFNESS: f64 = 9999.0 / (0.01 * 0.01);
 
-/// Share of its travel by which the weld gives way at most.
-const GIVES: f64 = 1e-4;
+/// Share of the depth by which the weld gives way, and by which the body moves at most: friction at the jaw also turns it.
+const GIVES: f64 = 1e-5;
+const MOVES: f64 = 1e-4;
 
 pub(super) fn text(card: &Card, fit: &SoftConstraint) -> String {
     let head = card.head(&notes(card, fit));
@@ -153,7 +154,7 @@ fn notes(card: &Card, fit: &SoftConstraint) -> Vec<String> {
             format!(
                 "The weld holds the back of the body, which weighs {mass} kg so that it moves by less than {} of the depth; give the weld body2, \
                  the plate or the finger that the body is on, or let the geom of the body be one of that plate or finger, whose w then counts",
-                plain(GIVES)
+                plain(MOVES)
             ),
             format!("Time steps above {} s are unstable: friction is stiff", short(2.0 / FRICTION_RATE)),
             format!(
