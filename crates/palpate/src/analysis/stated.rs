@@ -61,8 +61,8 @@ const FEWEST: usize = 5;
 impl Analysis {
     /// What a report states of a hold: of one that holds the displacement after loading also F₀ and R(t).
     ///
-    /// F(t) is a straight line over ln t through the samples from 0.95 t to 1.05 t, or from 0.8 t to 1.2 t where those are few, or from t/2 to 2t, at t; its standard error
-    /// is that of the line, for residuals that correlate as they do. F₀ at the start of the fit is the force there, with the noise of one
+    /// F(t) is a straight line over ln t through the samples from 0.95 t to 1.05 t, or from 0.8 t to 1.2 t where those are few, or from t/2 to 2t,
+    /// at t; its standard error is that of the line, for residuals that correlate as they do. F₀ at the start of the fit is the force there, with the noise of one
     /// sample. That of R follows by propagation, (σ_F/F₀)² + (F σ_F₀/F₀²)² (JCGM 100, 5.1.2); errors that all forces share, such as one of
     /// the load cell's zero, are not in it.
     #[must_use]
@@ -75,9 +75,9 @@ impl Analysis {
         let segments = &self.segmentation.segments;
         let ramp = segments.iter().rfind(|other| other.end <= segment.start);
         let ramp = ramp.filter(|ramp| ramp.phase == Phase::Loading && Some(After::Loading) == hold.after);
-        let stated = self.stated_relaxation(hold);
-        let of_loading = stated.is_some();
-        let (initial_force, relaxation) = stated.flatten().unzip();
+        let of_displacement = segment.mode.is_none_or(|mode| mode == HoldMode::DisplacementHeld);
+        let of_loading = of_displacement && hold.after != Some(After::Unloading);
+        let (initial_force, relaxation) = of_loading.then(|| self.stated_relaxation(segment)).flatten().unzip();
         let measured = |time: &f64| relaxation.iter().flatten().any(|stated: &StatedRelaxation| stated.time == *time);
         // Of the usual times those count that were measured; of chosen ones all.
         let chosen = self.options.conditions.relaxation_at.as_deref().filter(|_| of_loading);
@@ -103,18 +103,8 @@ impl Analysis {
         (before..end).take_while(is_there).last().unwrap_or(before)
     }
 
-    /// F₀ and R(t) of a hold of the displacement after loading, `None` of another; inside `None` where F₀ was not measured or does not exceed its
-    /// noise.
-    fn stated_relaxation(&self, hold: &HoldAnalysis) -> Option<Option<(Estimate, Vec<StatedRelaxation>)>> {
-        let segment = &hold.segment;
-        let of_displacement = segment.mode.is_none_or(|mode| mode == HoldMode::DisplacementHeld);
-        if !of_displacement || hold.after == Some(After::Unloading) {
-            return None;
-        }
-        Some(self.relaxation_stated(segment))
-    }
-
-    fn relaxation_stated(&self, segment: &Segment) -> Option<(Estimate, Vec<StatedRelaxation>)> {
+    /// F₀ and R(t) of a hold; `None` where F₀ was not measured or does not exceed its noise.
+    fn stated_relaxation(&self, segment: &Segment) -> Option<(Estimate, Vec<StatedRelaxation>)> {
         let (record, conditions) = (&self.record, &self.options.conditions);
         let samples = segment.fit_start..segment.end;
         let (time, force) = (&record.time()[samples.clone()], &record.force()[samples]);

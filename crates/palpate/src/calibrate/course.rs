@@ -2,7 +2,6 @@
 
 use std::ops::Range;
 
-use serde::{Deserialize, Serialize};
 use statrs::distribution::{ContinuousCDF, FisherSnedecor};
 
 use super::CalibrationData;
@@ -13,8 +12,7 @@ use crate::watch::Cancelled;
 
 /// How residuals show that a law misses part of the record it was calibrated on, beyond what the noise of the displacement and the uncertainty
 /// of the instrument explain.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case", tag = "kind")]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub enum ResidualCourse {
     /// They are large, and neighbours are nearly alike.
     Systematic,

@@ -167,6 +167,11 @@ impl Law {
             }
     }
 
+    /// Whether the law is a sum of exponentials, of which the slowest is the last that it knows.
+    pub(crate) fn is_series(self) -> bool {
+        matches!(self, Self::StandardLinearSolid | Self::Prony { .. })
+    }
+
     /// Whether the law has a form for this response.
     #[must_use]
     pub fn describes(self, response: Response) -> bool {

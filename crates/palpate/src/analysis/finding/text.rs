@@ -36,11 +36,10 @@ impl Finding {
                     100.0 * (1.0 - beyond),
                     100.0 * beyond
                 ),
-                match law {
-                    Law::StandardLinearSolid | Law::Prony { .. } => {
-                        "a series of exponentials knows nothing slower than its slowest term, and neither does the interval of its equilibrium: a body that has a slower one ends elsewhere"
-                    }
-                    _ => "the estimated equilibrium depends on the law and, by the latency law, on the exponent: another one gives another equilibrium",
+                if law.is_series() {
+                    "a series of exponentials knows nothing slower than its slowest term, and neither does the interval of its equilibrium: a body that has a slower one ends elsewhere"
+                } else {
+                    "the estimated equilibrium depends on the law and, by the latency law, on the exponent: another one gives another equilibrium"
                 },
                 "hold longer, or compare holds at one law and one fixed exponent",
             ),

@@ -74,7 +74,7 @@ fn equilibrium_by_law(comparison: &Comparison, alike: &[Law]) -> Option<Finding>
     // A series and its interval know nothing slower than its last term; a spectrum that is as good and reaches the end of its grid does.
     let spectrum = comparison.rows.iter().find_map(|row| row.spectrum.as_ref()).filter(|fit| fit.is_open_ended());
     let is_alike = |law| comparison.verdict.as_ref().is_some_and(|verdict| verdict.indistinguishable.contains(&law));
-    if is_series(*law)
+    if law.is_series()
         && is_alike(Law::Spectrum)
         && spectrum.is_some_and(|fit| !(low..=high).contains(&fit.equilibrium))
     {
@@ -85,11 +85,6 @@ fn equilibrium_by_law(comparison: &Comparison, alike: &[Law]) -> Option<Finding>
         outside,
         without,
     })
-}
-
-/// Whether a law is a sum of exponentials.
-pub(super) fn is_series(law: Law) -> bool {
-    matches!(law, Law::StandardLinearSolid | Law::Prony { .. })
 }
 
 /// Sample intervals up to which a time constant is that of the first samples.
@@ -112,7 +107,7 @@ fn times_out_of_sight(comparison: &Comparison, interval: f64) -> Vec<Finding> {
         time_constant: longest,
         duration,
     });
-    let is_over = (is_series(law) && shortest < FIRST_SAMPLES * interval).then_some(Finding::FirstSamplesAlone {
+    let is_over = (law.is_series() && shortest < FIRST_SAMPLES * interval).then_some(Finding::FirstSamplesAlone {
         law,
         time_constant: shortest,
         interval,

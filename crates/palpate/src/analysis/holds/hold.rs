@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::compared::{add_forecasts, comparison_findings, is_series, not_a_hold};
+use super::compared::{add_forecasts, comparison_findings, not_a_hold};
 use super::drive::drive_changes;
 use super::jump::force_step;
 use super::rate_bias::{RateBias, rate_bias};
@@ -392,7 +392,7 @@ fn judge_fit(hold: &mut HoldAnalysis, fit: &Fit) {
         let beyond = (end - estimate.value) / (start - estimate.value);
         // A series knows nothing slower than its last term: what its interval leaves out of the way to its equilibrium, it knows by that alone.
         let unseen = |(low, high): (f64, f64)| (end - estimate.value).abs() > 0.5 * (high - low);
-        let by_last_term = is_series(fit.law) && beyond > BY_LAST_TERM && estimate.interval.is_some_and(unseen);
+        let by_last_term = fit.law.is_series() && beyond > BY_LAST_TERM && estimate.interval.is_some_and(unseen);
         if beyond > MUCH || by_last_term {
             hold.findings.push(Finding::EquilibriumExtrapolated { law: fit.law, beyond });
         }

@@ -108,7 +108,7 @@ fn cut_at_releases(force: &[f64], displacement: &[f64], mut found: Levels) -> Le
             return vec![*level];
         }
         let long = parts.into_iter().filter(|(start, end)| end - start >= fewest);
-        long.map(|(start, end)| Level::of(&found.values, start, end)).collect()
+        long.map(|(start, end)| Level::of(displacement, start, end)).collect()
     };
     found.levels = found.levels.iter().flat_map(cut).collect();
     found
