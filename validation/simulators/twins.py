@@ -35,6 +35,12 @@ MODEL = {
     "specimen": {"shape": "ball", "radius": "35 mm", "modulus": "28 kPa"},
     "law": {"name": "latency", "exponent": 5, "rate_coefficient": "2e4 /s"},
 }
+#: A block that pulls the jaw back.
+BONDED = {
+    "specimen": {"shape": "block", "area": "10 cm^2", "length": "50 mm", "modulus": "30 kPa"},
+    "law": {"name": "latency", "exponent": 3, "rate_coefficient": "200 /s"},
+    "contact": {"separation": False, "squeezed_from": "one side"},
+}
 #: What is missed, by a sentence.
 missed = []
 
@@ -44,6 +50,16 @@ def within(value, limit, what):
     if not value <= limit:
         missed.append(f"{what}: {value:.3g}, at most {limit:g} expected")
     return value
+
+
+def refuses(make, words, what):
+    """Notes a scene that is not refused in these words."""
+    try:
+        make()
+    except (ValueError, palpate.OptionError) as error:
+        within(float(words not in str(error)), 0, f"{what}: other words than {words!r}")
+    else:
+        missed.append(f"{what}: no error")
 
 
 def programs():
@@ -356,12 +372,15 @@ def saved_and_reset():
     within(float(state[0].max() != 0 or state[1:].min() == 0), 0, "MuJoCo Warp, reset by a mask of worlds")
     rk4 = mujoco.MjModel.from_xml_string(GRIPPER.replace("implicitfast", "RK4"))
     m, d = mjw.put_model(rk4), mjw.put_data(rk4, mujoco.MjData(rk4))
-    try:
-        palpate.warp.JointContacts(m, d, MODEL, [0])
-    except ValueError as error:
-        assert "RK4" in str(error)
-    else:
-        missed.append("MuJoCo Warp, RK4: no error")
+    refuses(lambda: palpate.warp.JointContacts(m, d, MODEL, [0]), "RK4", "MuJoCo Warp, RK4")
+    mj_model = mujoco.MjModel.from_xml_string(GRIPPER)
+    m, d = mjw.put_model(mj_model), mjw.put_data(mj_model, mujoco.MjData(mj_model))
+    joint, pair = mj_model.joint("left").id, (mj_model.geom("left").id, mj_model.geom("ball").id)
+    at_joint = lambda touch_m: palpate.warp.JointContacts(m, d, BONDED, [joint], touch_m=touch_m)
+    at_joint(0.0)
+    refuses(lambda: at_joint(0.015), "0.015 m before first touch", "MuJoCo Warp, a bonded body across the air")
+    at_geoms = lambda: palpate.warp.GeomContacts(m, d, BONDED, [pair], touch_m=0.045)
+    refuses(at_geoms, "from any distance", "MuJoCo Warp, a bonded body between geoms")
 
 
 def step_times():
@@ -421,6 +440,8 @@ def newton_run():
             solver.step(state, after, control, None, 1e-3)
             state, after = after, state
         leaving = float(state.joint_qd.numpy()[0])
+    at_bodies = lambda: palpate.warp.NewtonContacts(model, BONDED, [(finger, -1)], touch_m=0.035)
+    refuses(at_bodies, "from any distance", "Newton, a bonded body")
     within(worst / peak, 1e-6, "Newton, force")
     within(leaving, 0.0, "Newton, velocity of the finger after the contact")
     within(-leaving, 0.1, "Newton, speed of the finger after the contact")
@@ -438,7 +459,7 @@ def drake_run():
     from pydrake.systems.analysis import Simulator
     from pydrake.systems.framework import DiagramBuilder
 
-    def gripper(by_bodies):
+    def gripper(by_bodies, bond=None):
         builder = DiagramBuilder()
         plant = builder.AddSystem(MultibodyPlant(1e-3))
         inertia = SpatialInertia.SolidSphereWithMass(0.1, 0.01)
@@ -455,13 +476,13 @@ def drake_run():
         plant.Finalize()
         if by_bodies:
             contacts = builder.AddSystem(
-                palpate.drake.BodyContactSystem([(finger, ball) for finger in fingers], MODEL, 1e-3, touch_m=0.035)
+                palpate.drake.BodyContactSystem([(finger, ball) for finger in fingers], bond or MODEL, 1e-3, touch_m=0.035)
             )
             builder.Connect(plant.get_body_poses_output_port(), contacts.GetInputPort("body_poses"))
             builder.Connect(contacts.GetOutputPort("spatial_forces"), plant.get_applied_spatial_force_input_port())
         else:
             one_side = {**MODEL, "contact": {"squeezed_from": "one side"}}
-            contacts = builder.AddSystem(palpate.drake.JointContactSystem(plant, joints, one_side, 1e-3, touch_m=-0.035))
+            contacts = builder.AddSystem(palpate.drake.JointContactSystem(plant, joints, bond or one_side, 1e-3, touch_m=-0.035))
             builder.Connect(plant.get_state_output_port(), contacts.GetInputPort("plant_state"))
             builder.Connect(contacts.GetOutputPort("generalized_force"), plant.get_applied_generalized_force_input_port())
         return plant, joints, contacts, builder.Build()
@@ -490,6 +511,9 @@ def drake_run():
         rows.append(f"forces {title} {worst / peak:.1e} of their peak of {peak:.2f} N")
     within(abs(ends[0] - ends[1]), 1e-9, "Drake, the two grippers")
     warned = refused_by_drake(palpate.drake.ContactSystem)
+    refuses(lambda: gripper(True, BONDED), "from any distance", "Drake, a bonded body between bodies")
+    across = gripper(False, BONDED)[-1]
+    refuses(lambda: Simulator(across).AdvanceTo(1e-3), "0.025 m before first touch", "Drake, a bonded body across the air")
     return [
         f"A gripper whose fingers of 0.1 kg meet a ball at 0.3 m/s, 300 steps of 1 ms; largest difference from `ContactState`: "
         f"{', '.join(rows)}. A displacement beyond the body and one of NaN: {warned}."

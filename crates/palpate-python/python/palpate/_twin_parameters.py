@@ -7,6 +7,12 @@ from typing import Any
 from palpate._palpate import _contact_numbers
 from palpate._twin_step import ContactParameters
 
+#: How scenes refuse a bonded body, and what helps: it pulls, and a jaw that is not at the body yet must not be pulled there.
+BOND = "separation = false in the description: a bonded body would pull"
+UNBOUND = "hint: set separation = true under [contact] of the test description where the jaw only presses, and calibrate again"
+#: A joint no further from first touch than this stands there: positions in single precision are good to it.
+AT_TOUCH_M = 1e-6
+
 
 def contact_numbers(model: Any) -> ContactParameters:
     """The parameters of a contact as floats.

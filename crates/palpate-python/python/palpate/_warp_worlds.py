@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from palpate._frameworks import framework
+from palpate._twin_parameters import AT_TOUCH_M, BOND, UNBOUND
 from palpate._warp_contacts import Contacts
 
 wp = framework("warp", "warp-lang", "palpate.warp")
@@ -67,6 +68,12 @@ class JointContacts(_MujocoContacts):
     dtype : warp.float32 or warp.float64
         Of the states.
 
+    Raises
+    ------
+    ValueError
+        A joint that is no slide joint; a body that is bonded to its jaw (``separation = false``) at a joint before first touch: it would
+        pull the jaw to itself.
+
     Examples
     --------
     ::
@@ -94,8 +101,14 @@ class JointContacts(_MujocoContacts):
             if not (0 <= joint < len(types) and types[joint] == 2):
                 raise ValueError(f"joints: expected ids of slide joints, found {joint}")
         self._direction = _each(direction, len(joints), "direction", self.device)
+        addresses = m.jnt_qposadr.numpy()[np.asarray(joints)]
+        bonded = np.tile(_bonded(self.parameters), self.worlds * len(joints) // len(self.parameters))
+        ahead_m = self._direction.numpy() * (self._touch.numpy() - d.qpos.numpy()[:, addresses])
+        apart = bonded.reshape(ahead_m.shape) & (ahead_m > AT_TOUCH_M)
+        if apart.any():
+            raise ValueError(f"model: {BOND} a joint that starts {ahead_m[apart].max():.3g} m before first touch; {UNBOUND}")
         at = np.asarray(joints)
-        self._qposadr = wp.array(m.jnt_qposadr.numpy()[at], dtype=int, device=self.device)
+        self._qposadr = wp.array(addresses, dtype=int, device=self.device)
         self._dofadr = wp.array(m.jnt_dofadr.numpy()[at], dtype=int, device=self.device)
 
     def _launch(self, m: Any, d: Any) -> None:
@@ -118,6 +131,11 @@ class GeomContacts(_MujocoContacts):
         Ids of geoms, such as ``mj_model.geom("pad").id``.
     touch_m : float or sequence of float
         Distance of the two centres at first touch, m.
+
+    Raises
+    ------
+    ValueError
+        A body that is bonded (``separation = false``): it would pull from any distance.
     """
 
     def __init__(
@@ -131,6 +149,7 @@ class GeomContacts(_MujocoContacts):
         dtype: Any = wp.float64,
     ) -> None:
         super().__init__(m, d, model, len(pairs), touch_m, dtype)
+        _refuse_bonds(self.parameters)
         self._pairs = _pairs(pairs, 0, len(m.geom_bodyid), self.device)
 
     def _launch(self, m: Any, d: Any) -> None:
@@ -160,6 +179,11 @@ class NewtonContacts(Contacts):
     dtype : warp.float32 or warp.float64
         Of the states.
 
+    Raises
+    ------
+    ValueError
+        A body that is bonded (``separation = false``): it would pull from any distance.
+
     Examples
     --------
     ::
@@ -181,6 +205,7 @@ class NewtonContacts(Contacts):
         dtype: Any = wp.float64,
     ) -> None:
         super().__init__(model, len(pairs), dtype=dtype, device=newton_model.device)
+        _refuse_bonds(self.parameters)
         self._pairs = _pairs(pairs, -1, newton_model.body_count, self.device)
         self._touch = _each(touch_m, len(pairs), "touch_m", self.device)
         points = np.zeros((len(pairs), 2, 3)) if points_m is None else np.asarray(points_m, dtype=np.float64)
@@ -197,6 +222,15 @@ class NewtonContacts(Contacts):
         inputs = [self.parameters, float(dt_s), self._pairs, self._points, self._touch, self._body_com, state.body_q]
         outputs = [self.state, self.last, self.force_n, self.refused, state.body_f]
         wp.launch(self._kernels.bodies, dim=len(self), inputs=[*inputs, *outputs], device=self.device)
+
+
+def _bonded(parameters: Any) -> Any:
+    return parameters.numpy()["bonded"] > 0.0
+
+
+def _refuse_bonds(parameters: Any) -> None:
+    if _bonded(parameters).any():
+        raise ValueError(f"model: {BOND} another from any distance; {UNBOUND}")
 
 
 def _each(values: float | Sequence[float], count: int, name: str, device: Any) -> Any:

@@ -35,7 +35,7 @@ from numpy.typing import NDArray
 
 from palpate import _twin_step
 from palpate._palpate import OptionError, PalpateWarning
-from palpate._twin_parameters import contact_numbers
+from palpate._twin_parameters import AT_TOUCH_M, BOND, UNBOUND, contact_numbers
 from palpate._twin_step import NUMPY, ContactArrays, ContactParameters
 
 try:
@@ -166,6 +166,12 @@ class JointContactSystem(ContactSystem):
         Position of the joint at first touch, m.
     direction : float or sequence of float
         1 where the jaw closes as the position rises, -1 where it closes as it falls.
+
+    Raises
+    ------
+    OptionError
+        A joint with more than one position; once the simulation begins, a body that is bonded to its jaw (``separation = false``) at a joint
+        before first touch: it would pull the jaw to itself.
     """
 
     def __init__(
@@ -193,7 +199,12 @@ class JointContactSystem(ContactSystem):
 
     def _displacements(self, context: Any) -> Any:
         positions = _input(self, "plant_state", context)[self._positions_at]
-        return self._direction * (positions - self._touch)
+        displacements_m = self._direction * (positions - self._touch)
+        apart = (self.parameters.bonded > 0.0) & (displacements_m < -AT_TOUCH_M)
+        if apart.any() and context.get_discrete_state(self._last).value()[0] < 0.0:
+            ahead_m = -displacements_m[apart].min()
+            raise OptionError(f"model: {BOND} a joint that starts {ahead_m:.3g} m before first touch; {UNBOUND}")
+        return displacements_m
 
     def _generalized(self, context: Any) -> _Doubles:
         forces = np.zeros(self._velocities)
@@ -219,6 +230,11 @@ class BodyContactSystem(ContactSystem):
         Distance of the two points at first touch, m.
     points_m : array_like, shape (len(pairs), 2, 3)
         The points in the frames of the bodies, m; their origins if left out.
+
+    Raises
+    ------
+    OptionError
+        A body that is bonded (``separation = false``): it would pull from any distance.
     """
 
     def __init__(
@@ -236,6 +252,8 @@ class BodyContactSystem(ContactSystem):
         if self._points.shape != (len(pairs), 2, 3):
             raise OptionError(f"points_m: expected an array of shape {(len(pairs), 2, 3)}, found {self._points.shape}")
         ContactSystem.__init__(self, model, period_s, count=len(pairs))
+        if (self.parameters.bonded > 0.0).any():
+            raise OptionError(f"model: {BOND} another from any distance; {UNBOUND}")
         self.DeclareAbstractOutputPort("spatial_forces", Value[List[ExternallyAppliedSpatialForce]], self._spatial)
 
     def _declare_input(self) -> None:
