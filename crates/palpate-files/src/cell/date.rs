@@ -2,7 +2,7 @@
 //!
 //! `2024-08-24T21:09:40.123Z`, `2024-08-24 21:09:40,123`, `2024-08-24 21:09:40+02:00`: year first, seconds and all;
 //! `24.08.2024 21:09:40`, where points stand between day, month and year; `21:09:40.123` or `09:09:40.123 PM`, a time of day or of a
-//! stopwatch; `10:15` or `10:15.5`, two fields of which the last counts the unit of the column: minutes and seconds, or hours and minutes.
+//! stopwatch, whose hours go on beyond 24; `10:15` or `10:15.5`, two fields of which the last counts the unit of the column: minutes and seconds, or hours and minutes.
 //! Without a zone, times are taken as they stand: differences are right unless clocks were changed in between. Dates with
 //! slashes that end in the year are none: nothing says whether the day or the month comes first.
 
@@ -12,7 +12,7 @@ pub(crate) fn parse(cell: &[u8]) -> Option<f64> {
     if let Some((seconds, fraction, [])) = time_of_day(cell) {
         return Some(seconds as f64 + fraction);
     }
-    if let Some(time) = two_fields(cell) {
+    if let Some(time) = elapsed(cell).or_else(|| two_fields(cell)) {
         return Some(time);
     }
     let (date, rest) = year_first(cell).or_else(|| year_last(cell))?;
@@ -28,14 +28,28 @@ pub(crate) fn day(cell: &[u8]) -> Option<f64> {
     }
 }
 
-/// Whether a cell is a time of day without a date.
+/// Whether a cell is a time of day, or of a stopwatch, without a date.
 pub(crate) fn is_time_of_day(cell: &[u8]) -> bool {
-    matches!(time_of_day(cell), Some((.., [])))
+    matches!(time_of_day(cell), Some((.., []))) || elapsed(cell).is_some()
 }
 
 /// Whether a cell is a clock of two fields, `10:15`.
 pub(crate) fn has_two_fields(cell: &[u8]) -> bool {
     two_fields(cell).is_some()
+}
+
+/// Hours, minutes and seconds of a stopwatch, which goes on beyond a day: `37:21:04.5`.
+fn elapsed(cell: &[u8]) -> Option<f64> {
+    let hours = |count| digits(cell, count).filter(|(_, rest)| rest.starts_with(b":"));
+    let (hours, rest) = [2, 3, 4].into_iter().find_map(hours)?;
+    let (minutes, rest) = digits(behind(rest, b":")?, 2)?;
+    let (seconds, rest) = digits(behind(rest, b":")?, 2)?;
+    let (fraction, rest) = match behind(rest, b".,") {
+        Some(rest) => fraction(rest)?,
+        None => (0.0, rest),
+    };
+    let sound = minutes < 60 && seconds < 60 && rest.is_empty();
+    sound.then(|| (hours * 3600 + minutes * 60 + seconds) as f64 + fraction)
 }
 
 fn two_fields(cell: &[u8]) -> Option<f64> {
@@ -179,6 +193,10 @@ mod tests {
             ("01:05", 65.0),
             ("00:05.25", 5.25),
             ("125:30,5", 7530.5),
+            // A record of 37 h was refused with a hint to write what stood in its first row.
+            ("24:00:00", 86_400.0),
+            ("37:21:04.5", 134_464.5),
+            ("100:00:00,25", 360_000.25),
         ] {
             assert_eq!(parse(text.as_bytes()), Some(seconds), "{text}");
         }
@@ -192,7 +210,9 @@ mod tests {
             "9:4",
             "09:60",
             "1:09:60:00",
-            "24:00:00",
+            "24:60:00",
+            "24:00:00 PM",
+            "10000:00:00",
             "24/08/2024 21:09:40",
             "24.13.2024 21:09:40",
             "2023-02-29T00:00:00",

@@ -100,7 +100,7 @@ const FIT: [Column; 5] = [
 const LATENCY: [&str; 5] = ["exponent", "equilibrium", "amplitude", "relative_rate_per_s", "rate_coefficient_per_s"];
 
 /// Columns behind those: forces and moduli, and what the rows depend on besides the record.
-const LAST: [Column; 10] = [
+const LAST: [Column; 12] = [
     (Number, "equilibrium_force_n", |line| {
         line.of_law(|fit| fit.equilibrium_force_n.into(), |_| Value::Null)
     }),
@@ -111,6 +111,8 @@ const LAST: [Column; 10] = [
     (Number, "equilibrium_modulus_standard_error_pa", |line| {
         line.of_law(|fit| fit.equilibrium_modulus_standard_error_pa.into(), |_| Value::Null)
     }),
+    (Number, "modulus_pa", |line| line.document.settings.modulus_pa.into()),
+    (Number, "modulus_standard_error_pa", |line| line.document.settings.modulus_standard_error_pa.into()),
     (Number, "loading_modulus_pa", |line| line.of_ramp(|found| found.modulus_pa)),
     (Number, "loading_modulus_standard_error_pa", |line| line.of_ramp(|found| found.standard_error_pa)),
     (Number, "loading_relative_rmse", |line| line.of_ramp(|found| found.relative_rmse)),
@@ -132,7 +134,8 @@ pub(super) fn fields() -> Vec<Field> {
 
 /// Whether a column is of the record or the hold, whatever law is fitted.
 pub(super) fn is_of_hold(name: &str) -> bool {
-    HOLD.iter().any(|(_, own, _)| *own == name) || name.starts_with("loading_")
+    HOLD.iter().any(|(_, own, _)| *own == name)
+        || ["loading_", "modulus_"].iter().any(|of_record| name.starts_with(of_record))
 }
 
 /// The rows of a record, in the order of its holds; of each the recommended law first, then the latency law, n given before free.

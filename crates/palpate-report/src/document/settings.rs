@@ -42,6 +42,8 @@ documents! {
         modulus_pa: Option<f64> = analysis.specimen.as_ref().map(Specimen::modulus),
         /// `given` or `estimated`.
         modulus_source: Option<String> = analysis.modulus_source.map(word),
+        /// Standard error of an estimated modulus, Pa, which allows for the laws that the holds leave open; `null` where it is not known.
+        modulus_standard_error_pa?: Option<f64> = analysis.modulus.as_ref().and_then(|found| found.estimate.standard_error),
         /// 1 or 2 sides from which the body is squeezed.
         sides: Option<u8> = geometry.map(|geometry| if geometry.sides == Sides::Two { 2 } else { 1 }),
         /// Whether phases come from the displacement (else from the force).

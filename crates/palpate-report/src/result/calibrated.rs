@@ -6,7 +6,7 @@ use palpate::calibrate::{
 };
 use palpate::contact::Shape;
 use palpate::fit::Termination;
-use palpate::instrument::{Instrument, InstrumentInput, InstrumentQuantity};
+use palpate::instrument::{Instrument, InstrumentInput};
 use palpate::number::significant;
 use palpate::simulate::Separation;
 use palpate::units::quantity;
@@ -143,16 +143,21 @@ fn exact(instrument: &Instrument) -> Option<String> {
     if !instrument.inputs.iter().all(is_found) {
         return None;
     }
-    let [touch, zero] = [InstrumentQuantity::Touch, InstrumentQuantity::Force]
-        .map(|quantity| instrument.inputs.iter().filter(|input| input.quantity == quantity).count());
-    let known = match (touch > 0, zero > 0) {
-        (false, false) => "",
-        (true, false) => ", and of first touch as found",
-        (false, true) => ", and of the zero of the force as found",
-        (true, true) => ", and of first touch and the zero of the force as found",
+    let is_found = |name: &str| instrument.inputs.iter().any(|input| input.quantity.name() == name);
+    let (touch, zero) = (is_found("touch"), is_found("force"));
+    let found = [
+        (touch, "first touch"),
+        (zero, "the zero of the force"),
+        (is_found("force_drift"), "the slope of its baseline"),
+    ];
+    let found: Vec<&str> = found.into_iter().filter_map(|(is_found, title)| is_found.then_some(title)).collect();
+    let known = match found.as_slice() {
+        [] => String::new(),
+        [one] => format!(", and of {one} as found"),
+        [first @ .., last] => format!(", and of {} and {last} as found", first.join(", ")),
     };
-    let cell = if zero > 0 { "gain of the load cell" } else { "load cell" };
-    let first_touch = if touch > 0 { "" } else { ", first touch" };
+    let cell = if zero { "gain of the load cell" } else { "load cell" };
+    let first_touch = if touch { "" } else { ", first touch" };
     Some(format!(
         "The intervals are those of the scatter of the samples (Type A){known}: {cell}, displacement{first_touch} and the sizes of the body count as exact. [instrument] in the test description states their uncertainty."
     ))

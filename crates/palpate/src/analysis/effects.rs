@@ -1,12 +1,18 @@
 //! What a quantity off its estimate changes of the parameters of a hold and of the modulus.
 
+use std::borrow::Cow;
+
 use super::holds::{HoldAnalysis, Signal};
 use super::options::{AnalysisOptions, Geometry};
 use super::together::{EstimatedModulus, ImpliedModulus};
 use crate::budget::InputQuantity;
 use crate::contact::Specimen;
-use crate::fit::{ErrorParts, Estimate, Fit, LatencyFit, Parameter, ParameterKind, ParameterRole, ParameterUnit};
+use crate::fit::{
+    Domain, ErrorParts, Estimate, Fit, IntervalMethod, LatencyFit, LawOptions, NoiseChoice, Parameter, ParameterKind,
+    ParameterRole, ParameterUnit, Samples, fit_law,
+};
 use crate::instrument::{Deviation, InstrumentQuantity};
+use crate::laws::Law;
 use crate::segment::ContactPoint;
 
 /// The quantities off their estimates, and what they have an effect on.
@@ -28,15 +34,21 @@ enum Cause {
     EstimatedModulus,
 }
 
-/// How the signal of a hold changes: scale · signal + offset, rates times `rate`.
+/// How the signal of a hold changes: scale · (signal + drift · t) + offset, t since the start of the fit, rates times `rate`.
 ///
-/// The jaw stands, or goes on as the force relaxes, so that strain is a line over the force, and every law is one of its signal in any unit.
+/// The jaw stands, or goes on as the force relaxes, so that strain is a line over the force, and every law is one of its signal in any unit. With a
+/// drift it is another curve, which is fitted anew.
 #[derive(Debug, Clone, Copy)]
 struct Changed {
     scale: f64,
     offset: f64,
+    /// In the unit of the signal per second.
+    drift: f64,
     rate: f64,
 }
+
+/// A signal one standard uncertainty of a quantity below and above, with the fit to it.
+type Sides<'a> = [(Changed, Cow<'a, Fit>); 2];
 
 impl<'a> Causes<'a> {
     /// The stated quantities, the errors of first touch and of the zero of the force where the record shows them, and that of an estimated modulus;
@@ -47,13 +59,13 @@ impl<'a> Causes<'a> {
         specimen: Option<&'a Specimen>,
         implied: Option<&'a ImpliedModulus>,
     ) -> Option<Self> {
-        let touch = contact.displacement_error.filter(|_| specimen.is_some());
-        let stated = options.instrument.with_found(touch, contact.force_error).inputs;
+        let mut stated = options.instrument.with_found(contact).inputs;
+        stated.retain(|input| specimen.is_some() || input.quantity != InstrumentQuantity::Touch);
         let mut quantities: Vec<Cause> = stated.iter().map(|input| Cause::Stated(input.quantity)).collect();
         let mut inputs: Vec<InputQuantity> = stated.into_iter().map(|input| input.uncertainty).collect();
         let error = implied.and_then(|implied| implied.standard_error);
         let error = error.and_then(|error| InputQuantity::standard("modulus, as estimated", "Pa", 0.0, error).ok());
-        if options.instrument.is_empty() && error.is_none() {
+        if options.instrument.is_empty() && contact.force_drift.is_none() && error.is_none() {
             return None;
         }
         if let Some(modulus) = error {
@@ -78,8 +90,10 @@ impl<'a> Causes<'a> {
             .zip(&self.inputs)
             .map(|(cause, input)| sides(input, |by| self.changed(hold, *cause, by)))
             .collect();
+        let samples = Samples::new(&hold.times[..hold.fitted], &hold.values[..hold.fitted]);
         let latency = |fit: &mut LatencyFit| {
-            if let Some(with) = LatencyFit::new(self.with_effects(fit, &changed)) {
+            let options = self.options.fit.of_latency(fit.choice());
+            if let Some(with) = LatencyFit::new(self.with_effects(fit, (&samples, &options), &changed)) {
                 *fit = with;
             }
         };
@@ -87,7 +101,12 @@ impl<'a> Causes<'a> {
         hold.rate_fits.iter_mut().flatten().for_each(latency);
         let rows = hold.comparison.iter_mut().flat_map(|comparison| &mut comparison.rows);
         for fit in rows.filter_map(|row| row.fit.as_mut().ok()) {
-            *fit = self.with_effects(fit, &changed);
+            let compared = self.options.compare.as_ref().map(|compare| &compare.fit);
+            let options = LawOptions {
+                loading: fit.loading.clone(),
+                ..compared.cloned().unwrap_or_default()
+            };
+            *fit = self.with_effects(fit, (&samples, &options), &changed);
         }
     }
 
@@ -136,12 +155,15 @@ impl<'a> Causes<'a> {
             Cause::Stated(quantity) => Deviation::of(quantity, by),
             Cause::EstimatedModulus => Deviation::default(),
         };
-        let (gain, zero) = (deviation.force(1.0) - deviation.force(0.0), deviation.force(0.0));
+        // The drift stands in `drift` from the start of the fit on, and counts as a zero before.
+        let of_force = |force: f64| deviation.force_at(force, hold.fit_start);
+        let (gain, zero) = (of_force(1.0) - of_force(0.0), of_force(0.0));
         let rate = 1.0 / deviation.time(1.0 + deviation.rate_at_temperature);
         if hold.signal == Signal::Force {
             return Some(Changed {
                 scale: gain,
                 offset: zero,
+                drift: deviation.drift() / gain,
                 rate,
             });
         }
@@ -153,8 +175,7 @@ impl<'a> Causes<'a> {
         let body = geometry.with_shape(deviation.shape(&geometry.shape)).specimen(self.modulus(cause, by)?).ok()?;
         let before = per_strain(specimen, level)?;
         let end = per_strain(&body, deviation.displacement(level, hold.force_end))?;
-        let strain =
-            |force: f64| Some(deviation.force(force) / per_strain(&body, deviation.displacement(level, force))?);
+        let strain = |force: f64| Some(of_force(force) / per_strain(&body, deviation.displacement(level, force))?);
         // Through the compliance of a machine the jaw goes on as the force relaxes: the line by least squares over the hold.
         let every = hold.values.len().div_ceil(MOST).max(1);
         let mut points = Vec::with_capacity(MOST);
@@ -162,30 +183,62 @@ impl<'a> Causes<'a> {
             points.push((*value, strain(value * before)?));
         }
         let (scale, offset) = line(&points).unwrap_or_else(|| (gain * before / end, zero / end));
-        Some(Changed { scale, offset, rate })
+        Some(Changed {
+            scale,
+            offset,
+            drift: deviation.drift() / (gain * before),
+            rate,
+        })
     }
 
     /// A fit whose parameters have these effects besides the scatter of the samples.
-    fn with_effects(&self, fit: &Fit, changed: &[Option<[Changed; 2]>]) -> Fit {
+    ///
+    /// Fits to rates have no samples that a drift would change.
+    fn with_effects(
+        &self,
+        fit: &Fit,
+        (samples, options): (&Samples<'_>, &LawOptions),
+        changed: &[Option<[Changed; 2]>],
+    ) -> Fit {
         let mut with = fit.clone();
-        let exponent = fit.value("exponent").unwrap_or(1.0);
         let freedom = fit.uncertainty.as_ref().map_or(f64::INFINITY, |uncertainty| uncertainty.freedom);
-        // What the signal tends to, which terms of Fung's laws are shares of.
-        let end = fit.predict(1e9 * fit.duration);
-        let effect = |parameter: &Parameter, sides: &Option<[Changed; 2]>| {
-            let [low, high] = sides.map(|sides| sides.map(|changed| changed.parameter(parameter, exponent, end)))?;
-            Some(0.5 * (high - low)).filter(|effect| effect.is_finite())
+        let anew = |changed: Changed| match fit.domain {
+            Domain::Time if changed.drift != 0.0 => drifting(fit.law, samples, options, changed.drift).map(Cow::Owned),
+            _ => Some(Cow::Borrowed(fit)),
+        };
+        let sides: Vec<Option<Sides<'_>>> = changed
+            .iter()
+            .map(|sides| {
+                let [low, high] = (*sides)?;
+                Some([(low, anew(low)?), (high, anew(high)?)])
+            })
+            .collect();
+        let effect = |parameter: &Parameter, sides: &Option<Sides<'_>>| {
+            let [low, high] = sides.as_ref()?.each_ref().map(|(changed, fit)| changed.parameter(fit, parameter));
+            Some(0.5 * (high? - low?)).filter(|effect| effect.is_finite())
         };
         for parameter in with.parameters.iter_mut().filter(|parameter| parameter.role != ParameterRole::Given) {
             let parts = ErrorParts {
                 scatter: parameter.estimate.standard_error,
-                effects: changed.iter().map(|sides| effect(parameter, sides).unwrap_or(0.0)).collect(),
+                effects: sides.iter().map(|sides| effect(parameter, sides).unwrap_or(0.0)).collect(),
             };
             parameter.estimate = self.beside(parameter.estimate, freedom, &parts);
             parameter.parts = Some(parts);
         }
         with
     }
+}
+
+/// A law fitted to samples that drift by so much a second; `None` where it cannot be fitted.
+fn drifting(law: Law, samples: &Samples<'_>, options: &LawOptions, drift: f64) -> Option<Fit> {
+    let values: Vec<f64> = samples.values.iter().zip(samples.times).map(|(value, time)| value + drift * time).collect();
+    // Its intervals are not used.
+    let options = LawOptions {
+        intervals: IntervalMethod::Curvature,
+        noise: NoiseChoice::White,
+        ..options.clone()
+    };
+    fit_law(&Samples::new(samples.times, &values), law, &options).ok()
 }
 
 /// Samples of a hold that show how its signal changes.
@@ -218,9 +271,10 @@ pub(in crate::analysis) fn error_of_modulus(
         let deviation = Deviation::of(quantity, by);
         let body = geometry.with_shape(deviation.shape(&geometry.shape)).specimen(1.0).ok()?;
         let place = body.contact_displacement(deviation.displacement(level, hold.force_end));
-        Some(deviation.force(hold.force_end) / body.equilibrium_force(place)).filter(|modulus| modulus.is_finite())
+        Some(deviation.force_at(hold.force_end, hold.end) / body.equilibrium_force(place))
+            .filter(|modulus| modulus.is_finite())
     };
-    let inputs = options.instrument.with_found(contact.displacement_error, contact.force_error).inputs;
+    let inputs = options.instrument.with_found(contact).inputs;
     let mut stated = inputs.iter().map(|input| (input.quantity, input.uncertainty.standard_uncertainty));
     let square = stated.try_fold(0.0, |sum, (quantity, by)| {
         let half = 0.5 * (modulus(quantity, by)? - modulus(quantity, -by)?);
@@ -230,10 +284,16 @@ pub(in crate::analysis) fn error_of_modulus(
 }
 
 impl Changed {
-    /// The value of a parameter of a law whose signal changes like this.
-    fn parameter(self, parameter: &Parameter, exponent: f64, end: f64) -> f64 {
-        let Self { scale, offset, rate } = self;
+    /// The value that a parameter of a law takes whose signal, with the drift fitted, changes like this; `None` where that fit has no such one.
+    fn parameter(self, fit: &Fit, parameter: &Parameter) -> Option<f64> {
+        let Self {
+            scale, offset, rate, ..
+        } = self;
+        let parameter = fit.parameters.iter().find(|found| found.name == parameter.name)?;
         let value = parameter.estimate.value;
+        let exponent = fit.value("exponent").unwrap_or(1.0);
+        // What the signal tends to, which terms of Fung's laws are shares of.
+        let end = fit.predict(1e9 * fit.duration);
         let is_level = matches!(
             parameter.name.kind,
             ParameterKind::Equilibrium
@@ -242,7 +302,7 @@ impl Changed {
                 | ParameterKind::Final
                 | ParameterKind::ElasticResponse
         );
-        match parameter.unit {
+        Some(match parameter.unit {
             ParameterUnit::Signal => value * scale + if is_level { offset } else { 0.0 },
             ParameterUnit::SignalPerSecond => value * scale * rate,
             ParameterUnit::SignalPerPower => value * scale,
@@ -253,6 +313,6 @@ impl Changed {
                 ParameterKind::Share | ParameterKind::Strength => value * end * scale / (end * scale + offset),
                 _ => value,
             },
-        }
+        })
     }
 }

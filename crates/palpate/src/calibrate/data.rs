@@ -178,7 +178,7 @@ impl CalibrationData {
             .unzip();
         Ok(Self {
             measured: Some(measured),
-            instrument: options.instrument.with_found(contact.displacement_error, contact.force_error),
+            instrument: options.instrument.with_found(&contact),
             force_held,
             findings,
             ..Self::new(geometry, options.separation, motion, times, forces, &held)?

@@ -7,6 +7,8 @@ use crate::contact::{Shape, ShapeDimension};
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub(crate) struct Deviation {
     force: f64,
+    /// Slope, N/s, and the time at which it is no error, s.
+    drift: (f64, f64),
     force_gain: f64,
     displacement: f64,
     displacement_gain: f64,
@@ -25,6 +27,10 @@ impl Deviation {
         let none = Self::default();
         match quantity {
             InstrumentQuantity::Force => Self { force: by, ..none },
+            InstrumentQuantity::ForceDrift { about } => Self {
+                drift: (by, about),
+                ..none
+            },
             InstrumentQuantity::ForceGain => Self { force_gain: by, ..none },
             InstrumentQuantity::Displacement | InstrumentQuantity::Touch => Self {
                 displacement: by,
@@ -55,6 +61,16 @@ impl Deviation {
     /// The force where `measured` was read, N.
     pub(crate) fn force(&self, measured: f64) -> f64 {
         measured * (1.0 + self.force_gain) + self.force
+    }
+
+    /// The force where `measured` was read at a time (s), N.
+    pub(crate) fn force_at(&self, measured: f64, time: f64) -> f64 {
+        self.force(measured) + self.drift.0 * (time - self.drift.1)
+    }
+
+    /// How fast the force changes in time beside what was read, N/s.
+    pub(crate) fn drift(&self) -> f64 {
+        self.drift.0
     }
 
     /// The displacement since first touch where `measured` was read under a force, m.

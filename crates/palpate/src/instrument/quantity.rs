@@ -4,6 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::budget::{Cause, InputQuantity};
 use crate::contact::{Shape, ShapeDimension};
+use crate::segment::ContactPoint;
 
 /// A quantity of the instrument or of the body that is known with an uncertainty. Each is one number for a whole record: an error that all
 /// its samples have in common.
@@ -12,6 +13,11 @@ use crate::contact::{Shape, ShapeDimension};
 pub enum InstrumentQuantity {
     /// Zero of the force, N: the same error in every sample, as left by the tare.
     Force,
+    /// Slope of the zero of the force in time, N/s, as a baseline leaves it.
+    ForceDrift {
+        /// Time at which the force is free of it, s.
+        about: f64,
+    },
     /// Gain of the load cell, a share of the force.
     ForceGain,
     /// Zero of the displacement, m.
@@ -46,6 +52,7 @@ impl InstrumentQuantity {
     pub fn name(self) -> &'static str {
         match self {
             Self::Force => "force",
+            Self::ForceDrift { .. } => "force_drift",
             Self::ForceGain => "force_gain",
             Self::Displacement => "displacement",
             Self::DisplacementGain => "displacement_gain",
@@ -63,6 +70,7 @@ impl InstrumentQuantity {
     pub fn title(self) -> &'static str {
         match self {
             Self::Force => "zero of the force",
+            Self::ForceDrift { .. } => "slope of the baseline",
             Self::ForceGain => "gain of the force",
             Self::Displacement => "zero of the displacement",
             Self::DisplacementGain => "gain of the displacement",
@@ -77,6 +85,7 @@ impl InstrumentQuantity {
     pub fn unit(self) -> &'static str {
         match self {
             Self::Force => "N",
+            Self::ForceDrift { .. } => "N/s",
             Self::ForceGain | Self::DisplacementGain | Self::Clock => "1",
             Self::Displacement | Self::Touch => "m",
             Self::Compliance => "m/N",
@@ -112,16 +121,25 @@ pub struct Instrument {
 }
 
 impl Instrument {
-    /// The same with the errors of first touch (m) and of the zero of the force (N) as they were found in the record. A zero of the force that is
-    /// stated is that of the tare, and found no more. That of the displacement has no effect where first touch was found: it moves with it.
+    /// The same with the errors that were found in the record: of first touch, of the zero of the force and of the slope of its baseline. A zero of
+    /// the force that is stated is that of the tare, and found no more. That of the displacement has no effect where first touch was found: it
+    /// moves with it.
     #[must_use]
-    pub(crate) fn with_found(&self, touch: Option<f64>, force: Option<f64>) -> Self {
+    pub(crate) fn with_found(&self, contact: &ContactPoint) -> Self {
+        let touch = contact.displacement_error;
         let found = [
             (InstrumentQuantity::Touch, "first touch, as found", touch),
-            (InstrumentQuantity::Force, "zero of the force, as found", force),
+            (InstrumentQuantity::Force, "zero of the force, as found", contact.force_error),
         ];
+        let drift = contact.force_drift.map(|drift| {
+            let quantity = InstrumentQuantity::ForceDrift { about: drift.about };
+            (quantity, "slope of the baseline, as found", Some(drift.standard_error))
+        });
         let is_stated = self.inputs.iter().any(|input| input.quantity == InstrumentQuantity::Force);
-        let found = found.into_iter().filter(|(quantity, ..)| !(is_stated && *quantity == InstrumentQuantity::Force));
+        let found = found
+            .into_iter()
+            .chain(drift)
+            .filter(|(quantity, ..)| !(is_stated && *quantity == InstrumentQuantity::Force));
         let mut with = self.clone();
         with.inputs.retain(|input| touch.is_none() || input.quantity != InstrumentQuantity::Displacement);
         with.inputs.extend(found.filter_map(|(quantity, title, error)| {
@@ -154,8 +172,12 @@ mod tests {
         let stated = Instrument {
             inputs: vec![InstrumentInput { quantity, uncertainty }],
         };
-        let quantities = |touch| -> Vec<InstrumentQuantity> {
-            stated.with_found(touch, None).inputs.iter().map(|input| input.quantity).collect()
+        let quantities = |displacement_error| -> Vec<InstrumentQuantity> {
+            let contact = ContactPoint {
+                displacement_error,
+                ..ContactPoint::default()
+            };
+            stated.with_found(&contact).inputs.iter().map(|input| input.quantity).collect()
         };
         assert_eq!(quantities(Some(1e-5)), [InstrumentQuantity::Touch]);
         assert_eq!(quantities(None), [quantity]);

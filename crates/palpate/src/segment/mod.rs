@@ -41,7 +41,9 @@ pub use segmentation::{
     SegmentSettings, Segmentation,
 };
 use standstill::{Held, Level, Levels, levels};
-pub use touch::{BaselineTilt, ContactChoice, ContactPoint, TouchEstimate, TouchMethod, find_contact_of, free_samples};
+pub use touch::{
+    BaselineTilt, ContactChoice, ContactPoint, ForceDrift, TouchEstimate, TouchMethod, find_contact_of, free_samples,
+};
 
 /// Reports that the search goes on.
 fn hear(watch: &mut dyn Watch) -> Result<(), Cancelled> {

@@ -217,7 +217,7 @@ fn believable(
     let most = match quantity {
         InstrumentQuantity::Body { dimension } => shape.and_then(|shape| shape.dimension(dimension)),
         InstrumentQuantity::Modulus => geometry.and_then(|geometry| geometry.modulus),
-        InstrumentQuantity::Force => Some(1e6),
+        InstrumentQuantity::Force | InstrumentQuantity::ForceDrift { .. } => Some(1e6),
         InstrumentQuantity::ForceGain
         | InstrumentQuantity::DisplacementGain
         | InstrumentQuantity::Compliance

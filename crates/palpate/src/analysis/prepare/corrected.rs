@@ -1,5 +1,6 @@
 //! The requested corrections, in order.
 
+use super::baseline::BaselineError;
 use super::lag::{ColumnLag, column_lag};
 use super::ramps_alone::{is_without_hold, ramps_alone};
 use super::skew::skew_watched;
@@ -26,6 +27,8 @@ pub struct Corrected {
     pub lag: Option<ColumnLag>,
     /// Whether a correction of the skew was requested.
     pub skew_requested: bool,
+    /// The errors of the baseline that was subtracted.
+    baseline: Option<BaselineError>,
 }
 
 impl Corrected {
@@ -120,6 +123,7 @@ pub fn corrected_watched(
     if let Some(rate) = requested.resample {
         next = next.resampled(rate)?;
     }
+    let mut baseline_error = None;
     if let Some(baseline) = requested.baseline {
         let free = match requested.baseline_window {
             Some((from, until)) => {
@@ -129,6 +133,7 @@ pub fn corrected_watched(
             None => free_samples(&next, &phases(&next, watch)??),
         };
         next = next.without_baseline(baseline, &free)?;
+        baseline_error = BaselineError::of(&next, baseline, &free);
     }
     if let Some(compliance) = &requested.compliance {
         next = next.without_compliance(compliance)?;
@@ -145,6 +150,7 @@ pub fn corrected_watched(
         segmentation,
         skew,
         skew_requested: requested.skew == SkewChoice::Auto,
+        baseline: baseline_error,
     })
 }
 
@@ -196,6 +202,10 @@ impl Corrected {
         // First touch is one of geometry, and so is the limit below; any modulus will do.
         let body = options.geometry.as_ref().map(|geometry| geometry.specimen(1.0)).transpose()?;
         let contact = find_contact_of(&self.record, &segmentation, body.as_ref(), touch);
+        let contact = match self.baseline {
+            Some(baseline) => baseline.added_to(contact),
+            None => contact,
+        };
         let record = self.record.tared(contact.tare);
         beyond_body(&record, body.as_ref(), options)?;
         Ok(Prepared {

@@ -5,6 +5,7 @@
 //! | file | what |
 //! |---|---|
 //! | `corrected.rs` | the requested corrections, in order, then zero at first touch |
+//! | `baseline.rs` | the errors of a baseline that was subtracted |
 //! | `skew.rs`, `kink.rs` | how much later the force is stamped than the displacement |
 //! | `lag.rs` | how much later the force answers where one clock stamps both columns |
 //! | `motion.rs` | the motion of the jaw, its noise taken out |
@@ -13,6 +14,7 @@
 //! | `seam.rs` | where a second record follows, whether it has the same zero |
 //! | `signals.rs` | what the columns, and what was done to them, give cause to say |
 
+mod baseline;
 mod corrected;
 mod kink;
 mod lag;

@@ -61,6 +61,8 @@ struct ByLaw {
 struct RelaxedForce {
     /// Displacement of the jaw, m.
     displacement: f64,
+    /// When the hold ends, s.
+    time: f64,
     /// F_e, N.
     force: f64,
     /// Its standard error, N.
@@ -70,6 +72,8 @@ struct RelaxedForce {
 /// A hold in contact, and the fits to its force.
 struct RelaxedHold {
     displacement: f64,
+    /// When it ends, s.
+    time: f64,
     last: f64,
     after_loading: bool,
     /// A law each; `None` where it could not be fitted.
@@ -152,6 +156,7 @@ fn implied_by(holds: &[RelaxedHold], laws: usize, body: &Specimen) -> Option<Imp
     if found.is_empty() {
         let last = |hold: &RelaxedHold| RelaxedForce {
             displacement: hold.displacement,
+            time: hold.time,
             force: hold.last,
             error: 1.0,
         };
@@ -188,6 +193,7 @@ impl RelaxedHold {
         let floor = 1e-9 * fit.predict(0.0).abs().max(equilibrium.value.abs());
         Some(RelaxedForce {
             displacement: self.displacement,
+            time: self.time,
             force: equilibrium.value,
             error: equilibrium.standard_error?.max(floor),
         })
@@ -240,7 +246,7 @@ impl ImpliedModulus {
         let body = geometry.with_shape(deviation.shape(&geometry.shape)).specimen(1.0).ok()?;
         let changed = |found: &RelaxedForce| RelaxedForce {
             displacement: deviation.displacement(found.displacement, found.force),
-            force: deviation.force(found.force),
+            force: deviation.force_at(found.force, found.time),
             ..*found
         };
         let all: f64 = self.laws.iter().map(|law| law.weight).sum();
@@ -314,6 +320,7 @@ fn relaxed_hold(
     };
     Ok(Some(RelaxedHold {
         displacement,
+        time: record.time()[hold.end - 1],
         last,
         after_loading,
         fits: laws.iter().map(&mut fit).collect::<Result<_, Cancelled>>()?,

@@ -60,7 +60,12 @@ impl Side {
     fn new(problem: &Problem<'_>, data: &CalibrationData, found: &Found, deviation: &Deviation) -> Option<Self> {
         let prepared = problem.prepared.with_shape(deviation.shape(&problem.prepared.body.shape))?;
         let motion = moved(data, deviation)?;
-        let forces: Vec<f64> = problem.forces.iter().map(|force| deviation.force(*force)).collect();
+        let forces: Vec<f64> = problem
+            .forces
+            .iter()
+            .zip(problem.times)
+            .map(|(force, time)| deviation.force_at(*force, *time))
+            .collect();
         let times: Vec<f64> = problem.times.iter().map(|time| deviation.time(*time)).collect();
         let residuals = Problem {
             prepared: &prepared,

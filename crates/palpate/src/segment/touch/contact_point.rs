@@ -29,6 +29,15 @@ pub enum ContactChoice {
     By(TouchMethod),
 }
 
+/// The error of the slope of a baseline, which goes on through the record.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct ForceDrift {
+    /// Its standard error, N/s.
+    pub standard_error: f64,
+    /// Time at which the force is free of it, s: the mean of the samples without contact.
+    pub about: f64,
+}
+
 /// First touch.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 #[non_exhaustive]
@@ -42,6 +51,9 @@ pub struct ContactPoint {
     /// Standard error of the zero of the force, N, where that was estimated from samples without contact.
     #[serde(default)]
     pub force_error: Option<f64>,
+    /// Error of the slope of the baseline that was subtracted from the force, where it was a line.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub force_drift: Option<ForceDrift>,
     /// Travel through air before it, m.
     pub air_travel: f64,
     /// The rule that found it; `None` where it was given, or is the foot of the ramp.
@@ -431,6 +443,7 @@ impl Search<'_> {
             },
             displacement_error,
             force_error,
+            force_drift: None,
             air_travel: (touch - from).max(0.0),
             method,
             between: between.filter(|_| by_rule.is_none()),

@@ -14,6 +14,6 @@ mod estimators;
 mod loading_curve;
 mod tilt;
 
-pub use contact_point::{ContactChoice, ContactPoint, find_contact_of, free_samples};
+pub use contact_point::{ContactChoice, ContactPoint, ForceDrift, find_contact_of, free_samples};
 pub use estimators::{TouchEstimate, TouchMethod};
 pub use tilt::BaselineTilt;
