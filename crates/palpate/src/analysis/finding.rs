@@ -535,18 +535,32 @@ impl Finding {
         self.text().1
     }
 
-    /// The order in which findings are stated: the severest first, and of equal severity those first by which no law of relaxation applies.
+    /// The order in which findings are stated: the severest first. Of equal severity those come first by which no law of relaxation applies, then
+    /// those about where the law to use ends, then all others, and last those about parameters that the data leave open, often of a law that is
+    /// not to be used.
     #[must_use]
     pub fn rank(&self) -> impl Ord + use<> {
-        let is_no_hold = matches!(
-            self,
+        let place = match self {
             Self::DriftInsteadOfRelaxation { .. }
-                | Self::NothingHeld { .. }
-                | Self::FeedbackControlled { .. }
-                | Self::ForceStep { .. }
-                | Self::DriveChanges { .. }
-        );
-        (std::cmp::Reverse(self.severity()), !is_no_hold)
+            | Self::NothingHeld { .. }
+            | Self::FeedbackControlled { .. }
+            | Self::ForceStep { .. }
+            | Self::DriveChanges { .. } => 0,
+            Self::EquilibriumExtrapolated { .. }
+            | Self::EquilibriumByLaw { .. }
+            | Self::EquilibriumBeyondZero { .. }
+            | Self::TimeBeyondHold { .. } => 1,
+            Self::ExponentUndetermined { .. }
+            | Self::ExponentsIndistinguishable { .. }
+            | Self::ExponentListExtended { .. }
+            | Self::ExponentNotListed { .. }
+            | Self::ExponentConfounded { .. }
+            | Self::RateAtBound { .. }
+            | Self::ParametersAtBound { .. }
+            | Self::TermsIndistinguishable { .. } => 3,
+            _ => 2,
+        };
+        (std::cmp::Reverse(self.severity()), place)
     }
 
     /// The observation.
@@ -602,6 +616,29 @@ fn refused(fit: &Fit) -> Option<(String, f64)> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// The two cautions of a seal that a terminal shows were of exponents of a law that was not to be used; that 5 % of the relaxation lay beyond
+    /// the end of the hold stood below.
+    #[test]
+    fn where_the_law_ends_is_stated_before_exponents_that_are_open() {
+        let mut findings = [
+            Finding::ExponentConfounded { correlation: 0.999 },
+            Finding::ExponentUndetermined { interval: None },
+            Finding::Gaps {
+                count: 1,
+                longest: 2.0,
+                from: 3.0,
+            },
+            Finding::EquilibriumExtrapolated {
+                law: Law::StandardLinearSolid,
+                beyond: 0.05,
+            },
+        ];
+        assert!(findings.iter().all(|finding| finding.severity() == Severity::Caution));
+        findings.sort_by_key(Finding::rank);
+        let codes = findings.map(|finding| finding.code());
+        assert_eq!(codes, ["equilibrium_extrapolated", "gaps", "exponent_confounded", "exponent_undetermined"]);
+    }
 
     #[test]
     fn a_drift_is_stated_before_what_fits_to_it_show() {
