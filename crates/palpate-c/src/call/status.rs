@@ -50,7 +50,7 @@ impl Status {
             Self::NullPointer => c"expected a pointer, found null",
             Self::NotFinite => c"expected finite numbers and a time step of 0 s or more",
             Self::Displacement => c"the displacement is beyond the range of the body",
-            Self::Force => c"no displacement within the range of the body carries the force",
+            Self::Force => c"no single displacement within the range of the body carries the force",
             Self::StateBytes => c"expected the bytes of a contact state",
             Self::Description => c"expected a description of a body and its law",
             Self::Law => c"a contact is stepped by the latency law with one rate coefficient",

@@ -181,7 +181,7 @@ fn refused_steps_change_nothing_and_say_why() {
     let mut message = [1; 200];
     let status = unsafe { palpate_step_force_message(owned.0, &raw const state, 0.1, -1.0, message.as_mut_ptr(), 200) };
     assert_eq!(status, Status::Force);
-    assert_eq!(text(&message), "no displacement within the range of the body carries -1 N");
+    assert_eq!(text(&message), "no single displacement within the range of the body carries -1 N");
     let status = unsafe { palpate_step_message(owned.0, &raw const state, 0.1, 0.004, message.as_mut_ptr(), 200) };
     assert_eq!((status, text(&message).as_str(), state), (Status::Ok, "", before.0));
 }

@@ -30,7 +30,7 @@ pub enum SimulateError {
         source: SpecimenError,
     },
     /// A force that no displacement of the body carries.
-    #[error("at t = {time} s no displacement within the range of the body carries {force} N")]
+    #[error("at t = {time} s no single displacement within the range of the body carries {force} N")]
     Force {
         /// Time, s.
         time: f64,

@@ -78,7 +78,7 @@ pub enum StepError {
     #[error(transparent)]
     Displacement(#[from] SpecimenError),
     /// A force that no displacement carries, or that pulls where nothing can be pulled.
-    #[error("no displacement within the range of the body carries {force} N")]
+    #[error("no single displacement within the range of the body carries {force} N")]
     Force {
         /// What was given, N.
         force: f64,
