@@ -106,7 +106,7 @@ impl Parts {
         let fastest = speeds.iter().copied().fold(0.0, f64::max);
         let held = |from: f64, until: f64| {
             let middle = 0.5 * (from + until);
-            data.force_held().iter().any(|(start, end)| (*start..=*end).contains(&middle))
+            data.held().force.iter().any(|(start, end)| (*start..=*end).contains(&middle))
         };
         let mut runs: Vec<(bool, f64, f64)> = Vec::new();
         for (speed, time) in speeds.iter().zip(knots.windows(2)) {

@@ -3,7 +3,7 @@
 use std::borrow::Cow;
 use std::ops::Range;
 
-use super::range::Span;
+use super::range::{HeldSpans, Span};
 use super::{CalibrateError, EquilibriumLaw};
 use crate::analysis::{AnalysisOptions, Finding, Geometry, Prepared, corrected, measured_motion, signal_findings};
 use crate::contact::{Specimen, SpecimenError};
@@ -31,8 +31,8 @@ pub struct CalibrationData {
     samples: usize,
     /// Contact displacements (m) at which the jaw was held, rising.
     levels: Vec<f64>,
-    /// Spans in which a force was held, in order.
-    force_held: Vec<Span>,
+    /// Spans in which displacement or force was held, in order.
+    held: HeldSpans,
     /// What the columns of the record give cause to say.
     findings: Vec<Finding>,
 }
@@ -130,7 +130,7 @@ impl CalibrationData {
             motion,
             measured: None,
             instrument: Instrument::default(),
-            force_held: Vec::new(),
+            held: HeldSpans::default(),
             findings: Vec::new(),
             times,
             forces,
@@ -157,7 +157,7 @@ impl CalibrationData {
             .ok_or(CalibrateError::NoDisplacement)??;
         let displacement = record.displacement().unwrap_or_default();
         never_pressed(displacement)?;
-        let held: Vec<f64> =
+        let levels: Vec<f64> =
             segmentation.holds().map(|hold| median(&mut displacement[hold.start..hold.end].to_vec())).collect();
         let segments = &segmentation.segments;
         let delays = (0..segments.len()).filter_map(|index| force_delay(&record, segments, index));
@@ -166,8 +166,11 @@ impl CalibrationData {
         findings.extend(delay.zip(fades_s).map(|(delay, fades)| Finding::of_delay(&delay, delay.stop_s + fades)));
         findings.extend(between_samples(&record, segments));
         let (times, forces) = (record.time(), record.force());
-        let pressed = segmentation.holds().filter(|hold| hold.mode == Some(HoldMode::ForceHeld));
-        let force_held = pressed.map(|hold| (times[hold.start], times[hold.end - 1])).collect();
+        let spans = |mode: HoldMode| -> Vec<Span> {
+            let holds = segmentation.holds().filter(|hold| hold.mode == Some(mode));
+            holds.map(|hold| (times[hold.start], times[hold.end - 1])).collect()
+        };
+        let (force, still) = (spans(HoldMode::ForceHeld), spans(HoldMode::DisplacementHeld));
         let motion = measured.motion.clone();
         // Behind a filter the force of a ramp is that of an earlier moment.
         let ramps = segments.iter().filter(|segment| segment.is_ramp());
@@ -179,9 +182,12 @@ impl CalibrationData {
         Ok(Self {
             measured: Some(measured),
             instrument: options.instrument.with_found(&contact),
-            force_held,
+            held: HeldSpans {
+                force,
+                displacement: still,
+            },
             findings,
-            ..Self::new(geometry, options.separation, motion, times, forces, &held)?
+            ..Self::new(geometry, options.separation, motion, times, forces, &levels)?
         })
     }
 
@@ -266,9 +272,9 @@ impl CalibrationData {
         &self.instrument
     }
 
-    /// Spans (s) in which a force was held, in order; none in data of no record.
-    pub(super) fn force_held(&self) -> &[Span] {
-        &self.force_held
+    /// Spans (s) in which displacement or force was held, in order; none in data of no record.
+    pub(super) fn held(&self) -> &HeldSpans {
+        &self.held
     }
 
     /// The measured force at a time, N: straight between the samples.

@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::range::{Held, Span, Way};
+use super::range::{Held, HeldSpans, Way};
 use super::{CalibrationRange, Material};
 use crate::number::significant;
 use crate::simulate::{Drive, Sampling, SimulateError, Trajectory, simulate_watched};
@@ -150,12 +150,12 @@ impl Beyond {
     /// Of the course of a drive with the best parameters; in a motion that was measured a force was held in these spans.
     pub(super) fn of(
         material: &Material,
-        (drive, force_held): (Drive<'_>, &[Span]),
+        (drive, held): (Drive<'_>, &HeldSpans),
         course: &Trajectory,
         stages: &mut Stages<'_>,
     ) -> Result<Self, SimulateError> {
         let (tested, contact) = (material.range(), material.contact());
-        let way = Way::of(drive, contact, force_held)?;
+        let way = Way::of(drive, contact, held)?;
         let extrapolations = extrapolations(tested, &way, course);
         let body = contact.specimen();
         let relaxed_at = |displacement: f64| body.equilibrium_force(body.contact_displacement(displacement));

@@ -89,7 +89,7 @@ pub fn calibrate(
         });
     }
     // A force that no machine held is of a load cell that was not read.
-    if data.force_held().is_empty() && range(data.forces()) == 0.0 {
+    if data.held().force.is_empty() && range(data.forces()) == 0.0 {
         return Err(CalibrateError::ConstantForce {
             force: data.forces()[0],
         });
@@ -144,5 +144,5 @@ fn largest(forces: &[f64]) -> f64 {
 /// What the fitted part of the record has shown.
 fn shown(data: &CalibrationData) -> CalibrationRange {
     let until = data.times()[data.fitted() - 1];
-    CalibrationRange::of(data.motion(), data.force_held(), until, largest(&data.forces()[..data.fitted()]))
+    CalibrationRange::of(data.motion(), data.held(), until, largest(&data.forces()[..data.fitted()]))
 }

@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::extrapolation::{Beyond, Extrapolation};
-use super::range::Span;
+use super::range::HeldSpans;
 use super::{CalibrateError, CalibrationData, Material, MaterialUncertainty, SystematicEffect};
 use crate::analysis::{AnalysisOptions, Geometry};
 use crate::record::Record;
@@ -108,7 +108,7 @@ impl Material {
         confidence: f64,
         watch: &mut dyn Watch,
     ) -> Result<Prediction, SimulateError> {
-        self.predicted((drive.into(), &[]), sampling, confidence, watch)
+        self.predicted((drive.into(), &HeldSpans::default()), sampling, confidence, watch)
     }
 
     /// The same along the measured displacement of a record, at the times (s) `at` on its clock, or at its samples if there are none: corrected,
@@ -137,7 +137,7 @@ impl Material {
         };
         let data = CalibrationData::of_record(record, &options)?;
         let times = if at.is_empty() { data.times() } else { at };
-        let drive = (Drive::from(data.motion()), data.force_held());
+        let drive = (Drive::from(data.motion()), data.held());
         Ok(self.predicted(drive, &Sampling::Times(times.to_vec()), confidence, watch)?)
     }
 
@@ -145,7 +145,7 @@ impl Material {
     /// motion is that of a force that was held.
     fn predicted(
         &self,
-        (drive, force_held): (Drive<'_>, &[Span]),
+        (drive, held): (Drive<'_>, &HeldSpans),
         sampling: &Sampling,
         confidence: f64,
         watch: &mut dyn Watch,
@@ -176,7 +176,7 @@ impl Material {
                 displacement.add(&high.displacement, &low.displacement, (share, apart));
             }
         }
-        let beyond = Beyond::of(self, (drive, force_held), &trajectory, &mut stages)?;
+        let beyond = Beyond::of(self, (drive, held), &trajectory, &mut stages)?;
         stages.finish()?;
         let [force, displacement] =
             [(force, &beyond.force), (displacement, &beyond.displacement)].map(|(spreads, beyond)| {
