@@ -28,7 +28,7 @@ pub(crate) use stated_units::stated_units;
 pub use unit_words::unit_factor;
 pub(crate) use unit_words::{is_share, is_unit_in_words, unit_behind_number, volts_are};
 pub(crate) use vocabulary::{
-    AXIAL, BENDING, COUNTS, EXTENSOMETERS, MEANS, OTHER_CHARACTERS, RATES_OF_SHEAR, SHEAR, SHEAR_RATES,
-    SIGNS_OF_LENGTH, STORAGE, STRAIN_GAUGES, STRAINS, UNCALIBRATED, VOCABULARY, is_listed, names_statistic,
-    other_words,
+    AXIAL, BENDING, COUNTS, EXTENSOMETERS, MEANS, NUMBERS, OF_A_PART, OTHER_CHARACTERS, RATES_OF_SHEAR, SHEAR,
+    SHEAR_RATES, SIGNS_OF_LENGTH, STORAGE, STRAIN_GAUGES, STRAINS, UNCALIBRATED, VOCABULARY, WITHIN_A_TEST, is_listed,
+    names_statistic, other_words,
 };

@@ -114,6 +114,13 @@ pub(crate) const TRUE_CHARACTERS: &str = "真应 真應 真实应 真応 真ひ�
 /// Words of a time that begins anew with each part of a test.
 pub(crate) const OF_A_PART: &str = "step action interval segment intervalle abschnitt schritt étape etape";
 
+/// Words of what one test has many of.
+pub(crate) const WITHIN_A_TEST: &str = "cycle cycles zyklus zyklen ciclo ciclos cicli цикл циклы scan scans point points punkt punkte punto puntos \
+    punti точка row rows readings block blocks steps segments intervals";
+
+/// Words for the number of something.
+pub(crate) const NUMBERS: &str = "no nr number nummer numéro numero número номер count index";
+
 /// Words of a force along the axis of a machine, which is not the load of a body in shear.
 pub(crate) const AXIAL: &str = "normal normale axial axiale normalkraft axialkraft";
 

@@ -5,8 +5,8 @@ use std::path::Path;
 use super::{row::RowPlan, section::Section};
 use crate::{
     input::lines,
-    naming::Quantity,
-    table::{ColumnInfo, Layout, candidates},
+    naming::{NUMBERS, OF_A_PART, Quantity, WITHIN_A_TEST, is_listed, words},
+    table::{ColumnInfo, Layout, candidates, recognise},
 };
 
 /// The tables with each that continues the one above it put behind it. Its lines of names are passed over.
@@ -53,20 +53,51 @@ impl Span {
     }
 }
 
-/// Whether a table has the columns of the one above, and no line above its rows but those that stand above the rows there.
+/// Whether a table has the columns of the one above, and no line above its rows but those that stand above the rows there, with other times and counts.
 fn continues(text: &str, above: &Section, section: &Section) -> bool {
     let named = |layout: &Layout| -> Vec<_> {
         let label = |column: &ColumnInfo| (column.name.clone(), column.unit.clone());
         layout.columns.iter().map(label).collect()
     };
     let known: Vec<&str> = above.names(text).into_iter().map(str::trim).collect();
-    let is_known = |line: &str| line.trim().is_empty() || known.contains(&line.trim());
+    let is_known = |line: &str| line.trim().is_empty() || known.iter().any(|known| is_as(known, line));
     above.title.is_none()
         && section.title.is_none()
         && section.layout.header_line.is_some()
         && above.layout.decimal == section.layout.decimal
         && named(&above.layout) == named(&section.layout)
         && section.names(text).into_iter().all(is_known)
+}
+
+/// Whether two lines say the same, but for times and counts: `Time: 62.600 Sec`, `Cycle 3`. Any other number may be that of another specimen.
+fn is_as(known: &str, line: &str) -> bool {
+    let (known, line) = (parts(known), parts(line));
+    let may_differ = |index: usize| {
+        let behind = line[..index].iter().rposition(|part| !is_number(part)).map_or(0, |last| last + 1);
+        let name = line[..behind].iter().rposition(|part| is_number(part)).map_or(0, |last| last + 1);
+        is_number(known[index]) && is_number(line[index]) && counts_on(&line[name..behind].join(" "))
+    };
+    known.len() == line.len() && (0..line.len()).all(|index| known[index] == line[index] || may_differ(index))
+}
+
+/// The words and numbers of a line.
+fn parts(line: &str) -> Vec<&str> {
+    let is_gap = |letter: char| letter.is_whitespace() || ",;|:=\"'()[]".contains(letter);
+    line.split(is_gap).filter(|part| !part.is_empty()).collect()
+}
+
+/// Whether a part of a line is a number or a date, and no name that ends on a number.
+fn is_number(part: &str) -> bool {
+    part.contains(|letter: char| letter.is_ascii_digit())
+        && part.chars().all(|letter| letter.is_ascii_digit() || ".-+/".contains(letter))
+}
+
+/// Whether the number behind a name changes in the course of one test.
+fn counts_on(name: &str) -> bool {
+    let of = words(name);
+    let counted = of.iter().rfind(|word| !is_listed(word, NUMBERS));
+    recognise::named_plainly(name, Quantity::Time)
+        || counted.is_some_and(|word| is_listed(word, WITHIN_A_TEST) || is_listed(word, OF_A_PART))
 }
 
 /// The clock of a table of two rows or more.
