@@ -188,7 +188,10 @@ fn creeps(
     let smooth = |level: &Level| turns(record.time(), record.force(), *level, ASTRAY * found.settings.noise, 0.5);
     let step = least_change(record.force());
     for level in settled.iter().filter(|level| {
-        arrives(record, level, &jaw.settings) && (!open(level) || recovers(level)) && !is_stair(record, level, step)
+        arrives(record, level, &jaw.settings)
+            && (!open(level) || recovers(level))
+            && !is_stair(record, level, step)
+            && !still.iter().any(|still| stands(record, still, level))
     }) {
         hear(watch)?;
         let inside: Vec<&Level> = still.iter().filter(|still| overlap(still, level)).collect();
@@ -344,6 +347,39 @@ fn arrives(record: &Record, level: &Level, jaw: &SegmentSettings) -> bool {
     let far = (OBSERVED * jaw.noise).max(0.5 * jaw.tolerance);
     let faster = |from: usize| way(from, level.start) > far && speed(from, level.start) > FASTER * inside;
     level.start > 0 && before.into_iter().any(faster)
+}
+
+/// Share of the speed of the ramp beside it from which on a jaw goes on in that ramp.
+const RAMPS: f64 = 0.5;
+/// Rows beside a standstill that do not show how fast the jaw goes: a ramp ends between two.
+const CORNER: usize = 2;
+
+/// Whether the jaw stands while the force stays at a level, and comes there and leaves as in the ramps beside it: the force is that of a body that the
+/// jaw has left, and nobody holds it.
+fn stands(record: &Record, still: &Level, level: &Level) -> bool {
+    let Some(displacement) = record.displacement().filter(|_| overlap(still, level)) else {
+        return false;
+    };
+    let time = record.time();
+    let speed =
+        |from: usize, until: usize| (displacement[until] - displacement[from]).abs() / (time[until] - time[from]);
+    let fastest = |speeds: [f64; 4]| speeds.into_iter().fold(0.0, f64::max);
+    // Over parts of as many rows, since the ramp may be shorter.
+    let beside = |rows: usize| [1, 4, 16, 64].map(|part| (rows / part).max(3));
+    let (before, after) = (still.start.saturating_sub(level.start), level.end.saturating_sub(still.end));
+    let last = record.len() - 1;
+    let comes = || {
+        let ramp = beside(before).map(|rows| speed(level.start.saturating_sub(rows), level.start));
+        speed(level.start, still.start - 1) > RAMPS * fastest(ramp)
+    };
+    let leaves = || {
+        let ramp = beside(after).map(|rows| speed(level.end - 1, (level.end - 1 + rows).min(last)));
+        level.end <= last && speed(still.end, level.end - 1) > RAMPS * fastest(ramp)
+    };
+    let (start, end) = (still.start.max(level.start), still.end.min(level.end));
+    (before <= CORNER || comes())
+        && (after <= CORNER || leaves())
+        && [mode, mode_at_large].iter().all(|mode| mode(record, start, end) != HoldMode::ForceHeld)
 }
 
 /// Whether the machine goes over from holding the jaw to holding the force that it has just then: the jaw stood, and creeps from there on.

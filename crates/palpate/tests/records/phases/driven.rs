@@ -115,6 +115,39 @@ fn a_jaw_that_hunts_holds_all_the_same_and_that_is_stated() {
     assert_eq!(phases(&calm).unwrap().ripple, None);
 }
 
+/// A body that a jaw had left by the end of unloading was held by a force near zero, with the end of the ramp to the rest of the jaw and the start of
+/// the next.
+#[test]
+fn a_jaw_that_rests_clear_of_the_body_holds_no_force() {
+    let cycle = [(5.0, 3.0), (10.4, 0.3), (15.4, 0.3), (20.8, 3.0)];
+    let place = |t: f64| match t {
+        _ if t < 8.0 => (0.5 * (t - 2.0)).max(0.0),
+        _ if t < 91.2 => {
+            let t = (t - 8.0) % 20.8;
+            let next = cycle.partition_point(|knot| knot.0 <= t);
+            let ((from, start), (until, end)) = (if next == 0 { (0.0, 3.0) } else { cycle[next - 1] }, cycle[next]);
+            start + (end - start) * (t - from) / (until - from)
+        }
+        _ if t < 151.2 => 3.0,
+        _ => (3.0 - 0.5 * (t - 151.2)).max(0.0),
+    };
+    let often = measured(170.0, [3e-4, 0.0], |t| Drive::Place(place(t)));
+    for (every, seed) in [(10, 1), (10, 2), (4, 1), (4, 2), (2, 1), (1, 1)] {
+        let mut random = Rng::new(seed);
+        let some = |column: &[f64]| -> Vec<f64> { column.iter().copied().step_by(every).collect() };
+        // A jaw cannot pull.
+        let force = some(often.force()).iter().map(|force| force.max(0.0) + 0.007 * random.normal()).collect();
+        let record = Record::new(some(often.time()), often.displacement().map(some), force).unwrap();
+        let found = phases(&record).unwrap();
+        let jaw = record.displacement().unwrap();
+        for hold in found.holds() {
+            let (first, last) = (jaw[hold.start], jaw[hold.end - 1]);
+            assert!(hold.mode == Some(HoldMode::DisplacementHeld) && (last - first).abs() < 3e-6, "{every}: {hold:?}");
+        }
+        assert!(found.holds().count() >= 9, "{every}: {:?}", holds(&record));
+    }
+}
+
 #[test]
 fn the_recovery_after_a_creep_is_a_hold_of_the_small_force() {
     for low in [0.2, 1.0, 5.0] {
