@@ -32,7 +32,7 @@ const CONTROLLER: f64 = 0.02;
 pub use error::SegmentError;
 pub(crate) use mode::{OBSERVED, PARTS, change, creeps, error_of_mean};
 use mode::{mode, mode_at_large};
-pub(crate) use phases::{ForceDelay, force_delay, ramps_alone};
+pub(crate) use phases::{ForceDelay, force_delay, ramps_alone, stands_in};
 pub use phases::{GivenHold, find_phases, phases_watched, phases_with};
 pub use relaxation::{Relaxation, RelaxationType, classify_relaxation};
 pub(crate) use segmentation::ramps_before;

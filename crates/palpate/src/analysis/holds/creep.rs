@@ -10,6 +10,7 @@ use crate::laws::Response;
 use crate::record::{Record, RecordError};
 use crate::segment::{
     After, GivenHold, HoldMode, Phase, Segment, SegmentError, SegmentOptions, Segmentation, creeps, phases_watched,
+    stands_in,
 };
 use crate::simulate::Separation;
 use crate::statistics::{median, noise, range};
@@ -122,22 +123,28 @@ fn force_held(
         return observed;
     }
     // The tolerance of a test is a length; a controller that rings about its set force still holds it.
-    let segment = SegmentOptions {
+    let exchanged_options = SegmentOptions {
         tolerance: Some(RINGING * range(record.force())),
         ..*segment
     };
-    let found = match phases(exchanged, &segment, &[])? {
+    let found = match phases(exchanged, &exchanged_options, &[])? {
         // Who asks for creep, and has a force that stays throughout, means the whole record.
         Err(SegmentError::NoMotion { .. }) if is_pressed_throughout(record) => {
             let (from, to) = (record.time()[0], record.time()[record.len() - 1]);
             let mode = Some(HoldMode::ForceHeld);
-            phases(record, &segment, &[GivenHold { from, to, mode }])?
+            phases(record, &exchanged_options, &[GivenHold { from, to, mode }])?
         }
         found => found,
     };
+    let mut rests = Vec::new();
+    for hold in found.iter().flat_map(Segmentation::holds) {
+        if stands_in(record, (hold.start, hold.end), segment, watch)? {
+            rests.push(hold.start);
+        }
+    }
     let found = found
         .map_err(of_force)
-        .and_then(|found| creeping(found, |hold| creeps(record, hold.start, hold.end)));
+        .and_then(|found| creeping(found, |hold| creeps(record, hold.start, hold.end) && !rests.contains(&hold.start)));
     found.or_else(|error| observed.and_then(Result::ok).ok_or(error))
 }
 
@@ -335,6 +342,29 @@ mod tests {
             assert_eq!(stated(&under(|t| lag(t, share, time))), [(true, true)], "{share} {time}");
         }
         assert_eq!(stated(&under(ramp)), [(false, false)]);
+    }
+
+    /// The way of a jaw that was let go, once the force was down to that of air, was a creep.
+    #[test]
+    fn a_jaw_that_leaves_the_body_and_rests_does_not_creep() {
+        let place = |t: f64| (t - 5.0).clamp(0.0, 3.0) - (t - 128.0).clamp(0.0, 3.0);
+        for seed in 0..4 {
+            let (mut random, mut arm) = (Rng::new(seed), 0.0);
+            let kept = (-0.1f64 / 10.0).exp();
+            let rows: Vec<[f64; 3]> = (0..1610)
+                .map(|i| {
+                    let t = 0.1 * f64::from(i);
+                    arm = arm * kept + 25.0 * (place(t) - place(t - 0.1));
+                    let force = (80.0 * place(t) + arm).max(0.0) + 0.2 * random.normal();
+                    [t, 1e-3 * place(t) + 3e-7 * random.normal(), force]
+                })
+                .collect();
+            let of = |column: usize| rows.iter().map(|row| row[column]).collect::<Vec<f64>>();
+            let record = Record::new(of(0), Some(of(1)), of(2)).unwrap();
+            let (options, laws) = (SegmentOptions::default(), CompareOptions::default());
+            let found = creep_holds(&record, (&options, &[]), &laws, None, &mut Unwatched);
+            assert_eq!(found, Err(CreepError::DisplacementHeld), "{seed}");
+        }
     }
 
     /// It was refused: a creep after a ramp of 4 s had 79 % of its amplitude.

@@ -10,7 +10,7 @@ use super::whole::begins_in_hold;
 use crate::record::Record;
 use crate::segment::{
     After, CONTROLLER, Held, HoldMode, Level, Levels, Phase, SERVO, Segment, SegmentError, SegmentOptions,
-    SegmentSettings, Segmentation, hear, levels, mode, mode_at_large,
+    SegmentSettings, Segmentation, creeps as creeps_at_all, hear, levels, mode, mode_at_large,
 };
 use crate::statistics::{least_change, median, range};
 use crate::watch::{Cancelled, Watch};
@@ -380,6 +380,25 @@ fn stands(record: &Record, still: &Level, level: &Level) -> bool {
     (before <= CORNER || comes())
         && (after <= CORNER || leaves())
         && [mode, mode_at_large].iter().all(|mode| mode(record, start, end) != HoldMode::ForceHeld)
+}
+
+/// Whether the jaw stands in these samples, less what they have of the ramps beside them.
+pub(crate) fn stands_in(
+    record: &Record,
+    (start, end): (usize, usize),
+    options: &SegmentOptions,
+    watch: &mut dyn Watch,
+) -> Result<bool, Cancelled> {
+    let Some(displacement) = record.displacement() else {
+        return Ok(false);
+    };
+    let held = Held::new(("displacement", "m"), displacement, SERVO * range(displacement), false);
+    let found = SegmentError::unless_cancelled(levels(record.time(), &held, options, watch))?;
+    let level = Level::of(record.force(), start, end);
+    let is_still = |still: &Level| {
+        stands(record, still, &level) && !creeps_at_all(record, still.start.max(start), still.end.min(end))
+    };
+    Ok(found.is_ok_and(|found| found.levels.iter().any(is_still)))
 }
 
 /// Whether the machine goes over from holding the jaw to holding the force that it has just then: the jaw stood, and creeps from there on.

@@ -36,5 +36,6 @@ mod whole;
 
 pub(crate) use delayed::{ForceDelay, force_delay};
 pub use find::{find_phases, phases_watched, phases_with};
+pub(crate) use from_both::stands_in;
 pub use given::GivenHold;
 pub(crate) use ramps::ramps_alone;
