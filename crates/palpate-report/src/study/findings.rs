@@ -253,6 +253,7 @@ mod tests {
             .map(|i| RecordFinding::EquilibriumExtrapolated {
                 law: palpate::laws::Law::StandardLinearSolid,
                 beyond: 0.2 + 0.05 * f64::from(i),
+                response: palpate::laws::Response::Relaxation,
             })
             .collect();
         let all = findings.iter().enumerate().map(|(i, finding)| observed(finding, i + 1)).collect();

@@ -5,7 +5,7 @@ mod text;
 use serde::{Deserialize, Serialize};
 
 use crate::fit::{Fit, TrendVerdict, UNEXPLAINED};
-use crate::laws::Law;
+use crate::laws::{Law, Response};
 use crate::record::Column;
 use crate::segment::{BaselineTilt, ForceDelay, HoldMode, LabelCheck, Ripple, Rupture, TouchMethod};
 
@@ -26,14 +26,17 @@ pub enum Severity {
 #[serde(tag = "code", rename_all = "snake_case")]
 #[non_exhaustive]
 pub enum Finding {
-    /// The fitted equilibrium lies well beyond the end of the hold.
+    /// The fitted equilibrium, or the displacement that a creep ends at, lies well beyond the end of the hold.
     EquilibriumExtrapolated {
         /// Law that is to be used.
         law: Law,
-        /// Share of the fitted relaxation that lies beyond the end of the hold.
+        /// Share of the fitted relaxation or creep that lies beyond the end of the hold.
         beyond: f64,
+        /// Which of both.
+        #[serde(default)]
+        response: Response,
     },
-    /// Laws that are not distinguishable from the one to use have another equilibrium, or none.
+    /// Laws that are not distinguishable from the one to use have another equilibrium, or end of a creep, or none.
     EquilibriumByLaw {
         /// Law that is to be used.
         law: Law,
@@ -41,6 +44,9 @@ pub enum Finding {
         outside: Vec<Law>,
         /// Laws without an equilibrium.
         without: Vec<Law>,
+        /// Whether it is that of a relaxation or of a creep.
+        #[serde(default)]
+        response: Response,
     },
     /// The fitted equilibrium and its interval lie beyond zero, where the body would pull.
     EquilibriumBeyondZero {
@@ -49,6 +55,15 @@ pub enum Finding {
         /// Equilibrium over the value at the end of the hold.
         share: f64,
         /// Its interval.
+        interval: (f64, f64),
+    },
+    /// The fitted end of a recovery and its interval lie beyond the displacement before the load.
+    RecoveryBeyondOriginal {
+        /// Law that is to be used.
+        law: Law,
+        /// How far beyond, m.
+        distance: f64,
+        /// Its interval, m.
         interval: (f64, f64),
     },
     /// The data do not determine the exponent.
@@ -549,6 +564,7 @@ impl Finding {
             Self::EquilibriumExtrapolated { .. }
             | Self::EquilibriumByLaw { .. }
             | Self::EquilibriumBeyondZero { .. }
+            | Self::RecoveryBeyondOriginal { .. }
             | Self::TimeBeyondHold { .. } => 1,
             Self::ExponentUndetermined { .. }
             | Self::ExponentsIndistinguishable { .. }
@@ -632,6 +648,7 @@ mod tests {
             Finding::EquilibriumExtrapolated {
                 law: Law::StandardLinearSolid,
                 beyond: 0.05,
+                response: Response::Relaxation,
             },
         ];
         assert!(findings.iter().all(|finding| finding.severity() == Severity::Caution));
@@ -647,6 +664,7 @@ mod tests {
             Finding::EquilibriumExtrapolated {
                 law: Law::StandardLinearSolid,
                 beyond: 1.0,
+                response: Response::Relaxation,
             },
             Finding::OneHold,
             Finding::DriftInsteadOfRelaxation { rise: 0.5, fall: 0.0 },

@@ -54,8 +54,6 @@ pub use model::{ContactModel, Separation};
 pub use step::{ContactState, StepError};
 
 #[cfg(feature = "std")]
-pub(crate) use summary::run_summary;
-#[cfg(feature = "std")]
 pub use {
     crate::contact::SimulationWork,
     contact::{Contact, ContactRef},
@@ -73,6 +71,8 @@ pub use {
     walk::{ContactEvent, ContactEventKind, StepEnd, step_ends},
     wave::{StrainWave, WAVE_TOLERANCE, strain_wave, strain_wave_within},
 };
+#[cfg(feature = "std")]
+pub(crate) use {drive::Resolution, summary::run_summary};
 
 #[cfg(feature = "std")]
 use {

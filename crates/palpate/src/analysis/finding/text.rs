@@ -4,7 +4,7 @@ use super::Finding;
 use super::Severity::{self, Caution, Info, Warning};
 use crate::fit::TrendVerdict;
 use crate::forecast::listed;
-use crate::laws::Law;
+use crate::laws::{Law, Response};
 use crate::number::{counted, exact, significant, with_interval};
 use crate::record::Column;
 use crate::segment::HoldMode;
@@ -29,33 +29,80 @@ impl Finding {
     /// The text of the finding.
     pub(super) fn text(&self) -> Text {
         match self {
-            Self::EquilibriumExtrapolated { law, beyond } => caution(
+            Self::EquilibriumExtrapolated { law, beyond, response } => caution(
                 "equilibrium_extrapolated",
                 format!(
-                    "by the law {law}, the hold covers {:.0} % of the relaxation; {:.0} % lies beyond its end",
+                    "by the law {law}, the hold covers {:.0} % of the {}; {:.0} % lies beyond its end",
                     100.0 * (1.0 - beyond),
+                    match response {
+                        Response::Relaxation => "relaxation",
+                        Response::Creep => "creep",
+                    },
                     100.0 * beyond
                 ),
-                if law.is_series() {
-                    "a series of exponentials knows nothing slower than its slowest term, and neither does the interval of its equilibrium: a body that has a slower one ends elsewhere"
-                } else {
-                    "the estimated equilibrium depends on the law and, by the latency law, on the exponent: another one gives another equilibrium"
+                match (response, law.is_series()) {
+                    (Response::Relaxation, true) => {
+                        "a series of exponentials knows nothing slower than its slowest term, and neither does the interval of its equilibrium: a body that has a slower one ends elsewhere"
+                    }
+                    (Response::Relaxation, false) => {
+                        "the estimated equilibrium depends on the law and, by the latency law, on the exponent: another one gives another equilibrium"
+                    }
+                    (Response::Creep, true) => {
+                        "a series of exponentials knows nothing slower than its slowest term, and neither does the interval of its final displacement: a body that has a slower one goes on, or flows"
+                    }
+                    (Response::Creep, false) => {
+                        "the final displacement depends on the law and, by the latency law, on the exponent: another one gives another displacement, or a flow without end"
+                    }
                 },
                 "hold longer, or compare holds at one law and one fixed exponent",
             ),
-            Self::EquilibriumByLaw { law, outside, without } => caution(
+            Self::EquilibriumByLaw {
+                law,
+                outside,
+                without,
+                response,
+            } => caution(
                 "equilibrium_by_law",
                 {
                     let have = |laws: &[Law], what: &str| {
                         let verb = if laws.len() == 1 { "has" } else { "have" };
                         (!laws.is_empty()).then(|| format!("{} {verb} {what}", listed(laws)))
                     };
-                    let outside = have(outside, "another equilibrium, outside its interval");
+                    let outside = have(
+                        outside,
+                        match response {
+                            Response::Relaxation => "another equilibrium, outside its interval",
+                            Response::Creep => "another final displacement, outside its interval",
+                        },
+                    );
                     let others: Vec<String> = outside.into_iter().chain(have(without, "none")).collect();
                     format!("of the laws that are not distinguishable from {law}, {}", others.join(", and "))
                 },
-                "the interval of the equilibrium counts the law as exact; the hold does not show which law goes on, and the equilibrium is known no better",
-                "hold longer, or state what each of these laws makes of the equilibrium",
+                match response {
+                    Response::Relaxation => {
+                        "the interval of the equilibrium counts the law as exact; the hold does not show which law goes on, and the equilibrium is known no better"
+                    }
+                    Response::Creep => {
+                        "the interval of the final displacement counts the law as exact; the hold does not show which law goes on, and the final displacement is known no better"
+                    }
+                },
+                match response {
+                    Response::Relaxation => "hold longer, or state what each of these laws makes of the equilibrium",
+                    Response::Creep => "hold longer, or state what each of these laws makes of the final displacement",
+                },
+            ),
+            Self::RecoveryBeyondOriginal {
+                law,
+                distance,
+                interval,
+            } => warning(
+                "recovery_beyond_original",
+                format!(
+                    "by the law {law}, the recovery ends {} µm beyond the displacement before the load",
+                    with_interval(1e6 * distance, (1e6 * interval.0, 1e6 * interval.1))
+                ),
+                "an unloaded body does not pass the height that it had: the law goes too far beyond the end of the hold, or the zero of the displacement has shifted",
+                "do not use this final displacement; record the recovery for longer, and check the displacement for drift",
             ),
             Self::ForceStep { time, step, gap } => caution(
                 "force_step",

@@ -1,5 +1,6 @@
 //! What a comparison of laws gives cause to say.
 
+use super::end_value::end_value;
 use crate::analysis::finding::Finding;
 use crate::fit::{Fit, LawOptions, ParameterKind, Samples, Termination};
 use crate::forecast::{Comparison, HoldForecast};
@@ -52,14 +53,11 @@ pub(super) fn comparison_findings(comparison: &Comparison, interval: f64) -> Vec
     findings
 }
 
-/// Where the first of laws that are not distinguishable has an interval of the equilibrium that leaves out those of others, or others have none.
+/// Where the first of laws that are not distinguishable has an interval of the equilibrium, or the end of a creep, that leaves out those of others, or others have none.
 fn equilibrium_by_law(comparison: &Comparison, alike: &[Law]) -> Option<Finding> {
     let (law, others) = alike.split_first()?;
-    let equilibrium = |law: &Law| {
-        let row = comparison.rows.iter().find(|row| row.law == *law)?;
-        let fit = row.fit.as_ref().ok()?;
-        Some(fit.parameter(ParameterKind::Equilibrium).map(|parameter| parameter.estimate))
-    };
+    let equilibrium = |law: &Law| Some(end_value(fit_of(comparison, *law)?).map(|(estimate, _)| estimate));
+    let (_, response) = end_value(fit_of(comparison, *law)?)?;
     let (low, high) = equilibrium(law)??.interval?;
     // Far beyond a hold a dense spectrum goes where its ridge takes it.
     let fitted = others.iter().filter(|law| !matches!(law, Law::Spectrum));
@@ -84,7 +82,18 @@ fn equilibrium_by_law(comparison: &Comparison, alike: &[Law]) -> Option<Finding>
         law: *law,
         outside,
         without,
+        response,
     })
+}
+
+/// The fit of a law of the comparison.
+fn fit_of(comparison: &Comparison, law: Law) -> Option<&Fit> {
+    comparison.rows.iter().find(|row| row.law == law)?.fit.as_ref().ok()
+}
+
+/// The fit of the recommended law.
+pub(super) fn recommended(comparison: &Comparison) -> Option<&Fit> {
+    fit_of(comparison, comparison.verdict.as_ref()?.law)
 }
 
 /// Sample intervals up to which a time constant is that of the first samples.
@@ -92,11 +101,10 @@ const FIRST_SAMPLES: f64 = 2.0;
 
 /// Time constants of the recommended law that the hold does not show: one that outlasts it, and one of a series that ends with its first samples.
 fn times_out_of_sight(comparison: &Comparison, interval: f64) -> Vec<Finding> {
-    let recommended = comparison.verdict.as_ref().map(|verdict| verdict.law);
-    let row = comparison.rows.iter().find(|row| Some(row.law) == recommended);
-    let Some((law, fit)) = row.and_then(|row| Some((row.law, row.fit.as_ref().ok()?))) else {
+    let Some(fit) = recommended(comparison) else {
         return Vec::new();
     };
+    let law = fit.law;
     let times = fit.parameters.iter().filter(|parameter| parameter.name.kind == ParameterKind::Time);
     let (shortest, longest) = times
         .map(|parameter| parameter.estimate.value)

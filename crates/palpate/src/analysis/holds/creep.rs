@@ -1,7 +1,8 @@
 //! Holds of constant force: the displacement creeps.
 
-use super::compared::{add_forecasts, comparison_findings};
+use super::compared::{add_forecasts, comparison_findings, recommended};
 use super::drive::drive_changes;
+use super::end_value::{beyond_original, extrapolated, original_displacement};
 use super::imposed::imposed_force;
 use crate::analysis::finding::Finding;
 use crate::fit::{LawOptions, Samples, fitted};
@@ -221,6 +222,7 @@ pub fn creep_holds(
             }
         })
         .collect();
+    let original = original_displacement(&record);
     let holds = held.iter().enumerate().map(|(index, place)| {
         let hold = &segments[*place];
         let from = hold.fit_start;
@@ -234,6 +236,13 @@ pub fn creep_holds(
         };
         let mut comparison = fitted(compare_laws_watched(&samples, &compare, &[], watch))?;
         let mut findings = comparison.as_ref().map_or_else(Vec::new, |found| comparison_findings(found, times[1]));
+        if let Some(fit) = comparison.as_ref().and_then(recommended)
+            && let Some(end) = times[..last].last()
+        {
+            let original = original.filter(|_| hold.after == Some(After::Unloading));
+            findings.extend(extrapolated(fit, *end));
+            findings.extend(original.and_then(|original| beyond_original(fit, *end, original)));
+        }
         if let Some(changes) = drive_changes(&record, (&segments, *place), HoldMode::ForceHeld, from + last) {
             // No law of a constant force is the law of a body under this one.
             if let Some(verdict) = comparison.as_mut().and_then(|found| found.verdict.as_mut()) {
@@ -396,6 +405,53 @@ mod tests {
             assert!((amplitude / 1.5e-3 - 1.0).abs() < within, "{ramp} {noise}: {amplitude}");
             assert!((time / 8.0 - 1.0).abs() < within, "{ramp} {noise}: {time}");
         }
+    }
+
+    /// The displacement (m) under a force (N), with noise of 1 µm and 0.2 N, of a test of so long (s) at 2 Hz.
+    fn crept(until: u32, force: impl Fn(f64) -> f64, jaw: impl Fn(f64) -> f64) -> Vec<CreepHold> {
+        let mut random = Rng::new(3);
+        let time: Vec<f64> = (0..2 * until).map(|i| 0.5 * f64::from(i)).collect();
+        let places = time.iter().map(|t| jaw(*t) + 1e-6 * random.normal()).collect();
+        let mut random = Rng::new(4);
+        let forces = time.iter().map(|t| force(*t) + 0.2 * random.normal()).collect();
+        let record = Record::new(time, Some(places), forces).unwrap();
+        let compare = CompareOptions {
+            laws: ["standard-linear-solid", "prony:2", "latency:5", "power"].map(|law| law.parse().unwrap()).to_vec(),
+            forecast: false,
+            ..CompareOptions::default()
+        };
+        creep_holds(&record, (&SegmentOptions::default(), &[]), &compare, None, &mut Unwatched).unwrap()
+    }
+
+    fn codes(hold: &CreepHold) -> Vec<&'static str> {
+        hold.findings.iter().map(Finding::code).collect()
+    }
+
+    /// Nothing was stated of the final displacement, of which a relaxation of the same course has its finding.
+    #[test]
+    fn a_final_displacement_beyond_the_hold_is_stated() {
+        let force = |t: f64| 100.0 * ((t - 10.0) / 2.0).clamp(0.0, 1.0);
+        let solid = |time: f64| {
+            let slow = move |t: f64| 6e-4 * (1.0 - (-(t - 12.0).max(0.0) / time).exp());
+            crept(612, force, move |t| 4e-6 * force(t) + slow(t))
+        };
+        let (far, near) = (solid(500.0), solid(60.0));
+        assert!(codes(&far[0]).contains(&"equilibrium_extrapolated"), "{:?}", codes(&far[0]));
+        let stated = far[0].findings.iter().find(|finding| finding.code() == "equilibrium_extrapolated").unwrap();
+        assert!(stated.observation().contains("of the creep") && !stated.meaning().contains("equilibrium"));
+        assert!(!codes(&near[0]).contains(&"equilibrium_extrapolated"), "{:?}", codes(&near[0]));
+    }
+
+    /// "final −24.7 [−32.8, −16.7] µm" of a body that goes back to 0 had no finding.
+    #[test]
+    fn a_recovery_beyond_the_original_height_is_stated() {
+        let force = |t: f64| 100.0 * ((t - 10.0) / 2.0).clamp(0.0, 1.0) - 100.0 * ((t - 612.0) / 2.0).clamp(0.0, 1.0);
+        let power = |t: f64| 8e-5 * t.max(0.0).powf(0.25);
+        let solid = |t: f64| -4e-4 * (-t.max(0.0) / 60.0).exp_m1();
+        let holds = crept(1500, force, |t| 4e-6 * force(t) + power(t - 11.0) - power(t - 613.0));
+        assert!(codes(&holds[1]).contains(&"recovery_beyond_original"), "{:?}", codes(&holds[1]));
+        let holds = crept(1500, force, |t| 4e-6 * force(t) + solid(t - 11.0) - solid(t - 613.0));
+        assert!(!codes(&holds[1]).contains(&"recovery_beyond_original"), "{:?}", codes(&holds[1]));
     }
 
     /// It was "no creep", though a hundred times the noise.

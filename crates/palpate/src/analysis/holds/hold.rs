@@ -2,15 +2,15 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::compared::{add_forecasts, comparison_findings, not_a_hold};
+use super::compared::{add_forecasts, comparison_findings, not_a_hold, recommended};
 use super::drive::drive_changes;
+use super::end_value::{beyond_zero, extrapolated};
 use super::jump::force_step;
 use super::rate_bias::{RateBias, rate_bias};
 use crate::analysis::{AnalysisOptions, Finding};
 use crate::contact::{Shape, Specimen};
 use crate::fit::{
-    Domain, ExponentChoice, Fit, LatencyFit, LawOptions, OrderSelection, Parameter, ParameterKind, Samples,
-    Termination, fitted, select_order,
+    Domain, ExponentChoice, Fit, LatencyFit, LawOptions, OrderSelection, Samples, Termination, fitted, select_order,
 };
 use crate::forecast::{CompareOptions, Comparison, KnownFit, change, compare_laws_watched};
 use crate::laws::Loading;
@@ -365,50 +365,19 @@ fn judge(hold: &mut HoldAnalysis) {
             exponent: best.exponent().value,
         });
     }
-    match recommended(hold).cloned() {
+    match hold.comparison.as_ref().and_then(recommended).cloned() {
         Some(fit) => judge_fit(hold, &fit),
         None if !bounded => judge_fit(hold, &best),
         None => {}
     }
 }
 
-/// The fit of the recommended law.
-fn recommended(hold: &HoldAnalysis) -> Option<&Fit> {
-    let comparison = hold.comparison.as_ref()?;
-    let law = comparison.verdict.as_ref()?.law;
-    comparison.rows.iter().find(|row| row.law == law)?.fit.as_ref().ok()
-}
-
-/// Share of a relaxation beyond the end of a hold from which on its equilibrium is extrapolated.
-const MUCH: f64 = 0.2;
-/// The same of a series of exponentials: less is e^−4 of a last term that has all of the relaxation, which the hold shows as good as whole.
-const BY_LAST_TERM: f64 = 0.02;
-
 /// Adds what the fit of the law to use gives cause to say.
 fn judge_fit(hold: &mut HoldAnalysis, fit: &Fit) {
     let (last, first_step) = (hold.times[hold.fitted - 1], hold.times[1]);
     let [start, next, end] = [0.0, first_step, last].map(|time| fit.predict(time));
-    if let Some(Parameter { estimate, .. }) = fit.parameter(ParameterKind::Equilibrium) {
-        let beyond = (end - estimate.value) / (start - estimate.value);
-        // A series knows nothing slower than its last term: what its interval leaves out of the way to its equilibrium, it knows by that alone.
-        let unseen = |(low, high): (f64, f64)| (end - estimate.value).abs() > 0.5 * (high - low);
-        let by_last_term = fit.law.is_series() && beyond > BY_LAST_TERM && estimate.interval.is_some_and(unseen);
-        if beyond > MUCH || by_last_term {
-            hold.findings.push(Finding::EquilibriumExtrapolated { law: fit.law, beyond });
-        }
-        // A force below zero that goes on to one above it belongs to a body that is held on to.
-        if let Some((low, high)) = estimate.interval
-            && high < 0.0
-            && (low / end).is_finite()
-            && end > 0.0
-        {
-            hold.findings.push(Finding::EquilibriumBeyondZero {
-                law: fit.law,
-                share: estimate.value / end,
-                interval: (low / end, high / end),
-            });
-        }
-    }
+    hold.findings.extend(extrapolated(fit, last));
+    hold.findings.extend(beyond_zero(fit, last));
     let share = (start - next) / (start - end);
     if share > 0.3 {
         hold.findings.push(Finding::SampledTooSlowly { share });

@@ -6,6 +6,7 @@
 //! | `imposed.rs` | what was imposed before it |
 //! | `exponents.rs` | fits in both domains with the listed exponents, the extension of the list, the free one |
 //! | `creep.rs` | holds of constant force |
+//! | `end_value.rs` | the value that a hold tends to: how far beyond its end, and beyond what a body can do |
 //! | `drive.rs` | what is held and goes on in the hold |
 //! | `jump.rs` | steps of the force within a hold |
 //! | `rate_bias.rs` | how far noise takes the rate domain from the truth |
@@ -14,6 +15,7 @@
 mod compared;
 mod creep;
 mod drive;
+mod end_value;
 mod exponents;
 mod hold;
 mod imposed;

@@ -3,8 +3,8 @@
 use crate::contact::Specimen;
 use crate::record::{Record, rounding_step};
 use crate::segment::{ContactPoint, HoldMode, Segmentation};
-use crate::simulate::{MeasuredMotion, MotionError, Separation};
-use crate::statistics::{dot, median, noise_in_time};
+use crate::simulate::{MeasuredMotion, MotionError, Resolution, Separation};
+use crate::statistics::{dot, median, noise_in_time, range};
 
 /// The measured motion with its noise taken out, for a record that is zero at first touch, `contact`; `None` without a displacement.
 ///
@@ -33,10 +33,31 @@ pub(crate) fn measured_motion(
         let touched = contact.sample.unwrap_or(0).min(displacement.len());
         displacement[..touched].iter_mut().for_each(|place| *place = place.max(0.0));
     }
-    let found = MeasuredMotion::of_rounded(record.time().to_vec(), displacement, tolerance, step);
+    let straight = Resolution {
+        step,
+        ..Resolution::straight(tolerance)
+    };
+    let is_force_held = segmentation.holds().any(|hold| hold.mode == Some(HoldMode::ForceHeld));
+    let resolution = if is_force_held { creeping(record, straight) } else { straight };
+    let found = MeasuredMotion::resolved(record.time().to_vec(), displacement, resolution);
     // A bonded ball has no area before first touch; noise there is no pull.
     let is_bonded_ball = is_bonded && specimen.contact_area(0.0) == 0.0;
     Some(if is_bonded_ball { found.map(|found| found.at_least(0.0)) } else { found })
+}
+
+/// The resolution for a jaw that a controller of the force drives along curves: a course of it counts from a small part of the noise of the
+/// force on, which stays where the jaw creeps, and not from a share of its way.
+fn creeping(record: &Record, straight: Resolution) -> Resolution {
+    /// Share of the noise of the force that a course may change it by.
+    const UNSEEN: f64 = 0.05;
+    /// Share of the step within which rounded places of a jaw that creeps stay.
+    const ROUNDED: f64 = 0.5;
+    let compliance = record.displacement().map_or(0.0, range) / range(record.force());
+    let unseen = UNSEEN * noise_in_time(record.time(), record.force()) * compliance;
+    Resolution {
+        course: straight.course.min(unseen.max(ROUNDED * straight.step)),
+        ..straight
+    }
 }
 
 /// Standard deviation of the noise in a motion that is smooth over five samples, by its fourth differences: less of a tremor remains in them than in

@@ -10,16 +10,13 @@ const ROUNDS: usize = 32;
 /// above it in one of 1,000.
 const BEYOND: f64 = 18.0;
 
-/// Share of the tolerance within which a course is not followed: noise that remembers, and the steps of an encoder, stay below.
-const WITHIN: f64 = 0.3;
-
 /// Share of the tolerance that counts as noise where there is none.
 const LEAST: f64 = 1e-3;
 
-/// Adds knots, at samples, until what straight stretches leave of the samples has no course.
+/// Adds knots, at samples, until what straight stretches leave of the samples has no course that is higher than `within` (m).
 ///
 /// Lines that keep within a tolerance of a curve leave residuals with a course, and the contact is driven by a motion that is off by it.
-pub(super) fn add_bends(samples: &Motion, knots: &mut Vec<f64>, tolerance: f64) {
+pub(super) fn add_bends(samples: &Motion, knots: &mut Vec<f64>, tolerance: f64, within: f64) {
     let times = samples.times();
     let mut more = knots.clone();
     for _ in 0..ROUNDS {
@@ -35,7 +32,7 @@ pub(super) fn add_bends(samples: &Motion, knots: &mut Vec<f64>, tolerance: f64) 
             let from = times.partition_point(|time| *time < pair[0]);
             let end = times.partition_point(|time| *time <= pair[1]);
             let bend = Bend::of(&times[from..end], &left[from..end])?;
-            (bend.drop > BEYOND * variance && bend.height > WITHIN * tolerance).then_some(bend.time)
+            (bend.drop > BEYOND * variance && bend.height > within).then_some(bend.time)
         };
         more.extend(knots.windows(2).filter_map(bend));
         if more.len() == knots.len() {

@@ -52,6 +52,30 @@ const TOGETHER: usize = 6;
 /// How often corners are moved to where lines meet.
 const ROUNDS: usize = 3;
 
+/// What is known of measured displacements beside their values, m.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Resolution {
+    /// What stays within it of a straight line is taken as straight.
+    pub(crate) tolerance: f64,
+    /// Step that they were rounded to; zero if none.
+    pub(crate) step: f64,
+    /// Height up to which a course about the straight stretches is not followed.
+    pub(crate) course: f64,
+}
+
+impl Resolution {
+    /// That of displacements that were not rounded, of a jaw that is driven along straight lines.
+    pub(crate) fn straight(tolerance: f64) -> Self {
+        /// Share of the tolerance within which noise that remembers, and the steps of an encoder, stay.
+        const WITHIN: f64 = 0.3;
+        Self {
+            tolerance,
+            step: 0.0,
+            course: WITHIN * tolerance,
+        }
+    }
+}
+
 impl MeasuredMotion {
     /// The motion that samples of displacement (m) at rising times (s) show. What stays within `tolerance` (m) of a straight line is taken as
     /// straight.
@@ -59,15 +83,18 @@ impl MeasuredMotion {
     /// # Errors
     /// [`MotionError`] as of [`Motion::new`].
     pub fn of(times: Vec<f64>, displacements: Vec<f64>, tolerance: f64) -> Result<Self, MotionError> {
-        Self::of_rounded(times, displacements, tolerance, 0.0)
+        Self::resolved(times, displacements, Resolution::straight(tolerance))
     }
 
-    /// The same of displacements that were rounded to a step (m).
-    pub(crate) fn of_rounded(
+    /// The same of displacements with this resolution.
+    pub(crate) fn resolved(
         times: Vec<f64>,
         displacements: Vec<f64>,
-        tolerance: f64,
-        step: f64,
+        Resolution {
+            tolerance,
+            step,
+            course,
+        }: Resolution,
     ) -> Result<Self, MotionError> {
         let samples = Motion::new(times, displacements)?;
         let rough = samples.simplified(tolerance);
@@ -79,7 +106,7 @@ impl MeasuredMotion {
             sums.meet(&mut knots);
         }
         sums.with_short_ramps(&mut knots, tolerance);
-        add_bends(&samples, &mut knots, tolerance);
+        add_bends(&samples, &mut knots, tolerance, course);
         let Some((values, normal)) = hats(&samples, &knots) else {
             return Ok(Self {
                 motion: rough,

@@ -18,4 +18,5 @@ mod motion;
 pub use any::{Drive, ProgramStep};
 pub use history::ForceHistory;
 pub use measured::MeasuredMotion;
+pub(crate) use measured::Resolution;
 pub use motion::{Motion, MotionError, ProtocolStep, protocol};
