@@ -28,9 +28,9 @@ pub(crate) fn day(cell: &[u8]) -> Option<f64> {
     }
 }
 
-/// Whether a cell is a time of day, or of a stopwatch, without a date.
+/// Whether a cell is a time of day without a date.
 pub(crate) fn is_time_of_day(cell: &[u8]) -> bool {
-    matches!(time_of_day(cell), Some((.., []))) || elapsed(cell).is_some()
+    matches!(time_of_day(cell), Some((.., [])))
 }
 
 /// Whether a cell is a clock of two fields, `10:15`.
@@ -41,7 +41,7 @@ pub(crate) fn has_two_fields(cell: &[u8]) -> bool {
 /// Hours, minutes and seconds of a stopwatch, which goes on beyond a day: `37:21:04.5`.
 fn elapsed(cell: &[u8]) -> Option<f64> {
     let hours = |count| digits(cell, count).filter(|(_, rest)| rest.starts_with(b":"));
-    let (hours, rest) = [2, 3, 4].into_iter().find_map(hours)?;
+    let (hours, rest) = [2, 3].into_iter().find_map(hours)?;
     let (minutes, rest) = digits(behind(rest, b":")?, 2)?;
     let (seconds, rest) = digits(behind(rest, b":")?, 2)?;
     let (fraction, rest) = match behind(rest, b".,") {
@@ -212,7 +212,8 @@ mod tests {
             "1:09:60:00",
             "24:60:00",
             "24:00:00 PM",
-            "10000:00:00",
+            "1000:00:00",
+            "2024:08:24",
             "24/08/2024 21:09:40",
             "24.13.2024 21:09:40",
             "2023-02-29T00:00:00",

@@ -83,9 +83,9 @@ pub(crate) fn is_named(column: &ColumnInfo) -> bool {
 
 /// Whether a cell that is read as a time begins with a date.
 pub(crate) fn is_date(cell: &str) -> bool {
-    // Of a time of day only the fraction of its seconds has a point or a comma.
-    let before = cell.split(':').next().unwrap_or("");
-    before.len() > 2
+    // Hours, of a stopwatch up to three digits of them, are all that stands before the first colon of a time without a date.
+    let before = cell.split(':').next().unwrap_or("").trim();
+    before.bytes().any(|byte| !byte.is_ascii_digit())
 }
 
 /// Whether a cell that is read as a time of day is one of one o'clock or later.

@@ -9,11 +9,12 @@ use crate::budget::InputQuantity;
 use crate::contact::Specimen;
 use crate::fit::{
     Domain, ErrorParts, Estimate, Fit, IntervalMethod, LatencyFit, LawOptions, NoiseChoice, Parameter, ParameterKind,
-    ParameterRole, ParameterUnit, Samples, fit_law,
+    ParameterRole, ParameterUnit, Samples, fit_law_watched, fitted,
 };
 use crate::instrument::{Deviation, InstrumentQuantity};
 use crate::laws::Law;
 use crate::segment::ContactPoint;
+use crate::watch::{Cancelled, Watch};
 
 /// The quantities off their estimates, and what they have an effect on.
 pub(in crate::analysis) struct Causes<'a> {
@@ -47,12 +48,12 @@ struct Changed {
     rate: f64,
 }
 
-/// A signal one standard uncertainty of a quantity below and above, with the fit to it.
-type Sides<'a> = [(Changed, Cow<'a, Fit>); 2];
+/// A signal one standard uncertainty of a quantity below and above, with the fit to it, if there is one.
+type Sides<'a> = [(Changed, Option<Cow<'a, Fit>>); 2];
 
 impl<'a> Causes<'a> {
-    /// The stated quantities, the errors of first touch and of the zero of the force where the record shows them, and that of an estimated modulus;
-    /// `None` where nothing is stated and the modulus is given.
+    /// The stated quantities, the errors of first touch and of the zero of the force where the record shows them, that of a baseline that was
+    /// subtracted, and that of an estimated modulus; `None` where nothing is stated or subtracted and the modulus is given.
     pub(in crate::analysis) fn new(
         options: &'a AnalysisOptions,
         contact: &ContactPoint,
@@ -65,7 +66,7 @@ impl<'a> Causes<'a> {
         let mut inputs: Vec<InputQuantity> = stated.into_iter().map(|input| input.uncertainty).collect();
         let error = implied.and_then(|implied| implied.standard_error);
         let error = error.and_then(|error| InputQuantity::standard("modulus, as estimated", "Pa", 0.0, error).ok());
-        if options.instrument.is_empty() && contact.force_drift.is_none() && error.is_none() {
+        if options.instrument.is_empty() && options.corrections.baseline.is_none() && error.is_none() {
             return None;
         }
         if let Some(modulus) = error {
@@ -83,7 +84,7 @@ impl<'a> Causes<'a> {
     }
 
     /// Adds the effects to all parameters of all laws of a hold.
-    pub(in crate::analysis) fn add_to(&self, hold: &mut HoldAnalysis) {
+    pub(in crate::analysis) fn add_to(&self, hold: &mut HoldAnalysis, watch: &mut dyn Watch) -> Result<(), Cancelled> {
         let changed: Vec<Option<[Changed; 2]>> = self
             .quantities
             .iter()
@@ -91,14 +92,12 @@ impl<'a> Causes<'a> {
             .map(|(cause, input)| sides(input, |by| self.changed(hold, *cause, by)))
             .collect();
         let samples = Samples::new(&hold.times[..hold.fitted], &hold.values[..hold.fitted]);
-        let latency = |fit: &mut LatencyFit| {
+        for fit in hold.fits.iter_mut().chain(hold.rate_fits.iter_mut().flatten()) {
             let options = self.options.fit.of_latency(fit.choice());
-            if let Some(with) = LatencyFit::new(self.with_effects(fit, (&samples, &options), &changed)) {
+            if let Some(with) = LatencyFit::new(self.with_effects(fit, (&samples, &options), &changed, watch)?) {
                 *fit = with;
             }
-        };
-        hold.fits.iter_mut().for_each(latency);
-        hold.rate_fits.iter_mut().flatten().for_each(latency);
+        }
         let rows = hold.comparison.iter_mut().flat_map(|comparison| &mut comparison.rows);
         for fit in rows.filter_map(|row| row.fit.as_mut().ok()) {
             let compared = self.options.compare.as_ref().map(|compare| &compare.fit);
@@ -106,8 +105,9 @@ impl<'a> Causes<'a> {
                 loading: fit.loading.clone(),
                 ..compared.cloned().unwrap_or_default()
             };
-            *fit = self.with_effects(fit, (&samples, &options), &changed);
+            *fit = self.with_effects(fit, (&samples, &options), &changed, watch)?;
         }
+        Ok(())
     }
 
     /// The uncertainty of the modulus that the equilibrium forces imply.
@@ -193,29 +193,37 @@ impl<'a> Causes<'a> {
 
     /// A fit whose parameters have these effects besides the scatter of the samples.
     ///
-    /// Fits to rates have no samples that a drift would change.
+    /// A drift is left out of fits to rates.
     fn with_effects(
         &self,
         fit: &Fit,
         (samples, options): (&Samples<'_>, &LawOptions),
         changed: &[Option<[Changed; 2]>],
-    ) -> Fit {
+        watch: &mut dyn Watch,
+    ) -> Result<Fit, Cancelled> {
         let mut with = fit.clone();
         let freedom = fit.uncertainty.as_ref().map_or(f64::INFINITY, |uncertainty| uncertainty.freedom);
-        let anew = |changed: Changed| match fit.domain {
-            Domain::Time if changed.drift != 0.0 => drifting(fit.law, samples, options, changed.drift).map(Cow::Owned),
-            _ => Some(Cow::Borrowed(fit)),
+        let mut anew = |changed: Changed| match fit.domain {
+            Domain::Time if changed.drift != 0.0 => {
+                Ok(drifting(fit.law, samples, options, changed.drift, watch)?.map(Cow::Owned))
+            }
+            _ => Ok(Some(Cow::Borrowed(fit))),
         };
-        let sides: Vec<Option<Sides<'_>>> = changed
-            .iter()
-            .map(|sides| {
-                let [low, high] = (*sides)?;
-                Some([(low, anew(low)?), (high, anew(high)?)])
-            })
-            .collect();
+        let mut sides: Vec<Option<Sides<'_>>> = Vec::with_capacity(changed.len());
+        for changed in changed {
+            sides.push(match changed {
+                Some(both) => Some([(both[0], anew(both[0])?), (both[1], anew(both[1])?)]),
+                None => None,
+            });
+        }
         let effect = |parameter: &Parameter, sides: &Option<Sides<'_>>| {
-            let [low, high] = sides.as_ref()?.each_ref().map(|(changed, fit)| changed.parameter(fit, parameter));
-            Some(0.5 * (high? - low?)).filter(|effect| effect.is_finite())
+            let at = |(changed, fit): &(Changed, Option<Cow<'_, Fit>>)| changed.parameter(fit.as_deref()?, parameter);
+            // Where samples that drift one way have no fit, those that drift the other way stand for both.
+            let effect = match sides.as_ref()?.each_ref().map(at) {
+                [Some(low), Some(high)] => 0.5 * (high - low),
+                [low, high] => low.or(high)? - parameter.estimate.value,
+            };
+            Some(effect).filter(|effect| effect.is_finite())
         };
         for parameter in with.parameters.iter_mut().filter(|parameter| parameter.role != ParameterRole::Given) {
             let parts = ErrorParts {
@@ -225,12 +233,18 @@ impl<'a> Causes<'a> {
             parameter.estimate = self.beside(parameter.estimate, freedom, &parts);
             parameter.parts = Some(parts);
         }
-        with
+        Ok(with)
     }
 }
 
 /// A law fitted to samples that drift by so much a second; `None` where it cannot be fitted.
-fn drifting(law: Law, samples: &Samples<'_>, options: &LawOptions, drift: f64) -> Option<Fit> {
+fn drifting(
+    law: Law,
+    samples: &Samples<'_>,
+    options: &LawOptions,
+    drift: f64,
+    watch: &mut dyn Watch,
+) -> Result<Option<Fit>, Cancelled> {
     let values: Vec<f64> = samples.values.iter().zip(samples.times).map(|(value, time)| value + drift * time).collect();
     // Its intervals are not used.
     let options = LawOptions {
@@ -238,7 +252,7 @@ fn drifting(law: Law, samples: &Samples<'_>, options: &LawOptions, drift: f64) -
         noise: NoiseChoice::White,
         ..options.clone()
     };
-    fit_law(&Samples::new(samples.times, &values), law, &options).ok()
+    fitted(fit_law_watched(&Samples::new(samples.times, &values), law, &options, watch))
 }
 
 /// Samples of a hold that show how its signal changes.

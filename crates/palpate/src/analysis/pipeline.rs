@@ -200,7 +200,7 @@ fn examined(
     }
     // What holds have in common is no difference between them: all comparisons come first.
     if let Some(causes) = &causes {
-        holds.iter_mut().for_each(|hold| causes.add_to(hold));
+        holds.iter_mut().try_for_each(|hold| causes.add_to(hold, watch))?;
     }
     let analysis = Analysis {
         inputs: causes.map_or_else(Vec::new, |causes| causes.inputs),

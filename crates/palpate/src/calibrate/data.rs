@@ -166,11 +166,11 @@ impl CalibrationData {
         findings.extend(delay.zip(fades_s).map(|(delay, fades)| Finding::of_delay(&delay, delay.stop_s + fades)));
         findings.extend(between_samples(&record, segments));
         let (times, forces) = (record.time(), record.force());
-        let spans = |mode: HoldMode| -> Vec<Span> {
-            let holds = segmentation.holds().filter(|hold| hold.mode == Some(mode));
+        let spans = |is_pressed: bool| -> Vec<Span> {
+            let holds = segmentation.holds().filter(|hold| (hold.mode == Some(HoldMode::ForceHeld)) == is_pressed);
             holds.map(|hold| (times[hold.start], times[hold.end - 1])).collect()
         };
-        let (force, still) = (spans(HoldMode::ForceHeld), spans(HoldMode::DisplacementHeld));
+        let (force, still) = (spans(true), spans(false));
         let motion = measured.motion.clone();
         // Behind a filter the force of a ramp is that of an earlier moment.
         let ramps = segments.iter().filter(|segment| segment.is_ramp());

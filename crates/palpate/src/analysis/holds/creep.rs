@@ -138,7 +138,7 @@ fn force_held(
         found => found,
     };
     let mut rests = Vec::new();
-    for hold in found.iter().flat_map(Segmentation::holds) {
+    for hold in found.iter().flat_map(Segmentation::holds).filter(|hold| creeps(record, hold.start, hold.end)) {
         if stands_in(record, (hold.start, hold.end), segment, watch)? {
             rests.push(hold.start);
         }

@@ -3,7 +3,7 @@
 use std::ops::Range;
 
 use crate::fit::{Assessed, Scale};
-use crate::record::{Baseline, Record};
+use crate::record::{Baseline, Record, rounding_step};
 use crate::segment::{ContactPoint, ForceDrift};
 use crate::statistics::{mean, median};
 
@@ -35,7 +35,9 @@ impl BaselineError {
             free.chunks(together.max(1)).map(of_block).collect()
         };
         let (times, mut left) = (blocks(record.time()), blocks(record.force()));
-        let far = FAR * median(&mut left.iter().map(|force| force.abs()).collect::<Vec<_>>());
+        // Most samples of a coarse load cell may show the same force.
+        let step = rounding_step(record.force()).unwrap_or(0.0);
+        let far = (FAR * median(&mut left.iter().map(|force| force.abs()).collect::<Vec<_>>())).max(step);
         left.iter_mut().for_each(|force| *force = force.clamp(-far, far));
         let about = mean(&times);
         let mut columns = vec![vec![1.0; times.len()]];
@@ -53,16 +55,23 @@ impl BaselineError {
             }),
         };
         Some(Self {
-            level: error(&level)?,
+            level: error(&level)?.hypot(step / 12f64.sqrt()),
             drift,
         })
     }
 
-    /// First touch with these errors: of the slope, and of the level where the zero of the force was not found anew.
-    pub(super) fn added_to(self, contact: ContactPoint) -> ContactPoint {
+    /// First touch of the record with these errors: of the slope, and of the level where the zero of the force was not found anew, before first
+    /// touch, where the slope is no error then.
+    pub(super) fn added_to(self, contact: ContactPoint, record: &Record) -> ContactPoint {
+        let before = &record.time()[..contact.sample.unwrap_or(0).min(record.len())];
+        let is_anew = contact.force_error.is_some() && !before.is_empty();
+        let drift = self.drift.map(|drift| ForceDrift {
+            about: if is_anew { mean(before) } else { drift.about },
+            ..drift
+        });
         ContactPoint {
             force_error: contact.force_error.or(Some(self.level)),
-            force_drift: self.drift,
+            force_drift: drift,
             ..contact
         }
     }

@@ -203,7 +203,7 @@ impl Corrected {
         let body = options.geometry.as_ref().map(|geometry| geometry.specimen(1.0)).transpose()?;
         let contact = find_contact_of(&self.record, &segmentation, body.as_ref(), touch);
         let contact = match self.baseline {
-            Some(baseline) => baseline.added_to(contact),
+            Some(baseline) => baseline.added_to(contact, &self.record),
             None => contact,
         };
         let record = self.record.tared(contact.tare);

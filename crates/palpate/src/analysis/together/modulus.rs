@@ -11,9 +11,9 @@ use crate::fit::{
 use crate::forecast::criteria;
 use crate::instrument::Deviation;
 use crate::laws::Law;
-use crate::record::Record;
+use crate::record::{Baseline, Record};
 use crate::segment::{After, Phase, Segment, Segmentation};
-use crate::statistics::{median, noise};
+use crate::statistics::{median, noise, range as span_of};
 use crate::watch::{Cancelled, Watch};
 
 /// Where the modulus comes from.
@@ -61,10 +61,12 @@ struct ByLaw {
 struct RelaxedForce {
     /// Displacement of the jaw, m.
     displacement: f64,
-    /// When the hold ends, s.
+    /// When the fit begins, s.
     time: f64,
     /// F_e, N.
     force: f64,
+    /// What a slope of the force from then on adds to it, N per N/s.
+    per_slope: f64,
     /// Its standard error, N.
     error: f64,
 }
@@ -72,12 +74,16 @@ struct RelaxedForce {
 /// A hold in contact, and the fits to its force.
 struct RelaxedHold {
     displacement: f64,
-    /// When it ends, s.
+    /// When the fits begin, s.
     time: f64,
+    /// How long it lasts from then on, s.
+    duration: f64,
     last: f64,
     after_loading: bool,
     /// A law each; `None` where it could not be fitted.
     fits: Vec<Option<Fit>>,
+    /// What a slope of the force adds to the equilibrium force of each, N per N/s; the last of the hold where none was looked for.
+    per_slope: Vec<f64>,
 }
 
 /// Laws besides the latency law: those that end at an equilibrium, and two that have none, beside which the others may be unlikely.
@@ -158,6 +164,7 @@ fn implied_by(holds: &[RelaxedHold], laws: usize, body: &Specimen) -> Option<Imp
             displacement: hold.displacement,
             time: hold.time,
             force: hold.last,
+            per_slope: hold.duration,
             error: 1.0,
         };
         let forces: Vec<RelaxedForce> = holds.iter().filter(|hold| hold.after_loading).map(last).collect();
@@ -195,6 +202,7 @@ impl RelaxedHold {
             displacement: self.displacement,
             time: self.time,
             force: equilibrium.value,
+            per_slope: self.per_slope[law],
             error: equilibrium.standard_error?.max(floor),
         })
     }
@@ -246,7 +254,7 @@ impl ImpliedModulus {
         let body = geometry.with_shape(deviation.shape(&geometry.shape)).specimen(1.0).ok()?;
         let changed = |found: &RelaxedForce| RelaxedForce {
             displacement: deviation.displacement(found.displacement, found.force),
-            force: deviation.force_at(found.force, found.time),
+            force: deviation.force_at(found.force, found.time) + deviation.drift() * found.per_slope,
             ..*found
         };
         let all: f64 = self.laws.iter().map(|law| law.weight).sum();
@@ -306,7 +314,7 @@ fn relaxed_hold(
     let Some(last) = last else { return Ok(None) };
     let until = options.fitted(&times);
     let samples = Samples::new(&times[..until], &force[..until]);
-    let mut fit = |law: &Law| {
+    let mut fit = |law: &Law, samples: &Samples<'_>| {
         let exponent = match law {
             Law::Latency { exponent } => *exponent,
             _ => ExponentChoice::Fixed(1.0),
@@ -316,13 +324,33 @@ fn relaxed_hold(
             intervals: IntervalMethod::Curvature,
             ..options.fit.of_latency(exponent)
         };
-        fitted(fit_law_watched(&samples, *law, &fitting, watch))
+        fitted(fit_law_watched(samples, *law, &fitting, watch))
     };
+    let fits = laws.iter().map(|law| fit(law, &samples)).collect::<Result<Vec<Option<Fit>>, Cancelled>>()?;
+    let duration = times[times.len() - 1];
+    let mut per_slope = vec![duration; laws.len()];
+    if options.corrections.baseline == Some(Baseline::Sloped) && duration > 0.0 {
+        /// What a slope adds by the end of the hold, as a share of the change of the force.
+        const SMALL: f64 = 1e-3;
+        let slope = SMALL * span_of(&force) / duration;
+        let sloped: Vec<f64> = force.iter().zip(&times).map(|(force, time)| force + slope * time).collect();
+        for ((law, found), per_slope) in laws.iter().zip(&fits).zip(&mut per_slope) {
+            let Some(level) = found.as_ref().and_then(|found| found.value("equilibrium")) else {
+                continue;
+            };
+            let with = fit(law, &Samples::new(&times[..until], &sloped[..until]))?;
+            if let Some(moved) = with.and_then(|with| with.value("equilibrium")) {
+                *per_slope = (moved - level) / slope;
+            }
+        }
+    }
     Ok(Some(RelaxedHold {
         displacement,
-        time: record.time()[hold.end - 1],
+        time: start,
+        duration,
         last,
         after_loading,
-        fits: laws.iter().map(&mut fit).collect::<Result<_, Cancelled>>()?,
+        fits,
+        per_slope,
     }))
 }
