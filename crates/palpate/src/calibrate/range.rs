@@ -369,7 +369,7 @@ mod tests {
     /// were "beyond the test".
     #[test]
     fn a_hand_that_trembles_holds() {
-        let tremor = |t: f64| 1e-4 * (50.0 * t).sin() - 1e-4 * (t - 2.0).max(0.0) / 30.0;
+        let tremor = |t: f64| 1e-4 * (50.0 * t).sin() - 5e-5 * (t - 2.0).max(0.0) / 30.0;
         let times: Vec<f64> = (0..=1600).map(|i| 0.02 * f64::from(i)).collect();
         let place = |t: &f64| 4e-3 * (t / 2.0).min(1.0) + tremor(*t);
         let motion = Motion::new(times.clone(), times.iter().map(place).collect()).unwrap();
