@@ -2,17 +2,17 @@
 
 use std::borrow::Cow;
 
-use super::holds::{HoldAnalysis, Signal};
+use super::drifting::drifting;
+use super::holds::{HoldAnalysis, Signal, fit_options};
 use super::options::{AnalysisOptions, Geometry};
 use super::together::{EstimatedModulus, ImpliedModulus};
 use crate::budget::InputQuantity;
 use crate::contact::Specimen;
 use crate::fit::{
-    Domain, ErrorParts, Estimate, Fit, IntervalMethod, LatencyFit, LawOptions, NoiseChoice, Parameter, ParameterKind,
-    ParameterRole, ParameterUnit, Samples, fit_law_watched, fitted,
+    Domain, ErrorParts, Estimate, Fit, LatencyFit, LawOptions, Parameter, ParameterKind, ParameterRole, ParameterUnit,
+    Samples,
 };
 use crate::instrument::{Deviation, InstrumentQuantity};
-use crate::laws::Law;
 use crate::segment::ContactPoint;
 use crate::watch::{Cancelled, Watch};
 
@@ -98,13 +98,11 @@ impl<'a> Causes<'a> {
                 *fit = with;
             }
         }
-        let rows = hold.comparison.iter_mut().flat_map(|comparison| &mut comparison.rows);
-        for fit in rows.filter_map(|row| row.fit.as_mut().ok()) {
-            let compared = self.options.compare.as_ref().map(|compare| &compare.fit);
-            let options = LawOptions {
-                loading: fit.loading.clone(),
-                ..compared.cloned().unwrap_or_default()
-            };
+        let (Some(comparison), Some(compare)) = (&mut hold.comparison, &self.options.compare) else {
+            return Ok(());
+        };
+        for fit in comparison.rows.iter_mut().filter_map(|row| row.fit.as_mut().ok()) {
+            let options = fit_options(compare, fit.loading.as_ref());
             *fit = self.with_effects(fit, (&samples, &options), &changed, watch)?;
         }
         Ok(())
@@ -235,24 +233,6 @@ impl<'a> Causes<'a> {
         }
         Ok(with)
     }
-}
-
-/// A law fitted to samples that drift by so much a second; `None` where it cannot be fitted.
-fn drifting(
-    law: Law,
-    samples: &Samples<'_>,
-    options: &LawOptions,
-    drift: f64,
-    watch: &mut dyn Watch,
-) -> Result<Option<Fit>, Cancelled> {
-    let values: Vec<f64> = samples.values.iter().zip(samples.times).map(|(value, time)| value + drift * time).collect();
-    // Its intervals are not used.
-    let options = LawOptions {
-        intervals: IntervalMethod::Curvature,
-        noise: NoiseChoice::White,
-        ..options.clone()
-    };
-    fitted(fit_law_watched(&Samples::new(samples.times, &values), law, &options, watch))
 }
 
 /// Samples of a hold that show how its signal changes.

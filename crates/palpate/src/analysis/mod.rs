@@ -12,11 +12,13 @@
 //! | `prepare/` | the record corrected, cut and zero at first touch, with findings on its columns |
 //! | `holds/` | one hold: signal, fits, findings |
 //! | `together/` | several holds: joint laws, trends, modulus, overlay |
+//! | `drifting.rs` | a law fitted to samples that drift |
 //! | `effects.rs` | what the uncertainty of the instrument and of the body adds to the parameters |
 //! | `pipeline.rs` | the order of the steps |
 //! | `stated.rs` | variation of the constraint of a hold and R(t) at stated times |
 
 mod conditions;
+mod drifting;
 mod effects;
 mod error;
 mod finding;

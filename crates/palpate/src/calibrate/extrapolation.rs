@@ -147,7 +147,7 @@ pub(super) struct Beyond {
 }
 
 impl Beyond {
-    /// Of the course of a drive with the best parameters; in a motion that was measured a force was held in these spans.
+    /// Of the course of a drive with the best parameters; in a motion that was measured this was held.
     pub(super) fn of(
         material: &Material,
         (drive, held): (Drive<'_>, &HeldSpans),

@@ -141,8 +141,8 @@ impl Material {
         Ok(self.predicted(drive, &Sampling::Times(times.to_vec()), confidence, watch)?)
     }
 
-    /// Without generics, so that it is compiled here, once, and not wherever it is called. A drive comes with the spans in which a measured
-    /// motion is that of a force that was held.
+    /// Without generics, so that it is compiled here, once, and not wherever it is called. A drive comes with what was held in a
+    /// motion that was measured.
     fn predicted(
         &self,
         (drive, held): (Drive<'_>, &HeldSpans),

@@ -137,15 +137,12 @@ fn force_held(
         }
         found => found,
     };
-    let mut rests = Vec::new();
-    for hold in found.iter().flat_map(Segmentation::holds).filter(|hold| creeps(record, hold.start, hold.end)) {
-        if stands_in(record, (hold.start, hold.end), segment, watch)? {
-            rests.push(hold.start);
-        }
-    }
-    let found = found
-        .map_err(of_force)
-        .and_then(|found| creeping(found, |hold| creeps(record, hold.start, hold.end) && !rests.contains(&hold.start)));
+    let creeping_holds = found.iter().flat_map(Segmentation::holds).map(|hold| (hold.start, hold.end));
+    let creeping_holds = creeping_holds.filter(|(start, end)| creeps(record, *start, *end)).collect();
+    let rests = stands_in(record, creeping_holds, segment, watch)?;
+    let found = found.map_err(of_force).and_then(|found| {
+        creeping(found, |hold| creeps(record, hold.start, hold.end) && !rests.contains(&(hold.start, hold.end)))
+    });
     found.or_else(|error| observed.and_then(Result::ok).ok_or(error))
 }
 

@@ -321,7 +321,7 @@ pub(in crate::analysis) fn forecast_holds(
 }
 
 /// Options of the fits on a hold after a loading.
-fn fit_options(compare: &CompareOptions, loading: Option<&Loading>) -> LawOptions {
+pub(in crate::analysis) fn fit_options(compare: &CompareOptions, loading: Option<&Loading>) -> LawOptions {
     LawOptions {
         loading: loading.or(compare.fit.loading.as_ref()).cloned(),
         ..compare.fit.clone()

@@ -25,6 +25,6 @@ mod rate_bias;
 pub use creep::{CreepError, CreepHold, creep_holds};
 pub(super) use exponents::fit_exponents;
 pub use hold::{HoldAnalysis, HoldoutError, Signal};
-pub(super) use hold::{complete_hold, forecast_holds, prepare_hold};
+pub(super) use hold::{complete_hold, fit_options, forecast_holds, prepare_hold};
 pub(super) use imposed::imposed;
 pub use rate_bias::RateBias;

@@ -44,18 +44,18 @@ impl BaselineError {
         if baseline == Baseline::Sloped {
             columns.push(times.iter().map(|time| time - about).collect());
         }
-        let (level, slope) = (unit(columns.len(), 0), unit(columns.len(), 1));
+        let size = columns.len();
         let line = Assessed::of_columns(columns, (&left.clone(), left), 0.95).ok()?;
         let error = |of: &[f64]| Some(MEDIAN * line.estimate(0.0, of, Scale::Linear).standard_error?);
         let drift = match baseline {
             Baseline::Constant => None,
             Baseline::Sloped => Some(ForceDrift {
-                standard_error: error(&slope)?,
+                standard_error: error(&[0.0, 1.0])?,
                 about,
             }),
         };
         Some(Self {
-            level: error(&level)?.hypot(step / 12f64.sqrt()),
+            level: error(&[1.0, 0.0][..size])?.hypot(step / 12f64.sqrt()),
             drift,
         })
     }
@@ -75,9 +75,4 @@ impl BaselineError {
             ..contact
         }
     }
-}
-
-/// Zeros but for a one.
-fn unit(size: usize, one: usize) -> Vec<f64> {
-    (0..size).map(|index| if index == one { 1.0 } else { 0.0 }).collect()
 }

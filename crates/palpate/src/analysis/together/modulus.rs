@@ -2,6 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
+use crate::analysis::drifting::drifting;
 use crate::analysis::options::{AnalysisOptions, Geometry};
 use crate::contact::Specimen;
 use crate::fit::{
@@ -13,7 +14,7 @@ use crate::instrument::Deviation;
 use crate::laws::Law;
 use crate::record::{Baseline, Record};
 use crate::segment::{After, Phase, Segment, Segmentation};
-use crate::statistics::{median, noise, range as span_of};
+use crate::statistics::{median, noise, range};
 use crate::watch::{Cancelled, Watch};
 
 /// Where the modulus comes from.
@@ -298,15 +299,15 @@ fn relaxed_hold(
     watch: &mut dyn Watch,
 ) -> Result<Option<RelaxedHold>, Cancelled> {
     debug_assert_eq!(hold.phase, Phase::Hold);
-    let range = hold.fit_start..hold.end;
-    let every = range.len().div_ceil(2000).max(1);
-    let start = record.time()[range.start];
-    let times: Vec<f64> = range.clone().step_by(every).map(|i| record.time()[i] - start).collect();
-    let force: Vec<f64> = range.clone().step_by(every).map(|i| record.force()[i]).collect();
+    let rows = hold.fit_start..hold.end;
+    let every = rows.len().div_ceil(2000).max(1);
+    let start = record.time()[rows.start];
+    let times: Vec<f64> = rows.clone().step_by(every).map(|i| record.time()[i] - start).collect();
+    let force: Vec<f64> = rows.clone().step_by(every).map(|i| record.force()[i]).collect();
     let after_loading = hold.after == Some(After::Loading);
     // A jaw that retreats may leave the body, and the force of an open contact says nothing about the modulus.
     let lowest = force.iter().fold(f64::MAX, |least, f| least.min(*f));
-    let displacement = median(&mut displacement[range].to_vec());
+    let displacement = median(&mut displacement[rows].to_vec());
     let last = force
         .last()
         .copied()
@@ -314,31 +315,30 @@ fn relaxed_hold(
     let Some(last) = last else { return Ok(None) };
     let until = options.fitted(&times);
     let samples = Samples::new(&times[..until], &force[..until]);
-    let mut fit = |law: &Law, samples: &Samples<'_>| {
+    let fitting = |law: &Law| {
         let exponent = match law {
             Law::Latency { exponent } => *exponent,
             _ => ExponentChoice::Fixed(1.0),
         };
         // Standard errors are those of curvature anyway.
-        let fitting = LawOptions {
+        LawOptions {
             intervals: IntervalMethod::Curvature,
             ..options.fit.of_latency(exponent)
-        };
-        fitted(fit_law_watched(samples, *law, &fitting, watch))
+        }
     };
-    let fits = laws.iter().map(|law| fit(law, &samples)).collect::<Result<Vec<Option<Fit>>, Cancelled>>()?;
+    let fit = |law: &Law| fitted(fit_law_watched(&samples, *law, &fitting(law), watch));
+    let fits = laws.iter().map(fit).collect::<Result<Vec<Option<Fit>>, Cancelled>>()?;
     let duration = times[times.len() - 1];
     let mut per_slope = vec![duration; laws.len()];
     if options.corrections.baseline == Some(Baseline::Sloped) && duration > 0.0 {
         /// What a slope adds by the end of the hold, as a share of the change of the force.
         const SMALL: f64 = 1e-3;
-        let slope = SMALL * span_of(&force) / duration;
-        let sloped: Vec<f64> = force.iter().zip(&times).map(|(force, time)| force + slope * time).collect();
+        let slope = SMALL * range(&force) / duration;
         for ((law, found), per_slope) in laws.iter().zip(&fits).zip(&mut per_slope) {
             let Some(level) = found.as_ref().and_then(|found| found.value("equilibrium")) else {
                 continue;
             };
-            let with = fit(law, &Samples::new(&times[..until], &sloped[..until]))?;
+            let with = drifting(*law, &samples, &fitting(law), slope, watch)?;
             if let Some(moved) = with.and_then(|with| with.value("equilibrium")) {
                 *per_slope = (moved - level) / slope;
             }

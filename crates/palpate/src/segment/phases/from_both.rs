@@ -382,23 +382,27 @@ fn stands(record: &Record, still: &Level, level: &Level) -> bool {
         && [mode, mode_at_large].iter().all(|mode| mode(record, start, end) != HoldMode::ForceHeld)
 }
 
-/// Whether the jaw stands in these samples, less what they have of the ramps beside them.
+/// Those of these runs of samples in which the jaw stands, less what they have of the ramps beside them.
 pub(crate) fn stands_in(
     record: &Record,
-    (start, end): (usize, usize),
+    runs: Vec<(usize, usize)>,
     options: &SegmentOptions,
     watch: &mut dyn Watch,
-) -> Result<bool, Cancelled> {
-    let Some(displacement) = record.displacement() else {
-        return Ok(false);
+) -> Result<Vec<(usize, usize)>, Cancelled> {
+    let Some(displacement) = record.displacement().filter(|_| !runs.is_empty()) else {
+        return Ok(Vec::new());
     };
     let held = Held::new(("displacement", "m"), displacement, SERVO * range(displacement), false);
-    let found = SegmentError::unless_cancelled(levels(record.time(), &held, options, watch))?;
-    let level = Level::of(record.force(), start, end);
-    let is_still = |still: &Level| {
-        stands(record, still, &level) && !creeps_at_all(record, still.start.max(start), still.end.min(end))
+    let Ok(found) = SegmentError::unless_cancelled(levels(record.time(), &held, options, watch))? else {
+        return Ok(Vec::new());
     };
-    Ok(found.is_ok_and(|found| found.levels.iter().any(is_still)))
+    let is_still = |(start, end): &(usize, usize)| {
+        let level = Level::of(record.force(), *start, *end);
+        found.levels.iter().any(|still| {
+            stands(record, still, &level) && !creeps_at_all(record, still.start.max(*start), still.end.min(*end))
+        })
+    };
+    Ok(runs.into_iter().filter(is_still).collect())
 }
 
 /// Whether the machine goes over from holding the jaw to holding the force that it has just then: the jaw stood, and creeps from there on.
